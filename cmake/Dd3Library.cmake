@@ -1,0 +1,21 @@
+# dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...])
+#
+# Declares src/<folder>/ as the library dd3_<folder>. Its module files go into a directory of its own, which only those
+# libraries see that name it in USES: a `use` of a folder that is not declared does not compile.
+function(dd3_library folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
+  set(library dd3_${folder})
+  if(NOT sources)
+    add_library(${library} INTERFACE)
+    return()
+  endif()
+  set(modules "${CMAKE_BINARY_DIR}/modules/${folder}")
+  add_library(${library} STATIC ${sources})
+  set_target_properties(${library} PROPERTIES Fortran_MODULE_DIRECTORY "${modules}" LINKER_LANGUAGE Fortran)
+  target_include_directories(${library} INTERFACE "${modules}")
+  foreach(used IN LISTS arg_USES)
+    target_link_libraries(${library} PRIVATE dd3_${used})
+  endforeach()
+  target_link_libraries(${library} PRIVATE ${arg_PACKAGES})
+endfunction()

@@ -1,0 +1,145 @@
+!> Errors of the set-up as values: they travel up, gain context on the way and are reported together.
+module dd3_base_error
+  implicit none
+  private
+  public :: location_t, error_t, error_list_t, fatal_error, input_error, add_context
+
+  !> Where a piece of input was written.
+  type :: location_t
+    !> Name of the file, as the user gave it.
+    character(len=:), allocatable :: file
+    !> Line number, from 1; 0 where there is none (command line, whole file).
+    integer :: line = 0
+    !> Column of the first character, from 1; 0 where there is none.
+    integer :: column = 0
+    !> Number of characters it takes.
+    integer :: width = 1
+    !> The whole line of text.
+    character(len=:), allocatable :: text
+  end type location_t
+
+  !> One error, ready to be shown.
+  type :: error_t
+    !> What happened, may hold several lines.
+    character(len=:), allocatable :: message
+  end type error_t
+
+  !> All errors found so far, in the order they were found.
+  type :: error_list_t
+    !> Number of errors held.
+    integer :: count = 0
+    !> The errors: `item(1:count)`.
+    type(error_t), allocatable :: item(:)
+  contains
+    procedure :: push => error_list_push
+    procedure :: push_input => error_list_push_input
+  end type error_list_t
+
+contains
+
+  !> Makes an error of a plain message.
+  subroutine fatal_error(error, message)
+    !> The error made.
+    type(error_t), allocatable, intent(out) :: error
+    !> What happened.
+    character(len=*), intent(in) :: message
+
+    allocate (error)
+    error%message = message
+  end subroutine fatal_error
+
+  !> Makes an error that shows the place in the input: file, line, text, caret, what was expected.
+  subroutine input_error(error, location, message, expected)
+    !> The error made.
+    type(error_t), allocatable, intent(out) :: error
+    !> The place it speaks of.
+    type(location_t), intent(in) :: location
+    !> What is wrong.
+    character(len=*), intent(in) :: message
+    !> What was expected there.
+    character(len=*), intent(in), optional :: expected
+
+    character(len=12) :: number
+
+    allocate (error)
+    error%message = "error: "//message
+    if (allocated(location%file)) then
+      write (number, '(i0)') location%line
+      if (location%line > 0) then
+        error%message = location%file//":"//trim(number)//": "//error%message
+      else
+        error%message = location%file//": "//error%message
+      end if
+    end if
+    if (allocated(location%text) .and. location%line > 0) then
+      error%message = error%message//new_line("a")//"  "//location%text
+      if (location%column > 0) then
+        error%message = error%message//new_line("a")//"  "//caret_indent(location) &
+                        //repeat("^", max(1, location%width))
+      end if
+    end if
+    if (present(expected)) error%message = error%message//new_line("a")//"  expected: "//expected
+  end subroutine input_error
+
+  !> Blanks (tabs kept) up to the caret.
+  pure function caret_indent(location) result(indent)
+    !> The place.
+    type(location_t), intent(in) :: location
+    character(len=:), allocatable :: indent
+
+    integer :: i
+
+    indent = repeat(" ", location%column - 1)
+    do i = 1, min(len(indent), len(location%text))
+      if (location%text(i:i) == achar(9)) indent(i:i) = achar(9)
+    end do
+  end function caret_indent
+
+  !> Says on the way up what was being done.
+  subroutine add_context(error, text)
+    !> The error; nothing happens where there is none.
+    type(error_t), allocatable, intent(inout) :: error
+    !> What was being done.
+    character(len=*), intent(in) :: text
+
+    if (allocated(error)) error%message = text//": "//error%message
+  end subroutine add_context
+
+  !> Adds an error to the list; nothing happens where there is none.
+  subroutine error_list_push(self, error)
+    !> The list.
+    class(error_list_t), intent(inout) :: self
+    !> The error.
+    type(error_t), allocatable, intent(in) :: error
+
+    type(error_t), allocatable :: larger(:)
+
+    if (.not. allocated(error)) return
+    if (.not. allocated(self%item)) allocate (self%item(8))
+    if (self%count == size(self%item)) then
+      allocate (larger(2*self%count))
+      larger(:self%count) = self%item
+      call move_alloc(larger, self%item)
+    end if
+    self%count = self%count + 1
+    self%item(self%count) = error
+  end subroutine error_list_push
+
+  !> Makes an input error and adds it to the list.
+  subroutine error_list_push_input(self, location, message, expected)
+    !> The list.
+    class(error_list_t), intent(inout) :: self
+    !> The place it speaks of.
+    type(location_t), intent(in) :: location
+    !> What is wrong.
+    character(len=*), intent(in) :: message
+    !> What was expected there.
+    character(len=*), intent(in), optional :: expected
+
+    type(error_t), allocatable :: error
+
+    call input_error(error, location, message, expected)
+    call self%push(error)
+  end subroutine error_list_push_input
+
+end module dd3_base_error

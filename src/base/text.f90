@@ -1,0 +1,155 @@
+!> Small text helpers.
+module dd3_base_text
+  use dd3_base_kinds, only : wp, i8
+  implicit none
+  private
+  public :: text_t, to_text, lower_case, same_name, nearest_name, join
+
+  !> A string of any length, for lists of strings.
+  type :: text_t
+    !> The string.
+    character(len=:), allocatable :: s
+  end type text_t
+
+  !> A number or a logical as text, as short as it can be.
+  interface to_text
+    module procedure :: integer_to_text, long_to_text, real_to_text, logical_to_text
+  end interface to_text
+
+contains
+
+  !> A whole number as text.
+  pure function integer_to_text(value) result(text)
+    !> The number.
+    integer, intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(i0)') value
+    text = trim(buffer)
+  end function integer_to_text
+
+  !> A long whole number as text.
+  pure function long_to_text(value) result(text)
+    !> The number.
+    integer(i8), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(i0)') value
+    text = trim(buffer)
+  end function long_to_text
+
+  !> A real number as text, with `digits` significant digits (6 when left out).
+  pure function real_to_text(value, digits) result(text)
+    !> The number.
+    real(wp), intent(in) :: value
+    !> Significant digits.
+    integer, intent(in), optional :: digits
+    character(len=:), allocatable :: text
+    character(len=40) :: buffer, form
+    integer :: n, mark, e
+
+    n = 6
+    if (present(digits)) n = digits
+    write (form, '(a,i0,a,i0,a)') "(g", n + 10, ".", n, ")"
+    write (buffer, form) value
+    text = trim(adjustl(buffer))
+    mark = scan(text, "eE")
+    if (index(text, ".") == 0) return
+    e = len(text)
+    if (mark > 0) e = mark - 1
+    do while (text(e:e) == "0")
+      text = text(:e - 1)//text(e + 1:)
+      e = e - 1
+    end do
+    if (text(e:e) == ".") text = text(:e - 1)//text(e + 1:)
+  end function real_to_text
+
+  !> A logical as `on` or `off`.
+  pure function logical_to_text(value) result(text)
+    !> The logical.
+    logical, intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = trim(merge("on ", "off", value))
+  end function logical_to_text
+
+  !> The text with its capital letters made small.
+  pure function lower_case(text) result(lower)
+    !> The text.
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: lower
+    integer :: i, c
+
+    lower = text
+    do i = 1, len(text)
+      c = iachar(text(i:i))
+      if (c >= iachar("A") .and. c <= iachar("Z")) lower(i:i) = achar(c + 32)
+    end do
+  end function lower_case
+
+  !> Whether two names are the same, capital or not.
+  pure logical function same_name(a, b)
+    !> The two names.
+    character(len=*), intent(in) :: a, b
+
+    same_name = lower_case(trim(a)) == lower_case(trim(b))
+  end function same_name
+
+  !> The known name closest to a misspelt one; empty when none is close.
+  pure function nearest_name(name, known) result(nearest)
+    !> What was written.
+    character(len=*), intent(in) :: name
+    !> The names there are.
+    character(len=*), intent(in) :: known(:)
+    character(len=:), allocatable :: nearest
+    integer :: i, distance, best
+
+    nearest = ""
+    best = max(1, (len_trim(name) + 1)/3) + 1
+    do i = 1, size(known)
+      distance = edit_distance(lower_case(trim(name)), lower_case(trim(known(i))))
+      if (distance < best) then
+        best = distance
+        nearest = trim(known(i))
+      end if
+    end do
+  end function nearest_name
+
+  !> Number of insertions, deletions and replacements between two words (Levenshtein 1966).
+  pure integer function edit_distance(a, b)
+    !> The two words.
+    character(len=*), intent(in) :: a, b
+    integer :: cost(0:len(b)), previous, i, j, saved
+
+    cost = [(j, j=0, len(b))]
+    do i = 1, len(a)
+      previous = cost(0)
+      cost(0) = i
+      do j = 1, len(b)
+        saved = cost(j)
+        cost(j) = min(cost(j) + 1, cost(j - 1) + 1, previous + merge(0, 1, a(i:i) == b(j:j)))
+        previous = saved
+      end do
+    end do
+    edit_distance = cost(len(b))
+  end function edit_distance
+
+  !> The words with a separator between them.
+  pure function join(words, separator) result(text)
+    !> The words, trailing blanks ignored.
+    character(len=*), intent(in) :: words(:)
+    !> What stands between two of them.
+    character(len=*), intent(in) :: separator
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ""
+    do i = 1, size(words)
+      if (i > 1) text = text//separator
+      text = text//trim(words(i))
+    end do
+  end function join
+
+end module dd3_base_text
