@@ -14,14 +14,18 @@ module dd3_base_error
     integer :: column = 0
     !> Number of characters it takes.
     integer :: width = 1
-    !> The whole line of text.
+    !> The line of text, or the part of it around the column.
     character(len=:), allocatable :: text
+    !> Position of the line in the whole text with its included files unfolded; errors are reported in this order.
+    integer :: order = huge(0)
   end type location_t
 
   !> One error, ready to be shown.
   type :: error_t
     !> What happened, may hold several lines.
     character(len=:), allocatable :: message
+    !> Place of its first character in the whole input: position of the line, column.
+    integer :: order = huge(0), column = 0
   end type error_t
 
   !> All errors found so far, in the order they were found.
@@ -33,6 +37,7 @@ module dd3_base_error
   contains
     procedure :: push => error_list_push
     procedure :: push_input => error_list_push_input
+    procedure :: sort => error_list_sort
   end type error_list_t
 
 contains
@@ -62,6 +67,8 @@ contains
     character(len=12) :: number
 
     allocate (error)
+    error%order = location%order
+    error%column = location%column
     error%message = "error: "//message
     if (allocated(location%file)) then
       write (number, '(i0)') location%line
@@ -81,17 +88,22 @@ contains
     if (present(expected)) error%message = error%message//new_line("a")//"  expected: "//expected
   end subroutine input_error
 
-  !> Blanks (tabs kept) up to the caret.
+  !> Blanks (tabs kept) up to the caret; the later bytes of a UTF-8 character take no room.
   pure function caret_indent(location) result(indent)
     !> The place.
     type(location_t), intent(in) :: location
     character(len=:), allocatable :: indent
 
-    integer :: i
+    integer :: i, byte
 
-    indent = repeat(" ", location%column - 1)
-    do i = 1, min(len(indent), len(location%text))
-      if (location%text(i:i) == achar(9)) indent(i:i) = achar(9)
+    indent = ""
+    do i = 1, min(location%column - 1, len(location%text))
+      byte = ichar(location%text(i:i))
+      if (byte == 9) then
+        indent = indent//achar(9)
+      else if (byte < 128 .or. byte > 191) then
+        indent = indent//" "
+      end if
     end do
   end function caret_indent
 
@@ -141,5 +153,33 @@ contains
     call input_error(error, location, message, expected)
     call self%push(error)
   end subroutine error_list_push_input
+
+  !> Brings the errors into the order of the input's lines; those without a place come last, in the order found.
+  subroutine error_list_sort(self)
+    !> The list.
+    class(error_list_t), intent(inout) :: self
+
+    type(error_t) :: moved
+    integer :: i, j
+
+    do i = 2, self%count
+      moved = self%item(i)
+      j = i - 1
+      do while (j >= 1)
+        if (.not. stands_before(moved, self%item(j))) exit
+        self%item(j + 1) = self%item(j)
+        j = j - 1
+      end do
+      self%item(j + 1) = moved
+    end do
+  end subroutine error_list_sort
+
+  !> Whether the first error's place is before the second's.
+  pure logical function stands_before(a, b)
+    !> The two errors.
+    type(error_t), intent(in) :: a, b
+
+    stands_before = a%order < b%order .or. (a%order == b%order .and. a%column < b%column)
+  end function stands_before
 
 end module dd3_base_error

@@ -4,7 +4,8 @@ module dd3_base_parameter
   implicit none
   private
   public :: parameter_t, law_value_t, row
-  public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, kind_law, kind_other
+  public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, kind_law, kind_other, &
+            kind_integers
 
   !> One real number.
   integer, parameter :: kind_real = 1
@@ -22,8 +23,10 @@ module dd3_base_parameter
   integer, parameter :: kind_names = 7
   !> A law's name followed by `key=value` pairs.
   integer, parameter :: kind_law = 8
-  !> A form of its own, described by `help`.
+  !> A form of its own, given by `form`.
   integer, parameter :: kind_other = 9
+  !> `count` whole numbers.
+  integer, parameter :: kind_integers = 10
 
   !> A keyword, or a law's parameter.
   type :: parameter_t
@@ -31,7 +34,7 @@ module dd3_base_parameter
     character(len=24) :: name = ""
     !> One of the `kind_*` values.
     integer :: kind = kind_real
-    !> How many values, for `kind_reals`; 0 for any number.
+    !> How many values, for `kind_reals`, `kind_integers`, `kind_names`; 0 for any number from one.
     integer :: count = 1
     !> Unit of the value, empty where it has none.
     character(len=16) :: unit = ""
@@ -47,6 +50,12 @@ module dd3_base_parameter
     logical :: repeatable = .false.
     !> Alternatives of a `kind_name`, separated by blanks; empty where any word will do.
     character(len=120) :: choices = ""
+    !> What stands where in the value of a `kind_other`; alternatives separated by `/`. The words `set`, `tool`, `material`,
+    !> `axis`, `number`, `count` and `range` stand for such values, `a|b` for one of two words, `...` repeats the word before
+    !> it, `[mm]` may be left out. For a `kind_name`, `set`, `tool` or `material` says what must bear the name.
+    character(len=80) :: form = ""
+    !> Alternatives, or laws, that this version does not provide, separated by blanks; `*` for the whole key.
+    character(len=120) :: later = ""
     !> One line of help.
     character(len=160) :: help = ""
   end type parameter_t
@@ -63,7 +72,7 @@ contains
 
   !> A row with the common members; the others can be set afterwards.
   pure function row(name, kind, unit, default, help, lower, upper, lower_open, upper_open, count, &
-                    may_be_off, repeatable, choices)
+                    may_be_off, repeatable, choices, form, later)
     !> See the components of `parameter_t`.
     character(len=*), intent(in) :: name, unit, default, help
     !> See the components of `parameter_t`.
@@ -75,7 +84,7 @@ contains
     !> See the components of `parameter_t`.
     integer, intent(in), optional :: count
     !> See the components of `parameter_t`.
-    character(len=*), intent(in), optional :: choices
+    character(len=*), intent(in), optional :: choices, form, later
     type(parameter_t) :: row
 
     row%name = name
@@ -91,6 +100,8 @@ contains
     if (present(may_be_off)) row%may_be_off = may_be_off
     if (present(repeatable)) row%repeatable = repeatable
     if (present(choices)) row%choices = choices
+    if (present(form)) row%form = form
+    if (present(later)) row%later = later
   end function row
 
 end module dd3_base_parameter
