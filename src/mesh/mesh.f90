@@ -1,0 +1,82 @@
+!> The mesh: nodes, elements, node sets.
+module dd3_mesh_mesh
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : same_name
+  implicit none
+  private
+  public :: mesh_t, mesh_set_t
+
+  !> A named list of nodes.
+  type :: mesh_set_t
+    !> Its name, in small letters.
+    character(len=:), allocatable :: name
+    !> Node numbers, ascending.
+    integer, allocatable :: node(:)
+  end type mesh_set_t
+
+  !> The sheet's mesh.
+  type :: mesh_t
+    !> Name of the element, as in the element registry.
+    character(len=:), allocatable :: element
+    !> Number of nodes, elements, nodes per element.
+    integer :: n_node = 0, n_element = 0, n_element_node = 0
+    !> Initial coordinates (3, n_node), mm.
+    real(wp), allocatable :: x(:, :)
+    !> Nodes of each element (n_element_node, n_element), in the order of VTK.
+    integer, allocatable :: connectivity(:, :)
+    !> Position in `case%material` of each element.
+    integer, allocatable :: material(:)
+    !> Sheet thickness, mm: the smallest extent of a structured blank along z.
+    real(wp) :: thickness = 0.0_wp
+    !> Node sets: those of the blank, then those of the input file in its order.
+    type(mesh_set_t), allocatable :: set(:)
+  contains
+    procedure :: find_set
+    procedure :: nodes_of
+    procedure :: model_size
+  end type mesh_t
+
+contains
+
+  !> Position of a set; 0 if there is none of this name.
+  pure integer function find_set(self, name)
+    !> The mesh.
+    class(mesh_t), intent(in) :: self
+    !> Name of the set.
+    character(len=*), intent(in) :: name
+
+    if (allocated(self%set)) then
+      do find_set = 1, size(self%set)
+        if (same_name(self%set(find_set)%name, name)) return
+      end do
+    end if
+    find_set = 0
+  end function find_set
+
+  !> Nodes of a set; none if there is no such set.
+  pure function nodes_of(self, name) result(node)
+    !> The mesh.
+    class(mesh_t), intent(in) :: self
+    !> Name of the set.
+    character(len=*), intent(in) :: name
+    integer, allocatable :: node(:)
+
+    integer :: i
+
+    i = self%find_set(name)
+    if (i > 0) then
+      node = self%set(i)%node
+    else
+      allocate (node(0))
+    end if
+  end function nodes_of
+
+  !> Diagonal of the box around all nodes, mm.
+  pure real(wp) function model_size(self)
+    !> The mesh.
+    class(mesh_t), intent(in) :: self
+
+    model_size = norm2(maxval(self%x, dim=2) - minval(self%x, dim=2))
+  end function model_size
+
+end module dd3_mesh_mesh
