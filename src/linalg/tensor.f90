@@ -1,0 +1,342 @@
+!> Algebra of 3-vectors, 3x3 tensors, Kelvin 6-vectors and small dense systems.
+!>
+!> Kelvin vectors (Thomson 1856; Mandel 1965; Mehrabadi and Cowin 1990, eq. 8) hold a symmetric
+!> tensor as (11, 22, 33, sqrt(2) 23, sqrt(2) 31, sqrt(2) 12): the double contraction is the dot
+!> product and a rotation of the axes is an orthogonal 6x6 matrix. Eigenvectors are found by
+!> Jacobi's rotations (Jacobi 1846; Rutishauser 1966).
+module dd3_linalg_tensor
+  use dd3_base_kinds, only : wp
+  implicit none
+  private
+  public :: identity, kelvin_identity, kelvin_deviator_projector
+  public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_trace, kelvin_deviator
+  public :: trace, deviator, determinant, inverse, symmetric_eigen
+  public :: cross, outer, skew_vector, norm, solve_small
+
+  !> Square root of two and its inverse.
+  real(wp), parameter :: root = sqrt(2.0_wp), half_root = 1.0_wp/sqrt(2.0_wp)
+  !> One third.
+  real(wp), parameter :: third = 1.0_wp/3.0_wp
+
+  !> Unit tensor of second order.
+  real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
+                                                   0.0_wp, 1.0_wp, 0.0_wp, &
+                                                   0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+  !> Unit tensor of second order as a Kelvin vector.
+  real(wp), parameter :: kelvin_identity(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+  !> Kelvin matrix that takes the deviator of a tensor.
+  real(wp), parameter :: kelvin_deviator_projector(6, 6) = reshape( &
+    [2*third, -third, -third, 0.0_wp, 0.0_wp, 0.0_wp, &
+     -third, 2*third, -third, 0.0_wp, 0.0_wp, 0.0_wp, &
+     -third, -third, 2*third, 0.0_wp, 0.0_wp, 0.0_wp, &
+     0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, &
+     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
+     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [6, 6])
+
+contains
+
+  !> Kelvin vector of a symmetric tensor; of another, of its symmetric part.
+  pure function kelvin_from_tensor(t) result(v)
+    !> The tensor.
+    real(wp), intent(in) :: t(3, 3)
+    real(wp) :: v(6)
+
+    v(1) = t(1, 1)
+    v(2) = t(2, 2)
+    v(3) = t(3, 3)
+    v(4) = half_root*(t(2, 3) + t(3, 2))
+    v(5) = half_root*(t(3, 1) + t(1, 3))
+    v(6) = half_root*(t(1, 2) + t(2, 1))
+  end function kelvin_from_tensor
+
+  !> Symmetric tensor of a Kelvin vector.
+  pure function tensor_from_kelvin(v) result(t)
+    !> The Kelvin vector.
+    real(wp), intent(in) :: v(6)
+    real(wp) :: t(3, 3)
+
+    t(1, 1) = v(1)
+    t(2, 2) = v(2)
+    t(3, 3) = v(3)
+    t(2, 3) = half_root*v(4)
+    t(3, 1) = half_root*v(5)
+    t(1, 2) = half_root*v(6)
+    t(3, 2) = t(2, 3)
+    t(1, 3) = t(3, 1)
+    t(2, 1) = t(1, 2)
+  end function tensor_from_kelvin
+
+  !> Orthogonal 6x6 matrix R with R v = Kelvin(q t q^T) for v = Kelvin(t).
+  pure function kelvin_rotation(q) result(r)
+    !> The rotation.
+    real(wp), intent(in) :: q(3, 3)
+    real(wp) :: r(6, 6)
+    !> Pairs of indices of the shear components 23, 31, 12.
+    integer, parameter :: first(3) = [2, 3, 1], second(3) = [3, 1, 2]
+    integer :: i, j
+
+    do j = 1, 3
+      do i = 1, 3
+        associate (a => first(i), b => second(i), c => first(j), d => second(j))
+          r(i, j) = q(i, j)**2
+          r(i, 3 + j) = root*q(i, c)*q(i, d)
+          r(3 + i, j) = root*q(a, j)*q(b, j)
+          r(3 + i, 3 + j) = q(a, c)*q(b, d) + q(a, d)*q(b, c)
+        end associate
+      end do
+    end do
+  end function kelvin_rotation
+
+  !> Trace of the tensor behind a Kelvin vector.
+  pure real(wp) function kelvin_trace(v)
+    !> The Kelvin vector.
+    real(wp), intent(in) :: v(6)
+
+    kelvin_trace = v(1) + v(2) + v(3)
+  end function kelvin_trace
+
+  !> Deviator of a Kelvin vector.
+  pure function kelvin_deviator(v) result(s)
+    !> The Kelvin vector.
+    real(wp), intent(in) :: v(6)
+    real(wp) :: s(6), mean
+
+    mean = third*(v(1) + v(2) + v(3))
+    s(1:3) = v(1:3) - mean
+    s(4:6) = v(4:6)
+  end function kelvin_deviator
+
+  !> Trace of a tensor.
+  pure real(wp) function trace(t)
+    !> The tensor.
+    real(wp), intent(in) :: t(3, 3)
+
+    trace = t(1, 1) + t(2, 2) + t(3, 3)
+  end function trace
+
+  !> Deviator of a tensor.
+  pure function deviator(t) result(s)
+    !> The tensor.
+    real(wp), intent(in) :: t(3, 3)
+    real(wp) :: s(3, 3), mean
+
+    mean = third*(t(1, 1) + t(2, 2) + t(3, 3))
+    s = t
+    s(1, 1) = t(1, 1) - mean
+    s(2, 2) = t(2, 2) - mean
+    s(3, 3) = t(3, 3) - mean
+  end function deviator
+
+  !> Determinant of a 3x3 matrix.
+  pure real(wp) function determinant(a)
+    !> The matrix.
+    real(wp), intent(in) :: a(3, 3)
+
+    determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) &
+                  - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+                  + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+  end function determinant
+
+  !> Inverse of a 3x3 matrix by its cofactors; a singular one gives zero and `regular` false.
+  pure subroutine inverse(a, inverted, regular)
+    !> The matrix.
+    real(wp), intent(in) :: a(3, 3)
+    !> Its inverse.
+    real(wp), intent(out) :: inverted(3, 3)
+    !> Whether there is one.
+    logical, intent(out) :: regular
+    real(wp) :: d, bound, factor
+
+    inverted(1, 1) = a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)
+    inverted(2, 1) = a(2, 3)*a(3, 1) - a(2, 1)*a(3, 3)
+    inverted(3, 1) = a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1)
+    d = a(1, 1)*inverted(1, 1) + a(1, 2)*inverted(2, 1) + a(1, 3)*inverted(3, 1)
+    bound = abs(a(1, 1)*inverted(1, 1)) + abs(a(1, 2)*inverted(2, 1)) + abs(a(1, 3)*inverted(3, 1))
+    regular = abs(d) > epsilon(1.0_wp)*bound .and. abs(d) > tiny(1.0_wp)
+    if (.not. regular) then
+      inverted = 0.0_wp
+      return
+    end if
+    factor = 1.0_wp/d
+    inverted(1, 2) = a(1, 3)*a(3, 2) - a(1, 2)*a(3, 3)
+    inverted(2, 2) = a(1, 1)*a(3, 3) - a(1, 3)*a(3, 1)
+    inverted(3, 2) = a(1, 2)*a(3, 1) - a(1, 1)*a(3, 2)
+    inverted(1, 3) = a(1, 2)*a(2, 3) - a(1, 3)*a(2, 2)
+    inverted(2, 3) = a(1, 3)*a(2, 1) - a(1, 1)*a(2, 3)
+    inverted(3, 3) = a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1)
+    inverted = factor*inverted
+  end subroutine inverse
+
+  !> Eigenvalues and orthonormal eigenvectors of a symmetric 3x3 matrix, in no particular order:
+  !> a = sum of values(i) vectors(:,i) vectors(:,i)^T. Rotations are left out where the off-diagonal
+  !> member no longer counts, so that a nearly diagonal matrix costs next to nothing; equal
+  !> eigenvalues are no special case.
+  pure subroutine symmetric_eigen(a, values, vectors)
+    !> The matrix; its lower triangle is not read.
+    real(wp), intent(in) :: a(3, 3)
+    !> Eigenvalues.
+    real(wp), intent(out) :: values(3)
+    !> Eigenvectors, as columns.
+    real(wp), intent(out) :: vectors(3, 3)
+    !> Sweeps allowed; convergence is quadratic and takes three or four.
+    integer, parameter :: max_sweeps = 12
+    !> Off-diagonal members below this are zero: their squares would underflow.
+    real(wp), parameter :: floor = 1.0e-150_wp
+    real(wp) :: x, y, z, small
+    integer :: sweep
+
+    values = [a(1, 1), a(2, 2), a(3, 3)]
+    x = a(2, 3)
+    y = a(1, 3)
+    z = a(1, 2)
+    vectors = identity
+    small = max(0.25_wp*epsilon(1.0_wp)*(sum(abs(values)) + abs(x) + abs(y) + abs(z)), floor)
+    do sweep = 1, max_sweeps
+      if (abs(x) + abs(y) + abs(z) <= small) exit
+      if (abs(z) > 0.1_wp*small) &
+          call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
+      if (abs(y) > 0.1_wp*small) &
+          call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
+      if (abs(x) > 0.1_wp*small) &
+          call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
+    end do
+  end subroutine symmetric_eigen
+
+  !> Jacobi's rotation in the plane (p, q) that makes a_pq vanish.
+  pure subroutine rotate(a_pp, a_qq, a_pq, a_rp, a_rq, v_p, v_q)
+    !> Members of the matrix in the plane of the rotation.
+    real(wp), intent(inout) :: a_pp, a_qq, a_pq
+    !> Members that couple the plane with the third axis.
+    real(wp), intent(inout) :: a_rp, a_rq
+    !> Columns p and q of the eigenvectors.
+    real(wp), intent(inout) :: v_p(3), v_q(3)
+    real(wp) :: difference, t, c, s, v(3), w
+
+    difference = a_qq - a_pp
+    t = 2*a_pq/(difference + sign(sqrt(difference*difference + 4*a_pq*a_pq), difference))
+    c = 1.0_wp/sqrt(1.0_wp + t*t)
+    s = t*c
+    a_pp = a_pp - t*a_pq
+    a_qq = a_qq + t*a_pq
+    a_pq = 0.0_wp
+    w = a_rp
+    a_rp = c*w - s*a_rq
+    a_rq = s*w + c*a_rq
+    v = v_p
+    v_p = c*v - s*v_q
+    v_q = s*v + c*v_q
+  end subroutine rotate
+
+  !> Cross product a x b.
+  pure function cross(a, b) result(c)
+    !> The two vectors.
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: c(3)
+
+    c(1) = a(2)*b(3) - a(3)*b(2)
+    c(2) = a(3)*b(1) - a(1)*b(3)
+    c(3) = a(1)*b(2) - a(2)*b(1)
+  end function cross
+
+  !> Dyadic product a b^T.
+  pure function outer(a, b) result(c)
+    !> The two vectors.
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: c(3, 3)
+
+    c(:, 1) = a*b(1)
+    c(:, 2) = a*b(2)
+    c(:, 3) = a*b(3)
+  end function outer
+
+  !> Axial vector w of the skew part of a tensor: skw(t) x = w x x.
+  pure function skew_vector(t) result(w)
+    !> The tensor.
+    real(wp), intent(in) :: t(3, 3)
+    real(wp) :: w(3)
+
+    w(1) = 0.5_wp*(t(3, 2) - t(2, 3))
+    w(2) = 0.5_wp*(t(1, 3) - t(3, 1))
+    w(3) = 0.5_wp*(t(2, 1) - t(1, 2))
+  end function skew_vector
+
+  !> Length of a 3-vector.
+  pure real(wp) function norm(a)
+    !> The vector.
+    real(wp), intent(in) :: a(3)
+
+    norm = sqrt(a(1)*a(1) + a(2)*a(2) + a(3)*a(3))
+  end function norm
+
+  !> Solves a x = b for several right-hand sides by elimination with row pivoting, in place. A pivot
+  !> that has shrunk to round-off against its column makes the matrix singular: `regular` is then
+  !> false and b is of no use.
+  pure subroutine solve_small(n, m, a, b, regular)
+    !> Number of equations, and of right-hand sides.
+    integer, intent(in) :: n, m
+    !> The matrix; destroyed.
+    real(wp), intent(inout) :: a(n, n)
+    !> The right-hand sides; on return the solutions.
+    real(wp), intent(inout) :: b(n, m)
+    !> Whether the matrix was regular.
+    logical, intent(out) :: regular
+    real(wp) :: column(n), factor, largest, saved
+    integer :: i, j, k, pivot
+
+    regular = .false.
+    do k = 1, n
+      column(k) = 0.0_wp
+      do i = 1, n
+        if (abs(a(i, k)) > column(k)) column(k) = abs(a(i, k))
+      end do
+    end do
+    do k = 1, n
+      pivot = k
+      largest = abs(a(k, k))
+      do i = k + 1, n
+        if (abs(a(i, k)) > largest) then
+          pivot = i
+          largest = abs(a(i, k))
+        end if
+      end do
+      if (.not. largest > epsilon(1.0_wp)*column(k)) return
+      if (pivot /= k) then
+        do j = k, n
+          saved = a(k, j)
+          a(k, j) = a(pivot, j)
+          a(pivot, j) = saved
+        end do
+        do j = 1, m
+          saved = b(k, j)
+          b(k, j) = b(pivot, j)
+          b(pivot, j) = saved
+        end do
+      end if
+      factor = 1.0_wp/a(k, k)
+      do i = k + 1, n
+        a(i, k) = a(i, k)*factor
+      end do
+      a(k, k) = factor
+      do j = k + 1, n
+        do i = k + 1, n
+          a(i, j) = a(i, j) - a(i, k)*a(k, j)
+        end do
+      end do
+      do j = 1, m
+        do i = k + 1, n
+          b(i, j) = b(i, j) - a(i, k)*b(k, j)
+        end do
+      end do
+    end do
+    do j = 1, m
+      do k = n, 1, -1
+        b(k, j) = b(k, j)*a(k, k)
+        do i = 1, k - 1
+          b(i, j) = b(i, j) - a(i, k)*b(k, j)
+        end do
+      end do
+    end do
+    regular = .true.
+  end subroutine solve_small
+
+end module dd3_linalg_tensor
