@@ -1,0 +1,35 @@
+# add_pfunit_ctest(<name> TEST_SOURCES <x.pf>... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...]
+#                  [WORKING_DIRECTORY <dir>])
+#
+# One executable and one test. pFUnit runs the files where it is installed (-DCMAKE_PREFIX_PATH=<prefix>), the stand-in of
+# tests/standin/ where it is not, or where DD3_FORCE_STANDIN is on. The label `unit` is added to those given.
+option(DD3_FORCE_STANDIN "Run the unit tests with the in-tree stand-in even where pFUnit is installed" OFF)
+
+include(PfStandin)
+set(DD3_PFUNIT OFF)
+if(NOT DD3_FORCE_STANDIN)
+  find_package(PFUNIT 4.0 QUIET)
+  if(PFUNIT_FOUND)
+    set(DD3_PFUNIT ON)
+  endif()
+endif()
+if(DD3_PFUNIT)
+  message(STATUS "Unit tests: pFUnit ${PFUNIT_VERSION}")
+else()
+  message(STATUS "Unit tests: the in-tree stand-in for pFUnit")
+endif()
+
+function(add_pfunit_ctest name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "WORKING_DIRECTORY" "TEST_SOURCES;OTHER_SOURCES;LINK_LIBRARIES;LABELS")
+  if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES OR NOT arg_TEST_SOURCES)
+    message(FATAL_ERROR "add_pfunit_ctest(${name}): TEST_SOURCES with OTHER_SOURCES, LINK_LIBRARIES, LABELS, "
+      "WORKING_DIRECTORY; not understood: ${arg_UNPARSED_ARGUMENTS} ${arg_KEYWORDS_MISSING_VALUES}")
+  endif()
+  if(DD3_PFUNIT)
+    _add_pfunit_ctest(${ARGV})
+  else()
+    dd3_standin_ctest(${ARGV})
+  endif()
+  set_property(TEST ${name} APPEND PROPERTY LABELS unit)
+  set_property(TEST ${name} PROPERTY TIMEOUT 300)
+endfunction()

@@ -1,0 +1,26 @@
+# cmake -DPROGRAM=<executable> -DEXIT_CODE=<n> [-DEXPECTED=<file>] -P check_failing.cmake
+#
+# Runs a suite that must fail: with this exit code, never passing a failed assert, and printing something that matches each
+# line (a regular expression) of the file.
+execute_process(COMMAND "${PROGRAM}" --verbose RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+if(NOT result STREQUAL EXIT_CODE)
+  message(FATAL_ERROR "exit code ${result} in place of ${EXIT_CODE}\n${output}${errors}")
+endif()
+if(output MATCHES "NOT REACHED")
+  message(FATAL_ERROR "something ran that must not\n${output}")
+endif()
+if(EXPECTED)
+  # Square brackets and semicolons would be taken for lists when the lines are gone through.
+  file(READ "${EXPECTED}" lines)
+  string(REPLACE "[" "<open>" lines "${lines}")
+  string(REPLACE "]" "<close>" lines "${lines}")
+  string(REPLACE "\n" ";" lines "${lines}")
+  foreach(line IN LISTS lines)
+    string(REPLACE "<open>" "[" line "${line}")
+    string(REPLACE "<close>" "]" line "${line}")
+    string(REPLACE "\\n" "\n" line "${line}")
+    if(NOT "${output}${errors}" MATCHES "${line}")
+      message(FATAL_ERROR "nothing matches:\n${line}\nin\n${output}${errors}")
+    endif()
+  endforeach()
+endif()
