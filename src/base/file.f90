@@ -1,0 +1,265 @@
+!> Text files whose every write is checked. The flush of the Fortran library does not report a full
+!> disk, so these go through the POSIX calls creat, write, ftruncate and close. After a failed
+!> write the file is cut back to its last whole line.
+module dd3_base_file
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_ptr, c_null_char, &
+                                          c_f_pointer, c_associated
+  use dd3_base_kinds, only : wp, i8
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_clock, only : wall_time
+  implicit none
+  private
+  public :: file_t, make_directory, system_message, standard_output
+
+  !> Descriptor of the standard output.
+  integer, parameter :: standard_output = 1
+  !> Characters gathered before they are handed to the system.
+  integer, parameter :: buffer_size = 65536
+  !> Longest time a line waits in the buffer while others follow, s.
+  real(wp), parameter :: longest_wait = 1.0_wp
+  !> Error numbers of Linux: interrupted call, file exists.
+  integer(c_int), parameter :: eintr = 4, eexist = 17
+
+  !> A text file open for writing.
+  type :: file_t
+    !> Its name.
+    character(len=:), allocatable :: path
+    !> Descriptor; negative when closed.
+    integer(c_int) :: descriptor = -1
+    !> Text not written yet: `buffer(1:used)`.
+    character(len=:), allocatable :: buffer
+    !> Characters waiting in the buffer.
+    integer :: used = 0
+    !> Length of the file up to the end of its last whole line, and of all that is written.
+    integer(i8) :: whole = 0, length = 0
+    !> When the buffer was written last, s.
+    real(wp) :: flushed = 0.0_wp
+    !> Whether a write failed.
+    logical :: failed = .false.
+  contains
+    procedure :: create => file_create
+    procedure :: attach => file_attach
+    procedure :: put => file_put
+    procedure :: flush => file_flush
+    procedure :: close => file_close
+  end type file_t
+
+  interface
+    !> creat(2).
+    integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+    end function posix_creat
+    !> write(2).
+    integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
+      import :: c_char, c_int, c_size_t
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: buffer(*)
+      integer(c_size_t), value :: count
+    end function posix_write
+    !> ftruncate(2).
+    integer(c_int) function posix_ftruncate(descriptor, length) bind(c, name="ftruncate")
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: length
+    end function posix_ftruncate
+    !> close(2).
+    integer(c_int) function posix_close(descriptor) bind(c, name="close")
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function posix_close
+    !> mkdir(2).
+    integer(c_int) function posix_mkdir(path, mode) bind(c, name="mkdir")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+    end function posix_mkdir
+    !> Address of the last error number.
+    type(c_ptr) function errno_location() bind(c, name="__errno_location")
+      import :: c_ptr
+    end function errno_location
+    !> strerror(3).
+    type(c_ptr) function c_strerror(number) bind(c, name="strerror")
+      import :: c_int, c_ptr
+      integer(c_int), value :: number
+    end function c_strerror
+    !> strlen(3).
+    integer(c_size_t) function c_strlen(text) bind(c, name="strlen")
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: text
+    end function c_strlen
+  end interface
+
+contains
+
+  !> Opens a new, empty file in place of any old one.
+  subroutine file_create(self, path, error)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> Its name.
+    character(len=*), intent(in) :: path
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int), parameter :: mode = int(o'666', c_int)
+
+    call self%attach(posix_creat(path//c_null_char, mode), path)
+    if (self%descriptor < 0) then
+      self%failed = .true.
+      call fatal_error(error, "cannot write '"//path//"': "//system_message(errno()))
+    end if
+  end subroutine file_create
+
+  !> Makes the file stand for a descriptor that is open.
+  subroutine file_attach(self, descriptor, path)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> The descriptor.
+    integer(c_int), intent(in) :: descriptor
+    !> The name it has in messages.
+    character(len=*), intent(in) :: path
+
+    self%path = path
+    self%descriptor = descriptor
+    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
+    self%used = 0
+    self%whole = 0
+    self%length = 0
+    self%failed = .false.
+    self%flushed = wall_time()
+  end subroutine file_attach
+
+  !> Adds text; it is written when the buffer is full or has waited long enough.
+  subroutine file_put(self, text, error)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> The text, with its own ends of lines.
+    character(len=*), intent(in) :: text
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: first, n
+
+    if (self%failed) return
+    first = 1
+    do while (first <= len(text))
+      if (self%used == buffer_size) then
+        call self%flush(error)
+        if (allocated(error)) return
+      end if
+      n = min(len(text) - first + 1, buffer_size - self%used)
+      self%buffer(self%used + 1:self%used + n) = text(first:first + n - 1)
+      self%used = self%used + n
+      first = first + n
+    end do
+    if (wall_time() - self%flushed > longest_wait) call self%flush(error)
+  end subroutine file_put
+
+  !> Hands what waits to the system.
+  subroutine file_flush(self, error)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: first
+    integer(c_size_t) :: n
+    integer(c_int) :: status
+
+    self%flushed = wall_time()
+    if (self%failed .or. self%descriptor < 0) return
+    first = 1
+    do while (first <= self%used)
+      n = posix_write(self%descriptor, self%buffer(first:self%used), &
+                      int(self%used - first + 1, c_size_t))
+      if (n < 0 .and. errno() == eintr) cycle
+      if (n <= 0) then
+        self%failed = .true.
+        call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()))
+        if (self%descriptor > standard_output) then
+          status = posix_ftruncate(self%descriptor, int(self%whole, c_long))
+        end if
+        exit
+      end if
+      call count_written(self, self%buffer(first:first + int(n) - 1))
+      first = first + int(n)
+    end do
+    self%used = 0
+  end subroutine file_flush
+
+  !> Keeps the book of the file's length and of its whole lines.
+  subroutine count_written(self, text)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> What was written.
+    character(len=*), intent(in) :: text
+    integer :: end_of_line
+
+    end_of_line = index(text, new_line("a"), back=.true.)
+    if (end_of_line > 0) self%whole = self%length + end_of_line
+    self%length = self%length + len(text)
+  end subroutine count_written
+
+  !> Writes what waits and closes the file; nothing happens where it is closed.
+  subroutine file_close(self, error)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> Says why the rest cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
+
+    if (self%descriptor < 0) return
+    call self%flush(error)
+    status = posix_close(self%descriptor)
+    self%descriptor = -1
+    if (status /= 0 .and. .not. self%failed) then
+      call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()))
+    end if
+  end subroutine file_close
+
+  !> Makes a directory and those above it; one that exists is fine.
+  subroutine make_directory(path, error)
+    !> Its name.
+    character(len=*), intent(in) :: path
+    !> Says why it cannot be made.
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int), parameter :: mode = int(o'777', c_int)
+    integer(c_int) :: status
+    integer :: i
+
+    do i = 2, len(path) - 1
+      if (path(i:i) == "/") status = posix_mkdir(path(:i - 1)//c_null_char, mode)
+    end do
+    status = posix_mkdir(path//c_null_char, mode)
+    if (status /= 0) then
+      if (errno() /= eexist) call fatal_error(error, "cannot make the directory '"//path//"': " &
+                                              //system_message(errno()))
+    end if
+  end subroutine make_directory
+
+  !> The number of the last system error.
+  integer(c_int) function errno()
+    integer(c_int), pointer :: number
+
+    call c_f_pointer(errno_location(), number)
+    errno = number
+  end function errno
+
+  !> A system error in words.
+  function system_message(number) result(message)
+    !> Its number.
+    integer(c_int), intent(in) :: number
+    character(len=:), allocatable :: message
+    character(kind=c_char), pointer :: letter(:)
+    type(c_ptr) :: address
+    integer :: i
+
+    message = "unknown cause"
+    address = c_strerror(number)
+    if (.not. c_associated(address)) return
+    call c_f_pointer(address, letter, [c_strlen(address)])
+    message = repeat(" ", size(letter))
+    do i = 1, size(letter)
+      message(i:i) = letter(i)
+    end do
+  end function system_message
+
+end module dd3_base_file

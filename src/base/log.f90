@@ -1,0 +1,172 @@
+!> What is said during a run: on the screen and in job.log. A line that is rewritten in place on a
+!> terminal never gets between the others: it is wiped before anything else is said.
+module dd3_base_log
+  use, intrinsic :: iso_c_binding, only : c_int
+  use dd3_base_error, only : error_t
+  use dd3_base_file, only : file_t, standard_output
+  implicit none
+  private
+  public :: log_t
+
+  !> End of a line, return to its start, and the sequence that wipes a terminal's line from there.
+  character(len=*), parameter :: newline = new_line("a"), wipe = achar(13)//achar(27)//"[K"
+
+  !> The log of a run.
+  type :: log_t
+    !> Whether nothing goes to the screen.
+    logical :: quiet = .false.
+    !> Whether the screen is a terminal that can rewrite a line.
+    logical :: terminal = .false.
+    !> Characters of the line that is rewritten in place, now on the screen.
+    integer, private :: live_length = 0
+    !> The screen and job.log.
+    type(file_t), private :: screen, file
+    !> What was said before job.log was opened.
+    character(len=:), allocatable, private :: held
+    !> The first failed write to job.log, until it is asked for.
+    type(error_t), allocatable, private :: failure
+  contains
+    procedure :: start => log_start
+    procedure :: open => log_open
+    procedure :: say => log_say
+    procedure :: note => log_note
+    procedure :: live => log_live
+    procedure :: check => log_check
+    procedure :: close => log_close
+  end type log_t
+
+  interface
+    !> isatty(3).
+    integer(c_int) function posix_isatty(descriptor) bind(c, name="isatty")
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function posix_isatty
+  end interface
+
+contains
+
+  !> Looks at the screen; lines said from now on are kept for job.log.
+  subroutine log_start(self, quiet)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> Whether nothing goes to the screen.
+    logical, intent(in) :: quiet
+    character(len=16) :: kind
+    integer :: status
+
+    self%quiet = quiet
+    self%held = ""
+    self%live_length = 0
+    call self%screen%attach(int(standard_output, c_int), "screen")
+    call get_environment_variable("TERM", kind, status=status)
+    self%terminal = .not. quiet .and. kind /= "dumb" .and. kind /= "" &
+                    .and. posix_isatty(int(standard_output, c_int)) == 1
+  end subroutine log_start
+
+  !> Opens job.log and writes what was said before.
+  subroutine log_open(self, path, quiet, error)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> Name of the file.
+    character(len=*), intent(in) :: path
+    !> Whether nothing goes to the screen.
+    logical, intent(in) :: quiet
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. allocated(self%held)) call self%start(quiet)
+    self%quiet = quiet
+    call self%file%create(path, error)
+    if (allocated(error)) return
+    call self%file%put(self%held, error)
+    self%held = ""
+    if (.not. allocated(error)) call self%file%flush(error)
+  end subroutine log_open
+
+  !> Says a line, or several with ends of lines between them, on the screen and in job.log.
+  subroutine log_say(self, text)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> The text.
+    character(len=*), intent(in) :: text
+    type(error_t), allocatable :: ignored
+
+    if (.not. allocated(self%held)) call self%start(self%quiet)
+    if (.not. self%quiet) then
+      if (self%live_length > 0) call self%screen%put(wipe, ignored)
+      self%live_length = 0
+      call self%screen%put(text//newline, ignored)
+      call self%screen%flush(ignored)
+    end if
+    call self%note(text)
+  end subroutine log_say
+
+  !> Writes a line, or several, in job.log only.
+  subroutine log_note(self, text)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> The text.
+    character(len=*), intent(in) :: text
+    type(error_t), allocatable :: error
+
+    if (self%file%descriptor < 0) then
+      if (.not. allocated(self%held)) call self%start(self%quiet)
+      self%held = self%held//text//newline
+      return
+    end if
+    call self%file%put(text//newline, error)
+    if (.not. allocated(error) .or. allocated(self%failure)) return
+    call move_alloc(error, self%failure)
+  end subroutine log_note
+
+  !> Rewrites the line in place; an empty text wipes it. Nothing happens where the screen is no terminal.
+  subroutine log_live(self, text)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> The text, of one line.
+    character(len=*), intent(in) :: text
+    type(error_t), allocatable :: ignored
+
+    if (.not. self%terminal) return
+    if (len(text) == 0 .and. self%live_length == 0) return
+    call self%screen%put(wipe//text(:min(len(text), screen_width() - 1)), ignored)
+    call self%screen%flush(ignored)
+    self%live_length = len(text)
+  end subroutine log_live
+
+  !> Gives the first failed write to job.log, once; brings what waits to the disk.
+  subroutine log_check(self, error)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> Says why job.log cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%file%descriptor >= 0) call self%file%flush(error)
+    if (allocated(self%failure)) call move_alloc(self%failure, error)
+  end subroutine log_check
+
+  !> Wipes the line in place and closes job.log.
+  subroutine log_close(self, error)
+    !> The log.
+    class(log_t), intent(inout) :: self
+    !> Says why job.log cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%live("")
+    call self%file%close(error)
+    if (allocated(self%failure)) call move_alloc(self%failure, error)
+  end subroutine log_close
+
+  !> Characters in a line of the screen.
+  integer function screen_width()
+    character(len=8) :: columns
+    integer :: status
+
+    screen_width = 80
+    call get_environment_variable("COLUMNS", columns, status=status)
+    if (status /= 0) return
+    read (columns, *, iostat=status) screen_width
+    if (status /= 0 .or. screen_width < 20) screen_width = 80
+  end function screen_width
+
+end module dd3_base_log

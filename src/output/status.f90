@@ -1,0 +1,142 @@
+!> status.csv: one row for every attempted increment, accepted or not: what limited it, how the
+!> iterations went, how the contact stood and why it failed.
+module dd3_output_status
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_t
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_output_csv, only : table_t
+  use dd3_output_record, only : record_t
+  implicit none
+  private
+  public :: status_record_t, status_row_t
+
+  !> The heading.
+  character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
+    "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_at,worst,solver"
+
+  !> What is said of one attempted increment.
+  type :: status_row_t
+    !> Number of the increment, and of the attempt at it, from 1.
+    integer :: increment = 0, attempt = 1
+    !> Name of the phase.
+    character(len=64) :: phase = ""
+    !> Path of the controlling tools at the end of the increment, mm.
+    real(wp) :: travel = 0.0_wp
+    !> Factor on the trial increment.
+    real(wp) :: r = 0.0_wp
+    !> The limit that set it.
+    character(len=16) :: limiter = ""
+    !> Iterations of the corrector.
+    integer :: iterations = 0
+    !> The convergence criterion's value at the end.
+    real(wp) :: criterion = 0.0_wp
+    !> Iterations of the linear solver, all together.
+    integer :: solver_iterations = 0
+    !> Contact candidates in each status.
+    integer :: gap = 0, stick = 0, slip = 0
+    !> `accepted`, `retry` or `failed`.
+    character(len=16) :: outcome = ""
+    !> Why it was not accepted, in words.
+    character(len=240) :: reason = ""
+    !> Wall-clock time it took, s.
+    real(wp) :: seconds = 0.0_wp
+    !> Where the limit was reached, and where the residual or the trouble was largest.
+    character(len=64) :: limiter_at = "", worst = ""
+    !> The linear solver that ran.
+    character(len=16) :: solver = ""
+  end type status_row_t
+
+  !> The status table of a run.
+  type, extends(record_t) :: status_record_t
+    !> The row that `write` adds.
+    type(status_row_t) :: row
+    !> The table.
+    type(table_t), private :: table
+  contains
+    procedure :: open => status_open
+    procedure :: write => status_write
+    procedure :: add => status_add
+    procedure :: close => status_close
+  end type status_record_t
+
+contains
+
+  !> Makes the file with its heading.
+  subroutine status_open(self, model, directory, error)
+    !> The record.
+    class(status_record_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The directory.
+    character(len=*), intent(in) :: directory
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    self%row = status_row_t()
+    if (allocated(model%phase)) self%row%phase = model%phase(1)%name
+    call self%table%open(directory//"/status.csv", error)
+    if (allocated(error)) return
+    call self%table%file%put(names//new_line("a"), error)
+    if (.not. allocated(error)) call self%table%file%flush(error)
+  end subroutine status_open
+
+  !> Adds the row the record holds; what the row shares with the state is taken from there.
+  subroutine status_write(self, model, state, error)
+    !> The record.
+    class(status_record_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The state at the end of the attempt.
+    type(state_t), intent(in) :: state
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    self%row%phase = model%phase(state%phase)%name
+    self%row%travel = state%travel
+    call self%add(self%row, error)
+  end subroutine status_write
+
+  !> Adds a row.
+  subroutine status_add(self, row, error)
+    !> The record.
+    class(status_record_t), intent(inout) :: self
+    !> The row.
+    type(status_row_t), intent(in) :: row
+    !> Says why it cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (table => self%table)
+      call table%add_integer(row%increment)
+      call table%add_integer(row%attempt)
+      call table%add_text(row%phase)
+      call table%add_real(row%travel)
+      call table%add_real(row%r)
+      call table%add_text(row%limiter)
+      call table%add_integer(row%iterations)
+      call table%add_real(row%criterion)
+      call table%add_integer(row%solver_iterations)
+      call table%add_integer(row%gap)
+      call table%add_integer(row%stick)
+      call table%add_integer(row%slip)
+      call table%add_text(row%outcome)
+      call table%add_text(row%reason)
+      call table%add_real(row%seconds)
+      call table%add_text(row%limiter_at)
+      call table%add_text(row%worst)
+      call table%add_text(row%solver)
+      call table%end_row(error)
+    end associate
+  end subroutine status_add
+
+  !> Writes what waits and closes the file.
+  subroutine status_close(self, error)
+    !> The record.
+    class(status_record_t), intent(inout) :: self
+    !> Says why the rest cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%table%close(error)
+  end subroutine status_close
+
+end module dd3_output_status
