@@ -1,0 +1,100 @@
+!> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean of the Cauchy stress,
+!> g_a the group's mean gradient; where a point belongs to no group, sum w j T G_a.
+module dd3_element_force
+  use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t
+  use dd3_element_work, only : element_work_t
+  implicit none
+  private
+  public :: element_force, global_stress
+
+contains
+
+  !> Internal forces, after `element_strain` and once `work%stress` is set.
+  subroutine element_force(element, work)
+    !> The element's table.
+    type(element_t), intent(in) :: element
+    !> `force`, `cauchy` and `pressure` are set.
+    type(element_work_t), intent(inout) :: work
+
+    integer :: p
+
+    do p = 1, element%n_point
+      work%cauchy(:, :, p) = global_stress(work%stress(:, p), work%rotation(:, :, p))
+    end do
+    if (element%n_node == 8 .and. element%n_point == 8 .and. element%n_group == 1) then
+      call add_forces(8, 8, 1, element%group, work%weight, work%cauchy, work%gradient, &
+                      work%mean_gradient, work%force, work%pressure)
+    else
+      call add_forces(element%n_node, element%n_point, element%n_group, element%group, work%weight, &
+                      work%cauchy, work%gradient, work%mean_gradient, work%force, work%pressure)
+    end if
+  end subroutine element_force
+
+  !> A tensor of the material frame in the global one: Q T Q^T.
+  pure function global_stress(stress, q) result(cauchy)
+    !> Tensor in the material frame, Kelvin.
+    real(wp), intent(in) :: stress(6)
+    !> Material axes as columns.
+    real(wp), intent(in) :: q(3, 3)
+    real(wp) :: cauchy(3, 3)
+
+    real(wp), parameter :: half_root = sqrt(0.5_wp)
+    real(wp) :: qt(3, 3), s(4:6)
+    integer :: j
+
+    s = half_root*stress(4:6)
+    qt(:, 1) = q(:, 1)*stress(1) + q(:, 2)*s(6) + q(:, 3)*s(5)
+    qt(:, 2) = q(:, 1)*s(6) + q(:, 2)*stress(2) + q(:, 3)*s(4)
+    qt(:, 3) = q(:, 1)*s(5) + q(:, 2)*s(4) + q(:, 3)*stress(3)
+    do j = 1, 3
+      cauchy(:, j) = qt(:, 1)*q(j, 1) + qt(:, 2)*q(j, 2) + qt(:, 3)*q(j, 3)
+    end do
+  end function global_stress
+
+  !> Sums the forces over the points.
+  pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, mean_gradient, &
+                             force, pressure)
+    !> Sizes.
+    integer, intent(in) :: n_node, n_point, n_group
+    !> Group of each point.
+    integer, intent(in) :: group(n_point)
+    !> Weight times Jacobian, mm3.
+    real(wp), intent(in) :: weight(n_point)
+    !> Cauchy stress, MPa, global frame.
+    real(wp), intent(in) :: cauchy(3, 3, n_point)
+    !> Gradients and their means, 1/mm.
+    real(wp), intent(in) :: gradient(n_node, 3, n_point), mean_gradient(n_node, 3, n_group)
+    !> Forces, N.
+    real(wp), intent(out) :: force(3, n_node)
+    !> Volume integral of the mean stress of each group, N mm.
+    real(wp), intent(out) :: pressure(n_group)
+
+    real(wp) :: s(3, 3), mean
+    integer :: a, g, i, p
+
+    force = 0.0_wp
+    pressure = 0.0_wp
+    do p = 1, n_point
+      s = weight(p)*cauchy(:, :, p)
+      g = group(p)
+      if (g > 0) then
+        mean = (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
+        pressure(g) = pressure(g) + mean
+        do i = 1, 3
+          s(i, i) = s(i, i) - mean
+        end do
+      end if
+      do a = 1, n_node
+        force(:, a) = force(:, a) + s(:, 1)*gradient(a, 1, p) + s(:, 2)*gradient(a, 2, p) &
+                      + s(:, 3)*gradient(a, 3, p)
+      end do
+    end do
+    do g = 1, n_group
+      do a = 1, n_node
+        force(:, a) = force(:, a) + pressure(g)*mean_gradient(a, :, g)
+      end do
+    end do
+  end subroutine add_forces
+
+end module dd3_element_force

@@ -1,0 +1,64 @@
+!> Hexahedron with 8 nodes, 2 x 2 x 2 Gauss points and selective reduced integration: all points share one mean
+!> dilatation (Nagtegaal, Parks & Rice 1974; Hughes 1980, the mean-dilatation form of B-bar).
+module dd3_element_hex8
+  use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t, new_table, complete_table, set_table_point
+  implicit none
+  private
+  public :: new_hex8, hex8_shape
+
+  !> Natural coordinates of the nodes, in VTK's order.
+  real(wp), parameter :: corner(3, 8) = reshape([ &
+    -1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, &
+    1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, &
+    -1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
+    1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp], [3, 8])
+
+contains
+
+  !> Fills the table; integration point p lies towards node p.
+  subroutine new_hex8(self)
+    !> The table.
+    type(element_t), intent(out) :: self
+
+    real(wp), parameter :: root3 = sqrt(3.0_wp)
+    real(wp) :: slope(3, 8)
+    integer :: a
+
+    call new_table(self, "hex8", n_node=8, n_point=8, n_face_node=4, n_pair=4)
+    self%title = "8 nodes, 2x2x2 points, mean dilatation (selective reduced integration)"
+    self%vtk_type = 12
+    self%node = corner
+    self%group = 1
+    self%face = reshape([1, 4, 3, 2, 5, 6, 7, 8, 1, 2, 6, 5, &
+                         2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8], [4, 6])
+    self%pair = reshape([1, 5, 2, 6, 3, 7, 4, 8], [2, 4])
+    do a = 1, 8
+      call set_table_point(self, a, corner(:, a)/root3, 1.0_wp)
+      call hex8_shape(root3*corner(:, a), self%extrapolation(a, :), slope)
+    end do
+    call complete_table(self, hex8_shape)
+  end subroutine new_hex8
+
+  !> N_a = (1 + xi xi_a)(1 + eta eta_a)(1 + zeta zeta_a)/8.
+  pure subroutine hex8_shape(natural, shape, dshape)
+    !> Natural coordinates.
+    real(wp), intent(in) :: natural(3)
+    !> Shape functions, one per node.
+    real(wp), intent(out) :: shape(:)
+    !> Their derivatives: `dshape(3,n_node)`.
+    real(wp), intent(out) :: dshape(:, :)
+
+    real(wp) :: part(3)
+    integer :: a
+
+    do a = 1, 8
+      part = 1.0_wp + natural*corner(:, a)
+      shape(a) = part(1)*part(2)*part(3)/8.0_wp
+      dshape(1, a) = corner(1, a)*part(2)*part(3)/8.0_wp
+      dshape(2, a) = corner(2, a)*part(3)*part(1)/8.0_wp
+      dshape(3, a) = corner(3, a)*part(1)*part(2)/8.0_wp
+    end do
+  end subroutine hex8_shape
+
+end module dd3_element_hex8

@@ -1,0 +1,211 @@
+!> Incremental kinematics of the points: right polar decomposition F = R U, logarithmic strain E = ln U, both in the
+!> material frame, with the volume change replaced by the mean one. Constant strain rate along the increment's
+!> unrotated path; objective for any rotation (Hughes 1984; Weber & Anand 1990).
+!>
+!> For small stretches, which is what increments are, E and R come from series in X = e (I+e)^-1, e = (C-I)/2, that is
+!> X = tanh E: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both in powers of X^2 up to X^8. Below the limit on |X| the
+!> remainder is under 2e-16. Nothing has to be said about equal stretches. Larger ones take the eigenvalues of C.
+module dd3_element_increment
+  use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t
+  use dd3_element_work, only : element_work_t
+  use dd3_linalg_tensor, only : symmetric_eigen
+  implicit none
+  private
+  public :: element_strain, polar_increment
+
+  !> Largest Frobenius norm of e for which the series are used.
+  real(wp), parameter :: series_limit = 0.03_wp
+  !> Factor between shears of tensors and of Kelvin vectors.
+  real(wp), parameter :: root2 = sqrt(2.0_wp)
+
+contains
+
+  !> Strain increments and new material axes of all points, after `element_kinematics`.
+  subroutine element_strain(element, rotation_old, work)
+    !> The element's table.
+    type(element_t), intent(in) :: element
+    !> Material axes at the start of the increment, as columns: `rotation_old(3,3,n_point)`.
+    real(wp), intent(in) :: rotation_old(3, 3, element%n_point)
+    !> `strain` and `rotation` are set.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: stretch(6), turn(3, 3), excess
+    integer :: p
+
+    do p = 1, element%n_point
+      call polar_increment(work%deformation(:, :, p), stretch, turn)
+      excess = (log(work%dilatation(p)) - stretch(1) - stretch(2) - stretch(3))/3.0_wp
+      stretch(1:3) = stretch(1:3) + excess
+      call to_material(rotation_old(:, :, p), stretch, work%strain(:, p))
+      call turn_axes(turn, rotation_old(:, :, p), work%rotation(:, :, p))
+    end do
+  end subroutine element_strain
+
+  !> E = ln U and R of F = R U; F has a positive determinant.
+  pure subroutine polar_increment(f, strain, rotation)
+    !> Deformation gradient.
+    real(wp), intent(in) :: f(3, 3)
+    !> Logarithmic strain: plain components 11 22 33 23 31 12.
+    real(wp), intent(out) :: strain(6)
+    !> Rotation.
+    real(wp), intent(out) :: rotation(3, 3)
+
+    real(wp) :: green(6), h(3, 3), inverse_stretch(6)
+    integer :: i
+
+    h = f
+    do i = 1, 3
+      h(i, i) = h(i, i) - 1.0_wp
+    end do
+    green(1) = h(1, 1) + 0.5_wp*(h(1, 1)*h(1, 1) + h(2, 1)*h(2, 1) + h(3, 1)*h(3, 1))
+    green(2) = h(2, 2) + 0.5_wp*(h(1, 2)*h(1, 2) + h(2, 2)*h(2, 2) + h(3, 2)*h(3, 2))
+    green(3) = h(3, 3) + 0.5_wp*(h(1, 3)*h(1, 3) + h(2, 3)*h(2, 3) + h(3, 3)*h(3, 3))
+    green(4) = 0.5_wp*(h(2, 3) + h(3, 2) + h(1, 2)*h(1, 3) + h(2, 2)*h(2, 3) + h(3, 2)*h(3, 3))
+    green(5) = 0.5_wp*(h(3, 1) + h(1, 3) + h(1, 3)*h(1, 1) + h(2, 3)*h(2, 1) + h(3, 3)*h(3, 1))
+    green(6) = 0.5_wp*(h(1, 2) + h(2, 1) + h(1, 1)*h(1, 2) + h(2, 1)*h(2, 2) + h(3, 1)*h(3, 2))
+    if (green(1)**2 + green(2)**2 + green(3)**2 &
+        + 2.0_wp*(green(4)**2 + green(5)**2 + green(6)**2) <= series_limit**2) then
+      call small_stretch(green, strain, inverse_stretch)
+    else
+      call large_stretch(f, strain, inverse_stretch)
+    end if
+    call multiply(f, inverse_stretch, rotation)
+  end subroutine polar_increment
+
+  !> Series in X = tanh E.
+  pure subroutine small_stretch(green, strain, inverse_stretch)
+    !> Green strain e = (C-I)/2: plain components.
+    real(wp), intent(in) :: green(6)
+    !> Logarithmic strain: plain components.
+    real(wp), intent(out) :: strain(6)
+    !> U^-1: plain components.
+    real(wp), intent(out) :: inverse_stretch(6)
+
+    real(wp) :: s(6), x(6), y(6), yy(6), inner(6), det
+
+    s = green
+    s(1:3) = s(1:3) + 1.0_wp
+    inner = [s(2)*s(3) - s(4)*s(4), s(3)*s(1) - s(5)*s(5), s(1)*s(2) - s(6)*s(6), &
+             s(5)*s(6) - s(1)*s(4), s(6)*s(4) - s(2)*s(5), s(4)*s(5) - s(3)*s(6)]
+    det = s(1)*inner(1) + s(6)*inner(6) + s(5)*inner(5)
+    inner = inner/det
+    call product_of(green, inner, x)
+    call product_of(x, x, y)
+    call product_of(y, y, yy)
+    inner = y/7.0_wp + yy/9.0_wp
+    inner(1:3) = inner(1:3) + 0.2_wp
+    call product_of(yy, inner, s)
+    s = s + y/3.0_wp
+    s(1:3) = s(1:3) + 1.0_wp
+    call product_of(x, s, strain)
+    inner = (5.0_wp/16.0_wp)*y + (35.0_wp/128.0_wp)*yy
+    inner(1:3) = inner(1:3) + 0.375_wp
+    call product_of(yy, inner, s)
+    s = s + 0.5_wp*y
+    s(1:3) = s(1:3) + 1.0_wp
+    call product_of(x, s, inner)
+    inverse_stretch = s - inner
+  end subroutine small_stretch
+
+  !> Eigenvalues of C = F^T F.
+  pure subroutine large_stretch(f, strain, inverse_stretch)
+    !> Deformation gradient.
+    real(wp), intent(in) :: f(3, 3)
+    !> Logarithmic strain: plain components.
+    real(wp), intent(out) :: strain(6)
+    !> U^-1: plain components.
+    real(wp), intent(out) :: inverse_stretch(6)
+
+    real(wp) :: values(3), vectors(3, 3), dyad(6)
+    integer :: k
+
+    call symmetric_eigen(matmul(transpose(f), f), values, vectors)
+    strain = 0.0_wp
+    inverse_stretch = 0.0_wp
+    do k = 1, 3
+      dyad(1:3) = vectors(:, k)*vectors(:, k)
+      dyad(4:6) = vectors([2, 3, 1], k)*vectors([3, 1, 2], k)
+      strain = strain + 0.5_wp*log(values(k))*dyad
+      inverse_stretch = inverse_stretch + dyad/sqrt(values(k))
+    end do
+  end subroutine large_stretch
+
+  !> Product of two symmetric matrices that commute, so that it is symmetric too.
+  pure subroutine product_of(a, b, c)
+    !> Factors: plain components 11 22 33 23 31 12.
+    real(wp), intent(in) :: a(6), b(6)
+    !> Product.
+    real(wp), intent(out) :: c(6)
+
+    c(1) = a(1)*b(1) + a(6)*b(6) + a(5)*b(5)
+    c(2) = a(6)*b(6) + a(2)*b(2) + a(4)*b(4)
+    c(3) = a(5)*b(5) + a(4)*b(4) + a(3)*b(3)
+    c(4) = a(6)*b(5) + a(2)*b(4) + a(4)*b(3)
+    c(5) = a(5)*b(1) + a(4)*b(6) + a(3)*b(5)
+    c(6) = a(1)*b(6) + a(6)*b(2) + a(5)*b(4)
+  end subroutine product_of
+
+  !> A matrix times a symmetric one.
+  pure subroutine multiply(f, s, r)
+    !> The matrix.
+    real(wp), intent(in) :: f(3, 3)
+    !> The symmetric one: plain components.
+    real(wp), intent(in) :: s(6)
+    !> The product.
+    real(wp), intent(out) :: r(3, 3)
+
+    r(:, 1) = f(:, 1)*s(1) + f(:, 2)*s(6) + f(:, 3)*s(5)
+    r(:, 2) = f(:, 1)*s(6) + f(:, 2)*s(2) + f(:, 3)*s(4)
+    r(:, 3) = f(:, 1)*s(5) + f(:, 2)*s(4) + f(:, 3)*s(3)
+  end subroutine multiply
+
+  !> Q^T E Q as a Kelvin vector.
+  pure subroutine to_material(q, plain, kelvin)
+    !> Material axes as columns.
+    real(wp), intent(in) :: q(3, 3)
+    !> Tensor in the global frame: plain components.
+    real(wp), intent(in) :: plain(6)
+    !> The same in the material frame, Kelvin.
+    real(wp), intent(out) :: kelvin(6)
+
+    real(wp) :: eq(3, 3)
+
+    eq(1, :) = plain(1)*q(1, :) + plain(6)*q(2, :) + plain(5)*q(3, :)
+    eq(2, :) = plain(6)*q(1, :) + plain(2)*q(2, :) + plain(4)*q(3, :)
+    eq(3, :) = plain(5)*q(1, :) + plain(4)*q(2, :) + plain(3)*q(3, :)
+    kelvin(1) = q(1, 1)*eq(1, 1) + q(2, 1)*eq(2, 1) + q(3, 1)*eq(3, 1)
+    kelvin(2) = q(1, 2)*eq(1, 2) + q(2, 2)*eq(2, 2) + q(3, 2)*eq(3, 2)
+    kelvin(3) = q(1, 3)*eq(1, 3) + q(2, 3)*eq(2, 3) + q(3, 3)*eq(3, 3)
+    kelvin(4) = root2*(q(1, 2)*eq(1, 3) + q(2, 2)*eq(2, 3) + q(3, 2)*eq(3, 3))
+    kelvin(5) = root2*(q(1, 3)*eq(1, 1) + q(2, 3)*eq(2, 1) + q(3, 3)*eq(3, 1))
+    kelvin(6) = root2*(q(1, 1)*eq(1, 2) + q(2, 1)*eq(2, 2) + q(3, 1)*eq(3, 2))
+  end subroutine to_material
+
+  !> R Q, brought back to a rotation: one step of Q (3 I - Q^T Q)/2 keeps round-off from piling up.
+  pure subroutine turn_axes(turn, old, new)
+    !> Rotation of the increment.
+    real(wp), intent(in) :: turn(3, 3)
+    !> Axes before.
+    real(wp), intent(in) :: old(3, 3)
+    !> Axes after.
+    real(wp), intent(out) :: new(3, 3)
+
+    real(wp) :: raw(3, 3), s(6)
+    integer :: j
+
+    do j = 1, 3
+      raw(:, j) = turn(:, 1)*old(1, j) + turn(:, 2)*old(2, j) + turn(:, 3)*old(3, j)
+    end do
+    s(1) = raw(1, 1)**2 + raw(2, 1)**2 + raw(3, 1)**2
+    s(2) = raw(1, 2)**2 + raw(2, 2)**2 + raw(3, 2)**2
+    s(3) = raw(1, 3)**2 + raw(2, 3)**2 + raw(3, 3)**2
+    s(4) = raw(1, 2)*raw(1, 3) + raw(2, 2)*raw(2, 3) + raw(3, 2)*raw(3, 3)
+    s(5) = raw(1, 3)*raw(1, 1) + raw(2, 3)*raw(2, 1) + raw(3, 3)*raw(3, 1)
+    s(6) = raw(1, 1)*raw(1, 2) + raw(2, 1)*raw(2, 2) + raw(3, 1)*raw(3, 2)
+    s = -0.5_wp*s
+    s(1:3) = s(1:3) + 1.5_wp
+    call multiply(raw, s, new)
+  end subroutine turn_axes
+
+end module dd3_element_increment
