@@ -1,10 +1,17 @@
 # dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...])
 #
 # Declares src/<folder>/ as the library dd3_<folder>. Its module files go into a directory of its own, which only those
-# libraries see that name it in USES: a `use` of a folder that is not declared does not compile.
+# libraries see that name it in USES: a `use` of a folder that is not declared does not compile. Every .f90 below the folder
+# is taken, but for a main program (see dd3_program); version.f90.in is filled in.
 function(dd3_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
+  list(FILTER sources EXCLUDE REGEX "/src/${folder}/${PROJECT_NAME}\\.f90$")
+  if(EXISTS "${CMAKE_SOURCE_DIR}/src/${folder}/version.f90.in")
+    set(version "${CMAKE_BINARY_DIR}/generated/${folder}/version.f90")
+    configure_file("${CMAKE_SOURCE_DIR}/src/${folder}/version.f90.in" "${version}" @ONLY)
+    list(APPEND sources "${version}")
+  endif()
   set(library dd3_${folder})
   if(NOT sources)
     add_library(${library} INTERFACE)
@@ -14,8 +21,31 @@ function(dd3_library folder)
   add_library(${library} STATIC ${sources})
   set_target_properties(${library} PROPERTIES Fortran_MODULE_DIRECTORY "${modules}" LINKER_LANGUAGE Fortran)
   target_include_directories(${library} INTERFACE "${modules}")
+  target_compile_options(${library} PRIVATE "$<$<COMPILE_LANGUAGE:Fortran>:${DD3_WARNINGS}>")
   foreach(used IN LISTS arg_USES)
     target_link_libraries(${library} PRIVATE dd3_${used})
   endforeach()
   target_link_libraries(${library} PRIVATE ${arg_PACKAGES})
+endfunction()
+
+# dd3_program(<name> <folder>)
+#
+# Declares the executable <name> with its main program in src/<folder>/<name>.f90, which may use what that folder may use.
+function(dd3_program name folder)
+  set(source "${CMAKE_SOURCE_DIR}/src/${folder}/${name}.f90")
+  if(NOT EXISTS "${source}")
+    message(WARNING "src/${folder}/${name}.f90 is missing: the program ${name} is not built")
+    return()
+  endif()
+  add_executable(${name} "${source}")
+  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_BINARY_DIR}/modules/${name}"
+    LINKER_LANGUAGE Fortran RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+  target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:Fortran>:${DD3_WARNINGS}>")
+  target_link_libraries(${name} PRIVATE dd3_${folder})
+  get_target_property(type dd3_${folder} TYPE)
+  if(NOT type STREQUAL "INTERFACE_LIBRARY")
+    get_target_property(used dd3_${folder} LINK_LIBRARIES)
+    target_link_libraries(${name} PRIVATE ${used})
+  endif()
+  install(TARGETS ${name})
 endfunction()

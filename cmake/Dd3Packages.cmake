@@ -1,4 +1,24 @@
-find_package(LAPACK REQUIRED)
-find_package(SuiteSparse REQUIRED)
+# Finds the libraries the project stands on, or says what to install.
+function(dd3_missing what package)
+  message(FATAL_ERROR "${what} was not found. On Debian or Ubuntu: apt-get install ${package}")
+endfunction()
+
+find_package(LAPACK QUIET)
+if(NOT LAPACK_FOUND)
+  dd3_missing("LAPACK" "libopenblas-dev")
+endif()
+
+find_package(SuiteSparse QUIET)
+if(NOT SuiteSparse_FOUND)
+  dd3_missing("SuiteSparse (its parts UMFPACK and AMD)" "libsuitesparse-dev")
+endif()
+
 set(HDF5_PREFER_PARALLEL OFF)
-find_package(HDF5 REQUIRED COMPONENTS Fortran HL)
+find_package(HDF5 QUIET COMPONENTS Fortran HL)
+if(NOT HDF5_FOUND)
+  dd3_missing("HDF5 with its Fortran interface" "libhdf5-dev")
+endif()
+
+message(STATUS "LAPACK ${LAPACK_LIBRARIES}")
+message(STATUS "SuiteSparse ${SuiteSparse_VERSION}")
+message(STATUS "HDF5 ${HDF5_VERSION}")
