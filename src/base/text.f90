@@ -3,7 +3,7 @@ module dd3_base_text
   use dd3_base_kinds, only : wp, i8
   implicit none
   private
-  public :: text_t, to_text, lower_case, same_name, nearest_name, join
+  public :: text_t, to_text, lower_case, upper_case, same_name, nearest_name, join
 
   !> A string of any length, for lists of strings.
   type :: text_t
@@ -88,6 +88,20 @@ contains
       if (c >= iachar("A") .and. c <= iachar("Z")) lower(i:i) = achar(c + 32)
     end do
   end function lower_case
+
+  !> The text with its small letters made capital.
+  pure function upper_case(text) result(upper)
+    !> The text.
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: upper
+    integer :: i, c
+
+    upper = text
+    do i = 1, len(text)
+      c = iachar(text(i:i))
+      if (c >= iachar("a") .and. c <= iachar("z")) upper(i:i) = achar(c - 32)
+    end do
+  end function upper_case
 
   !> Whether two names are the same, capital or not.
   pure logical function same_name(a, b)

@@ -1,4 +1,5 @@
-!> The words of the input text, gathered into blocks: `*BLOCK name` and below it `key = value value ...`.
+!> The words of the input text, gathered into blocks: `*BLOCK name` and below it `key = value value
+!> ...`.
 !> Every word remembers where it was written.
 module dd3_input_block
   use dd3_base_kinds, only : wp
@@ -28,6 +29,8 @@ module dd3_input_block
     type(token_t), allocatable :: value(:)
     !> The numbers among the values, in order; filled by the check.
     real(wp), allocatable :: number(:)
+    !> Whether the value has the form and the range asked for; set by the check.
+    logical :: valid = .true.
     !> Whether `off` stands in place of the numbers; set by the check.
     logical :: is_off = .false.
     !> Whether the key was left out and this is its default; set by the check.
@@ -44,14 +47,21 @@ module dd3_input_block
     type(location_t) :: opened
     !> Where its name was written; where it was opened if it has none.
     type(location_t) :: named
-    !> Folder of the file that holds the block, with a slash at the end; empty for the working directory.
+    !> Folder of the file that holds the block, with a slash at the end; empty for the working
+    !> directory.
     character(len=:), allocatable :: folder
+    !> Whether the block and all its entries passed the check.
+    logical :: valid = .true.
     !> Number of entries.
     integer :: n_entry = 0
     !> The entries, `entry(1:n_entry)`.
     type(entry_t), allocatable :: entry(:)
   contains
     procedure :: find
+    procedure :: has
+    procedure :: word
+    procedure :: number
+    procedure :: numbers
     procedure :: at
     procedure :: add_entry
   end type block_t
@@ -86,6 +96,62 @@ contains
     end do
     find = 0
   end function find
+
+  !> Whether a key has a value that passed the check, its default included.
+  pure logical function has(self, key)
+    !> The block.
+    class(block_t), intent(in) :: self
+    !> The key.
+    character(len=*), intent(in) :: key
+
+    integer :: i
+
+    i = self%find(key)
+    has = i > 0
+    if (has) has = self%entry(i)%valid
+  end function has
+
+  !> The first word of a key's value; empty where there is none.
+  pure function word(self, key)
+    !> The block.
+    class(block_t), intent(in) :: self
+    !> The key.
+    character(len=*), intent(in) :: key
+    character(len=:), allocatable :: word
+
+    word = ""
+    if (self%has(key)) word = self%entry(self%find(key))%value(1)%text
+  end function word
+
+  !> The first number of a key's value; 0 where there is none.
+  pure real(wp) function number(self, key)
+    !> The block.
+    class(block_t), intent(in) :: self
+    !> The key.
+    character(len=*), intent(in) :: key
+
+    integer :: i
+
+    number = 0.0_wp
+    if (.not. self%has(key)) return
+    i = self%find(key)
+    if (size(self%entry(i)%number) > 0) number = self%entry(i)%number(1)
+  end function number
+
+  !> The numbers of a key's value; none where there is no value.
+  pure function numbers(self, key)
+    !> The block.
+    class(block_t), intent(in) :: self
+    !> The key.
+    character(len=*), intent(in) :: key
+    real(wp), allocatable :: numbers(:)
+
+    if (self%has(key)) then
+      numbers = self%entry(self%find(key))%number
+    else
+      allocate (numbers(0))
+    end if
+  end function numbers
 
   !> Where the value of a key was written; where the block was opened if it was left out.
   function at(self, key)

@@ -1,5 +1,7 @@
-!> The case: the checked, plain description of a job. Units as in the input file (mm, N, MPa, degrees).
-!> Names are in small letters. Every part keeps the block it was read from: `part%source%at("key")` is the place to show
+!> The case: the checked, plain description of a job. Units as in the input file (mm, N, MPa,
+!> degrees).
+!> Names are in small letters. Every part keeps the block it was read from: `part%source%at("key")`
+!> is the place to show
 !> in an error.
 module dd3_input_case
   use dd3_base_kinds, only : wp
@@ -19,7 +21,8 @@ module dd3_input_case
   integer, parameter :: set_plane = 1, set_box = 2, set_nodes = 3, set_near = 4
   !> What ends a phase early.
   integer, parameter :: until_never = 0, until_displacement = 1, until_force = 2
-  !> When fields are written: first and last state only, every so many mm, at given travels, every so many increments.
+  !> When fields are written: first and last state only, every so many mm, at given travels, every
+  !> so many increments.
   integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3
 
   !> A structured blank.

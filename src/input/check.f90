@@ -1,0 +1,277 @@
+!> Checks the blocks of an input against the keyword tables and fills in the defaults.
+module dd3_input_check
+  use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_text, only : upper_case, same_name, nearest_name, join
+  use dd3_base_parameter, only : parameter_t
+  use dd3_input_block, only : block_t, entry_t, token_t, deck_t
+  use dd3_input_table, only : block_row_t, find_block, find_key
+  use dd3_input_token, only : line_t, token_list_t, split_line
+  use dd3_input_value, only : check_value, not_available
+  implicit none
+  private
+  public :: check_deck
+
+  !> Longest name of a block.
+  integer, parameter :: longest_name = 60
+
+contains
+
+  !> Checks all blocks; adds the blocks and keys that were left out and have defaults.
+  subroutine check_deck(deck, table, file, errors)
+    !> The blocks.
+    type(deck_t), intent(inout) :: deck
+    !> The keyword tables.
+    type(block_row_t), intent(in) :: table(:)
+    !> Name of the input file.
+    character(len=*), intent(in) :: file
+    !> Receives all errors found.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, k, before
+
+    do i = 1, deck%n_block
+      before = errors%count
+      k = find_block(table, deck%block(i)%keyword)
+      if (k == 0) then
+        call unknown_block(deck%block(i), table, errors)
+      else if (table(k)%later) then
+        call errors%push_input(deck%block(i)%opened, "*"//upper_case(trim(table(k)%keyword))// &
+            " "//not_available)
+      else
+        call check_name(deck, i, table(k), errors)
+        call check_keys(deck%block(i), table(k)%key, errors)
+      end if
+      deck%block(i)%valid = errors%count == before
+    end do
+    call check_presence(deck, table, file, errors)
+    call add_blocks(deck, table, errors)
+  end subroutine check_deck
+
+  !> Reports a block that is not in the table.
+  subroutine unknown_block(block, table, errors)
+    !> The block.
+    type(block_t), intent(in) :: block
+    !> The keyword tables.
+    type(block_row_t), intent(in) :: table(:)
+    !> Receives the error.
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: nearest
+
+    nearest = nearest_name(block%keyword, table%keyword)
+    if (nearest /= "") nearest = "; did you mean *"//upper_case(nearest)//"?"
+    call errors%push_input(block%opened, "unknown block *"//upper_case(block%keyword)//nearest, &
+                           "one of: *"//upper_case(join(table%keyword, " *")))
+  end subroutine unknown_block
+
+  !> Checks a block's own name, and that it does not stand there twice.
+  subroutine check_name(deck, i, row, errors)
+    !> The blocks.
+    type(deck_t), intent(in) :: deck
+    !> Position of the block.
+    integer, intent(in) :: i
+    !> Its row.
+    type(block_row_t), intent(in) :: row
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: title
+    integer :: j
+
+    associate (block => deck%block(i))
+      title = "*"//upper_case(block%keyword)
+      if (row%named .and. block%name == "") then
+        call errors%push_input(block%opened, title//" has no name", title//" name")
+      else if (.not. row%named .and. block%name /= "") then
+        call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
+      else if (row%named .and. .not. is_name(block%name)) then
+        call errors%push_input(block%named, "'"//block%name//"' cannot be a name", &
+                               "a letter, then letters, digits, _ - or ., at most 60 characters")
+      end if
+      do j = 1, i - 1
+        if (deck%block(j)%keyword /= block%keyword) cycle
+        if (row%repeatable .and. (deck%block(j)%name /= block%name .or. block%name == "")) cycle
+        call errors%push_input(block%named, trim(title//" "//block%name)// &
+                               merge(" is given twice        ", " may be given only once", &
+                               row%repeatable))
+        exit
+      end do
+    end associate
+  end subroutine check_name
+
+  !> Whether a text can be a name.
+  pure logical function is_name(text)
+    !> The text.
+    character(len=*), intent(in) :: text
+
+    character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
+
+    is_name = len(text) <= longest_name .and. verify(text, letters//"0123456789_-.") == 0
+    if (is_name) is_name = index(letters, text(1:1)) > 0
+  end function is_name
+
+  !> Checks the keys of a block.
+  subroutine check_keys(block, key, errors)
+    !> The block.
+    type(block_t), intent(inout) :: block
+    !> Its rows.
+    type(parameter_t), intent(in) :: key(:)
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, k
+
+    if (block%keyword == "title") return
+    do i = 1, block%n_entry
+      k = find_key(key, block%entry(i)%key)
+      if (k == 0) then
+        call unknown_key(block, block%entry(i), key, errors)
+        block%entry(i)%valid = .false.
+        allocate (block%entry(i)%number(0))
+        cycle
+      end if
+      if (.not. key(k)%repeatable .and. block%find(block%entry(i)%key) < i) then
+        call errors%push_input(block%entry(i)%at, "'"//block%entry(i)%key// &
+            "' is given twice in "//title_of(block))
+      end if
+      call check_value(block%entry(i), key(k), errors)
+    end do
+    call add_defaults(block, key, errors)
+  end subroutine check_keys
+
+  !> The block as the user calls it.
+  pure function title_of(block) result(title)
+    !> The block.
+    type(block_t), intent(in) :: block
+    character(len=:), allocatable :: title
+
+    title = trim("*"//upper_case(block%keyword)//" "//block%name)
+  end function title_of
+
+  !> Reports a key that is not in the table.
+  subroutine unknown_key(block, entry, key, errors)
+    !> The block.
+    type(block_t), intent(in) :: block
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+    !> The block's rows.
+    type(parameter_t), intent(in) :: key(:)
+    !> Receives the error.
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: nearest
+
+    nearest = nearest_name(entry%key, key%name)
+    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
+    call errors%push_input(entry%at, "unknown key '"//entry%key//"' in "//title_of(block)// &
+        nearest, &
+                           "one of: "//join(key%name, " "))
+  end subroutine unknown_key
+
+  !> Adds the keys that were left out: an error where there is no default.
+  subroutine add_defaults(block, key, errors)
+    !> The block.
+    type(block_t), intent(inout) :: block
+    !> Its rows.
+    type(parameter_t), intent(in) :: key(:)
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    type(entry_t) :: entry
+    type(token_list_t) :: word
+    type(line_t) :: line
+    logical :: continues
+    integer :: k
+
+    do k = 1, size(key)
+      if (block%find(key(k)%name) > 0 .or. key(k)%default == "-") cycle
+      if (key(k)%default == "") then
+        call errors%push_input(block%opened, "'"//trim(key(k)%name)//"' is missing in "// &
+            title_of(block), &
+                               trim(key(k)%name)//" = "//trim(key(k)%help))
+        cycle
+      end if
+      word = token_list_t()
+      line%file = "default"
+      line%text = trim(key(k)%default)
+      call split_line(line, word, continues, errors)
+      entry = entry_t(defaulted=.true.)
+      entry%key = trim(key(k)%name)
+      entry%value = word%item(:word%count)
+      call check_value(entry, key(k), errors)
+      call block%add_entry(entry)
+    end do
+  end subroutine add_defaults
+
+  !> Reports blocks that must be there and are not.
+  subroutine check_presence(deck, table, file, errors)
+    !> The blocks.
+    type(deck_t), intent(in) :: deck
+    !> The keyword tables.
+    type(block_row_t), intent(in) :: table(:)
+    !> Name of the input file.
+    character(len=*), intent(in) :: file
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    type(location_t) :: whole_file
+    integer :: i
+
+    whole_file%file = file
+    do i = 1, size(table)
+      if (.not. table(i)%required .or. has_block(deck, trim(table(i)%keyword))) cycle
+      if (table(i)%keyword == "phase" .and. has_block(deck, "point")) cycle
+      call errors%push_input(whole_file, "the block *"//upper_case(trim(table(i)%keyword))// &
+          " is missing", &
+                             trim(table(i)%help))
+    end do
+    if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. has_block(deck, &
+        "point"))) then
+      call errors%push_input(whole_file, "the block *BLANK is missing", "the sheet: *BLANK name")
+    end if
+    if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
+      call errors%push_input(whole_file, "the block *CONTACT is missing", &
+          "with tools there, *CONTACT with its penalty")
+    end if
+  end subroutine check_presence
+
+  !> Whether there is a block of a kind.
+  pure logical function has_block(deck, keyword)
+    !> The blocks.
+    type(deck_t), intent(in) :: deck
+    !> The word after the star.
+    character(len=*), intent(in) :: keyword
+
+    integer :: i
+
+    has_block = .false.
+    do i = 1, deck%n_block
+      if (same_name(deck%block(i)%keyword, keyword)) has_block = .true.
+    end do
+  end function has_block
+
+  !> Adds blocks that were left out and whose keys all have defaults.
+  subroutine add_blocks(deck, table, errors)
+    !> The blocks.
+    type(deck_t), intent(inout) :: deck
+    !> The keyword tables.
+    type(block_row_t), intent(in) :: table(:)
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    type(block_t) :: block
+    integer :: i
+
+    do i = 1, size(table)
+      if (table(i)%named .or. table(i)%repeatable .or. size(table(i)%key) == 0) cycle
+      if (any(table(i)%key%default == "") .or. has_block(deck, trim(table(i)%keyword))) cycle
+      block = block_t()
+      block%keyword = trim(table(i)%keyword)
+      block%name = ""
+      block%folder = ""
+      call add_defaults(block, table(i)%key, errors)
+      call deck%add_block(block)
+    end do
+  end subroutine add_blocks
+
+end module dd3_input_check

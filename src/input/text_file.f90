@@ -1,0 +1,145 @@
+!> Text files as lists of lines: any line end, any line length, no control characters.
+module dd3_input_text_file
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_text, only : text_t, to_text
+  implicit none
+  private
+  public :: read_lines, resolve_path, folder_of
+
+  !> Largest file taken for an input file, bytes.
+  integer, parameter :: largest_file = 200000000
+
+contains
+
+  !> Reads a whole text file.
+  subroutine read_lines(path, line, error)
+    !> The file's path.
+    character(len=*), intent(in) :: path
+    !> Its lines, without line ends.
+    type(text_t), allocatable, intent(out) :: line(:)
+    !> Why it cannot be read.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: content
+
+    call read_content(path, content, error)
+    if (allocated(error)) return
+    call split_lines(content, line)
+    call refuse_control_characters(line, error)
+  end subroutine read_lines
+
+  !> Reads all bytes of a file.
+  subroutine read_content(path, content, error)
+    !> The file's path.
+    character(len=*), intent(in) :: path
+    !> Its bytes.
+    character(len=:), allocatable, intent(out) :: content
+    !> Why it cannot be read.
+    type(error_t), allocatable, intent(out) :: error
+
+    integer :: unit, status, length
+    logical :: there
+
+    inquire (file=path//"/.", exist=there)
+    if (there) then
+      call fatal_error(error, "it is a directory")
+      return
+    end if
+    inquire (file=path, exist=there)
+    if (.not. there) then
+      call fatal_error(error, "there is no such file")
+      return
+    end if
+    open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
+        action="read", &
+          iostat=status)
+    if (status /= 0) then
+      call fatal_error(error, "it cannot be opened for reading")
+      return
+    end if
+    inquire (unit=unit, size=length)
+    if (length > largest_file) then
+      call fatal_error(error, "it is too large for an input file")
+    else
+      allocate (character(len=max(0, length)) :: content)
+      if (length > 0) read (unit, iostat=status) content
+      if (status /= 0) call fatal_error(error, "reading it failed")
+    end if
+    close (unit, iostat=status)
+  end subroutine read_content
+
+  !> Cuts bytes into lines at LF, CR LF or CR; a UTF-8 byte order mark is dropped.
+  pure subroutine split_lines(content, line)
+    !> The bytes.
+    character(len=*), intent(in) :: content
+    !> The lines.
+    type(text_t), allocatable, intent(out) :: line(:)
+
+    character(len=*), parameter :: mark = char(239)//char(187)//char(191), ends = achar(10)// &
+        achar(13)
+    integer :: start, next, pass, n
+
+    do pass = 1, 2
+      n = 0
+      start = 1
+      if (len(content) >= 3) then
+        if (content(:3) == mark) start = 4
+      end if
+      do while (start <= len(content))
+        next = scan(content(start:), ends)
+        if (next == 0) next = len(content) - start + 2
+        n = n + 1
+        if (pass == 2) line(n)%s = content(start:start + next - 2)
+        start = start + next
+        if (start > len(content)) exit
+        if (content(start - 1:start) == achar(13)//achar(10)) start = start + 1
+      end do
+      if (pass == 1) allocate (line(n))
+    end do
+  end subroutine split_lines
+
+  !> An error at the first byte that no text has.
+  pure subroutine refuse_control_characters(line, error)
+    !> The lines.
+    type(text_t), intent(in) :: line(:)
+    !> Says which byte in which line.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=2) :: hex
+    integer :: i, j, byte
+
+    do i = 1, size(line)
+      do j = 1, len(line(i)%s)
+        byte = ichar(line(i)%s(j:j))
+        if ((byte < 32 .and. byte /= 9 .and. byte /= 12) .or. byte == 127) then
+          write (hex, '(z2.2)') byte
+          allocate (error)
+          error%message = "it is not a text file: byte 0x"//hex//" in line "//to_text(i)
+          return
+        end if
+      end do
+    end do
+  end subroutine refuse_control_characters
+
+  !> Folder part of a path, with its slash; empty where there is none.
+  pure function folder_of(path) result(folder)
+    !> The path.
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: folder
+
+    folder = path(:index(path, "/", back=.true.))
+  end function folder_of
+
+  !> A path that was written relative to a folder.
+  pure function resolve_path(folder, path) result(resolved)
+    !> The folder, with a slash at the end, or empty.
+    character(len=*), intent(in) :: folder
+    !> The path as written.
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: resolved
+
+    resolved = folder//path
+    if (index(path, "/") == 1) resolved = path
+  end function resolve_path
+
+end module dd3_input_text_file
