@@ -1,0 +1,195 @@
+!> Numberings of the block rows for the incomplete factorisation: none, approximate minimum degree (Amestoy, Davis and
+!> Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start node after George and Liu 1979).
+module dd3_linalg_ordering
+  use, intrinsic :: iso_c_binding, only : c_int, c_ptr, c_null_ptr
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_text, only : join
+  use dd3_linalg_matrix, only : block_matrix_t
+  implicit none
+  private
+  public :: find_ordering, ordering_names
+
+  !> The orderings there are.
+  character(len=4), parameter :: ordering_names(3) = [character(len=4) :: "none", "amd", "rcm"]
+  !> Rows coupled with this many times the average number of others, such as those of pressed tools, are numbered last.
+  integer, parameter :: dense_factor = 3
+
+  interface
+    !> Approximate minimum degree ordering of a pattern, 0-based.
+    integer(c_int) function amd_order(n, start, row, permutation, control, info) bind(c, name="amd_order")
+      import :: c_int, c_ptr
+      !> Number of rows.
+      integer(c_int), value :: n
+      !> Where the columns begin, and their rows.
+      integer(c_int), intent(in) :: start(*), row(*)
+      !> Original number of each row.
+      integer(c_int), intent(out) :: permutation(*)
+      !> Settings and statistics; null for the defaults and for none.
+      type(c_ptr), value :: control, info
+    end function amd_order
+  end interface
+
+contains
+
+  !> Finds a numbering of the block rows.
+  subroutine find_ordering(name, matrix, order, error)
+    !> One of `ordering_names`.
+    character(len=*), intent(in) :: name
+    !> A matrix of the pattern.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Original number of each row.
+    integer, allocatable, intent(out) :: order(:)
+    !> An unknown name.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    select case (name)
+    case ("none")
+      order = [(i, i=1, matrix%n)]
+    case ("amd")
+      call minimum_degree(matrix, order, error)
+    case ("rcm")
+      call reverse_cuthill_mckee(matrix, order)
+    case default
+      call fatal_error(error, "unknown ordering "//trim(name)//"; known: "//join(ordering_names, ", "))
+    end select
+  end subroutine find_ordering
+
+  !> Approximate minimum degree.
+  subroutine minimum_degree(matrix, order, error)
+    !> A matrix of the pattern.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Original number of each row.
+    integer, allocatable, intent(out) :: order(:)
+    !> The library's refusal.
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int), allocatable :: permutation(:)
+    integer(c_int) :: status
+
+    allocate (permutation(matrix%n))
+    status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), int(matrix%column - 1, c_int), &
+                       permutation, c_null_ptr, c_null_ptr)
+    if (status < 0) then
+      call fatal_error(error, "AMD could not order the matrix")
+      return
+    end if
+    order = int(permutation) + 1
+  end subroutine minimum_degree
+
+  !> Reverse Cuthill-McKee, every connected part from a node at its end; dense rows come last.
+  subroutine reverse_cuthill_mckee(matrix, order)
+    !> A matrix of the pattern, symmetric in its pattern or nearly so.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Original number of each row.
+    integer, allocatable, intent(out) :: order(:)
+    logical, allocatable :: taken(:)
+    integer, allocatable :: degree(:)
+    integer :: i, n, first, last, start
+
+    n = matrix%n
+    degree = matrix%row_start(2:) - matrix%row_start(:n)
+    taken = degree > dense_factor*(size(matrix%column)/n + 1)
+    allocate (order(n))
+    last = count(.not. taken)
+    order(last + 1:) = pack([(i, i=1, n)], taken)
+    first = 1
+    do i = 1, n
+      if (taken(i)) cycle
+      start = end_node(matrix, degree, taken, i)
+      call breadth_first(matrix, degree, taken, start, order(first:last), first)
+    end do
+    order(:last) = order(last:1:-1)
+  end subroutine reverse_cuthill_mckee
+
+  !> A node at the end of the part that holds a given node: the last one found, until that goes no deeper.
+  integer function end_node(matrix, degree, taken, given)
+    !> A matrix of the pattern.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Number of blocks in each row.
+    integer, intent(in) :: degree(:)
+    !> Rows numbered already.
+    logical, intent(in) :: taken(:)
+    !> The node given.
+    integer, intent(in) :: given
+    logical, allocatable :: seen(:)
+    integer, allocatable :: queue(:)
+    integer :: found, depth, deepest, round
+
+    allocate (queue(matrix%n))
+    end_node = given
+    deepest = -1
+    do round = 1, 8
+      seen = taken
+      found = 1
+      call breadth_first(matrix, degree, seen, end_node, queue, found, depth)
+      if (depth <= deepest) exit
+      deepest = depth
+      end_node = queue(found - 1)
+    end do
+  end function end_node
+
+  !> Numbers a connected part level by level, neighbours by their degree.
+  subroutine breadth_first(matrix, degree, taken, start, queue, found, depth)
+    !> A matrix of the pattern.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Number of blocks in each row.
+    integer, intent(in) :: degree(:)
+    !> Rows numbered already.
+    logical, intent(inout) :: taken(:)
+    !> First node.
+    integer, intent(in) :: start
+    !> The nodes in the order found.
+    integer, intent(inout) :: queue(:)
+    !> Number of the next node to be found; moved on by the nodes found.
+    integer, intent(inout) :: found
+    !> Number of levels.
+    integer, intent(out), optional :: depth
+    integer :: k, j, read_at, write_at, level_end, at, levels
+
+    queue(1) = start
+    taken(start) = .true.
+    write_at = 1
+    read_at = 1
+    level_end = 1
+    levels = 0
+    do while (read_at <= write_at)
+      k = write_at
+      do at = matrix%row_start(queue(read_at)), matrix%row_start(queue(read_at) + 1) - 1
+        j = matrix%column(at)
+        if (taken(j)) cycle
+        taken(j) = .true.
+        write_at = write_at + 1
+        queue(write_at) = j
+      end do
+      call sort_by_degree(degree, queue(k + 1:write_at))
+      if (read_at == level_end) then
+        levels = levels + 1
+        level_end = write_at
+      end if
+      read_at = read_at + 1
+    end do
+    found = found + write_at
+    if (present(depth)) depth = levels
+  end subroutine breadth_first
+
+  !> Sorts rows upwards by their degree (insertion).
+  pure subroutine sort_by_degree(degree, rows)
+    !> Number of blocks in each row.
+    integer, intent(in) :: degree(:)
+    !> The rows.
+    integer, intent(inout) :: rows(:)
+    integer :: i, j, moved
+
+    do i = 2, size(rows)
+      moved = rows(i)
+      j = i - 1
+      do while (j >= 1)
+        if (degree(rows(j)) <= degree(moved)) exit
+        rows(j + 1) = rows(j)
+        j = j - 1
+      end do
+      rows(j + 1) = moved
+    end do
+  end subroutine sort_by_degree
+
+end module dd3_linalg_ordering
