@@ -1,0 +1,10 @@
+!> The lowest folder.
+module low
+  implicit none
+  private
+  public :: number
+
+  !> Something to use.
+  integer, parameter :: number = 1
+
+end module low

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# From a fresh clone to the first result: installs what is needed, builds, runs the bending test, draws the curve and the sheet.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+utils/install_needed.sh
+echo "== building"
+cmake --preset release >build-release.log 2>&1 || { cat build-release.log; exit 1; }
+cmake --build --preset release >>build-release.log 2>&1 || { tail -n 60 build-release.log; exit 1; }
+mkdir -p build && mv build-release.log build/release/build.log
+
+echo "== running input_files/bending/bending.dat"
+result=$PWD/bending.out
+build/release/dd3imp --output "$result" input_files/bending/bending.dat
+
+echo "== drawing"
+.venv/bin/python utils/plot_force.py --output "$result/force.png" "$result"
+.venv/bin/python utils/plot_sheet.py --output "$result/sheet.png" "$result"
+echo
+echo "punch force against displacement: $result/force.png"
+echo "deformed sheet and tools:         $result/sheet.png"
+echo "for ParaView:                     $result/fields.vtkhdf"

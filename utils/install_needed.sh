@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the utilities.
+# Asks for root only where something is missing.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libhdf5-dev
+  python3 python3-venv python3-pip libegl1 libgl1-mesa-dri libxrender1)
+
+install_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    echo "This is no Debian or Ubuntu: install by hand what these packages hold there: ${packages[*]}"
+    return
+  fi
+  local missing=() package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  echo "== installing ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "error: root is needed once: apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 1
+    fi
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -q >/dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# The environment is made anew when the list of requirements has changed.
+install_python() {
+  local python=/usr/bin/python3 wanted
+  [ -x "$python" ] || python=python3
+  wanted=$(cksum <utils/requirements.txt)
+  [ "$(cat .venv/requirements.cksum 2>/dev/null)" = "$wanted" ] && return 0
+  echo "== installing the Python packages of utils/requirements.txt into .venv"
+  rm -rf .venv
+  "$python" -m venv .venv
+  .venv/bin/pip install -q --disable-pip-version-check -r utils/requirements.txt
+  echo "$wanted" >.venv/requirements.cksum
+}
+
+install_packages
+[ "${1:-}" = --no-python ] || [ ! -f utils/requirements.txt ] || install_python

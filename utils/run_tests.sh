@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds and runs all tests but those labelled slow; ends with the line `N passed, N failed`.
+#
+#   utils/run_tests.sh          the optimised build, and the build with bounds checks and floating-point traps
+#   utils/run_tests.sh --slow   the long cases too
+#
+# JOBS=<n> sets the number of tests and compilers at a time (default: the number of cores).
+set -uo pipefail
+cd "$(dirname "$0")/.."
+jobs=${JOBS:-$(nproc)}
+passed=0
+failed=0
+
+# Counts what ctest says: "98% tests passed, 1 tests failed out of 50".
+run_tests() {
+  local log=build/$1/tests.log run good=0 bad=1
+  echo "== testing: $1"
+  ctest --preset "$1" -j "$jobs" --no-tests=error >"$log" 2>&1
+  sed -n '/tests passed/,$p' "$log"
+  run=$(sed -n 's/.* tests failed out of \([0-9]*\)$/\1/p' "$log")
+  if [ -n "$run" ]; then
+    bad=$(sed -n 's/.* \([0-9]*\) tests failed out of .*/\1/p' "$log")
+    good=$((run - bad))
+  fi
+  [ "$bad" -eq 0 ] || grep -B 40 '\*\*\*' "$log" | tail -n 200
+  passed=$((passed + good))
+  failed=$((failed + bad))
+}
+
+# Configures and builds a preset; a build that fails counts as a failed test.
+build() {
+  echo "== building: $1"
+  mkdir -p "build/$1"
+  if ! { cmake --preset "$1" && cmake --build --preset "$1" -j "$jobs"; } >"build/$1/build.log" 2>&1; then
+    tail -n 60 "build/$1/build.log"
+    failed=$((failed + 1))
+    return 1
+  fi
+}
+
+finish() {
+  echo "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ]
+  exit
+}
+
+utils/install_needed.sh || { failed=1; finish; }
+build release && run_tests release
+build debug && run_tests debug
+if [ "${1:-}" = --slow ]; then
+  run_tests slow
+fi
+finish
