@@ -131,7 +131,7 @@ contains
     if (i /= 1) then
       call errors%push_input(set%source%opened, "set '"//set%name//"' is chosen in "//to_text(i)// &
           " ways", &
-                             "one of plane, box, nodes, near; 'of' keeps the members of another set")
+                             "one of plane, box, nodes, near; 'of' keeps another set's members")
     end if
     if (.not. set%source%has("box")) return
     do i = 1, 5, 2
@@ -168,13 +168,24 @@ contains
     character(len=:), allocatable :: key
 
     key = "r_min"
-    if (block%at("r_min")%line == block%opened%line) key = "r_max"
-    if (.not. (block%has("r_min") .or. block%has("r_max"))) return
+    if (.not. given(block, key)) key = "r_max"
+    if (.not. given(block, key)) return
     if (limits%r_min%value <= limits%r_max%value) return
     call errors%push_input(block%at(key), "r_min = "//to_text(limits%r_min%value)// &
         " is larger than r_max = "// &
                            to_text(limits%r_max%value), "r_min <= r_max")
   end subroutine check_limits
+
+  !> Whether a key was written, not filled in.
+  pure logical function given(block, key)
+    !> The block.
+    type(block_t), intent(in) :: block
+    !> The key.
+    character(len=*), intent(in) :: key
+
+    given = block%has(key)
+    if (given) given = .not. block%entry(block%find(key))%defaulted
+  end function given
 
   !> Checks when fields are written.
   subroutine check_output(case, block, errors)

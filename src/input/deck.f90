@@ -295,7 +295,8 @@ contains
     if (self%mode == into_nothing) then
       if (.not. self%stray) call errors%push_input(token%item(1)%at, &
           "this line belongs to no block", &
-                                                   "a line *BLOCK above it; *INCLUDE ends the block before it")
+                               "a line *BLOCK above; *INCLUDE ends the block before it")
+      end if
       self%stray = .true.
       return
     end if

@@ -125,7 +125,7 @@ contains
       if (norm2(across) <= 1.0e-6_wp*norm2(press%vector)) return
       call errors%push_input(press%at, &
           "a pressed tool moves along one line: its force cannot turn", &
-                             "a force along the last one, or a phase that holds the tool in between")
+                             "a force along the last one, or a phase between that holds the tool")
     end if
   end subroutine check_press
 
@@ -138,10 +138,12 @@ contains
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i
+    integer :: i, n_actions
 
+    n_actions = size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
+    n_actions = n_actions + size(phase%release)
     if (phase%control == 0) then
-      if (size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load) + size(phase%release) == 0) then
+      if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "nothing happens in this phase", &
                                "at least one of move, press, displace, load, release")
       end if

@@ -47,7 +47,8 @@ contains
       block_row_t("include", repeatable=.true., &
       help="*INCLUDE file: reads another file in this place.", key=nothing), &
       block_row_t("parameter", repeatable=.true., key=nothing, &
-                  help="name = value; used as ${name} in later values. --set name=value on the command line overrides it."), &
+                  help="name = value; used as ${name} in later values. "// &
+                  "--set name=value on the command line overrides it."), &
       block_row_t("blank", .true., &
       help="A structured blank. Defines the node sets x_min x_max y_min y_max z_min z_max all.", &
                   key=blank_keys()), &
@@ -68,7 +69,8 @@ contains
       block_row_t("newton", help="Settings of the corrector.", key=newton_keys()), &
       block_row_t("solver", help="Settings of the linear solver.", key=solver_keys()), &
       block_row_t("phase", .true., .true., .true., key=phase_keys(), &
-                  help="A stage of the process. What it does not name stays as it is: tools held, forces and loads kept."), &
+                  help="A stage of the process. "// &
+                  "What it does not name stays as it is: tools held, forces and loads kept."), &
       block_row_t("history", .true., .true., &
       help="Further columns of history.csv: <name>_ux, _rx, _x and so on.", &
                   key=history_keys()), &

@@ -1,8 +1,11 @@
-!> Builds the mesh of a case: nodes, elements and node sets, and checks that the case's uses of the sets make sense.
+!> Builds the mesh of a case: nodes, elements and node sets, and checks that what the case does to
+!> nodes makes sense.
 module dd3_mesh_build
   use dd3_base_error, only : error_list_t
-  use dd3_input_case, only : case_t
+  use dd3_input_case, only : case_t, phase_t
+  use dd3_mesh_blank, only : new_blank_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_mesh_select, only : add_set
   implicit none
   private
   public :: new_mesh
@@ -18,8 +21,69 @@ contains
     !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
-    mesh%n_node = 0
-    if (size(case%set) < 0) errors%count = 0
+    integer :: i, before
+
+    before = errors%count
+    call new_blank_mesh(mesh, case%blank(1))
+    do i = 1, size(case%set)
+      call add_set(mesh, case%set(i), errors)
+    end do
+    if (errors%count > before) return
+    do i = 1, size(case%phase)
+      call check_displacements(mesh, case, case%phase(i), errors)
+    end do
   end subroutine new_mesh
+
+  !> Reports prescribed displacements of nodes that a boundary condition holds, or that another one
+  !> moves.
+  subroutine check_displacements(mesh, case, phase, errors)
+    !> The mesh.
+    type(mesh_t), intent(in) :: mesh
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> Receives all errors found.
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: held(3, mesh%n_node), moved(3, mesh%n_node)
+    integer, allocatable :: node(:)
+    integer :: i
+
+    if (size(phase%displace) == 0) return
+    held = .false.
+    moved = .false.
+    do i = 1, size(case%boundary)
+      call mark(held, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
+    end do
+    do i = 1, size(phase%displace)
+      node = mesh%nodes_of(phase%displace(i)%set)
+      if (any(held(phase%displace(i)%axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
+        call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
+                               "' is held along this axis by a *BOUNDARY", &
+                               "nodes that are free to move")
+      else if (any(moved(phase%displace(i)%axis, node))) then
+        call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
+                               "' is displaced along this axis already in this phase")
+      end if
+      moved(phase%displace(i)%axis, node) = .true.
+    end do
+  end subroutine check_displacements
+
+  !> Marks directions of nodes.
+  pure subroutine mark(marked, node, direction)
+    !> Marks, (3, number of nodes).
+    logical, intent(inout) :: marked(:, :)
+    !> The nodes.
+    integer, intent(in) :: node(:)
+    !> The directions to be marked.
+    logical, intent(in) :: direction(3)
+
+    integer :: i
+
+    do i = 1, size(node)
+      marked(:, node(i)) = marked(:, node(i)) .or. direction
+    end do
+  end subroutine mark
 
 end module dd3_mesh_build

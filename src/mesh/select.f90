@@ -1,0 +1,111 @@
+!> Chooses nodes from the initial coordinates: planes, boxes, numbers, the nearest to a point.
+module dd3_mesh_select
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : to_text
+  use dd3_input_case, only : node_set_t, set_plane, set_box, set_nodes
+  use dd3_mesh_mesh, only : mesh_t, mesh_set_t
+  implicit none
+  private
+  public :: add_set
+
+  !> Tolerance as a fraction of the model's size, where none is given.
+  real(wp), parameter :: relative_tolerance = 1.0e-6_wp
+
+contains
+
+  !> Adds a set to the mesh.
+  subroutine add_set(mesh, wanted, errors)
+    !> The mesh.
+    type(mesh_t), intent(inout) :: mesh
+    !> The set as asked for.
+    type(node_set_t), intent(in) :: wanted
+    !> Receives the error of a set without nodes.
+    type(error_list_t), intent(inout) :: errors
+
+    type(mesh_set_t) :: set
+    logical, allocatable :: member(:)
+    real(wp) :: tolerance
+    integer :: i, before
+
+    before = errors%count
+    allocate (member(mesh%n_node), source=.true.)
+    if (wanted%of /= "") then
+      member = .false.
+      member(mesh%nodes_of(wanted%of)) = .true.
+    end if
+    tolerance = wanted%tolerance
+    if (tolerance < 0.0_wp) tolerance = relative_tolerance*mesh%model_size()
+    select case (wanted%kind)
+    case (set_plane)
+      member = member .and. abs(mesh%x(wanted%axis, :) - wanted%value(1)) <= tolerance
+    case (set_box)
+      do i = 1, 3
+        member = member .and. mesh%x(i, :) >= wanted%value(2*i - 1) - tolerance &
+                 .and. mesh%x(i, :) <= wanted%value(2*i) + tolerance
+      end do
+    case (set_nodes)
+      call keep_numbers(member, wanted, errors)
+    case default
+      call keep_nearest(member, mesh%x, wanted%value, tolerance)
+    end select
+    set%name = wanted%name
+    set%node = pack([(i, i=1, mesh%n_node)], member)
+    if (size(set%node) == 0 .and. errors%count == before) then
+      call errors%push_input(wanted%source%opened, "set '"//wanted%name//"' holds no node", &
+          "at least one node")
+    end if
+    mesh%set = [mesh%set, set]
+  end subroutine add_set
+
+  !> Keeps the members whose numbers are asked for.
+  subroutine keep_numbers(member, wanted, errors)
+    !> Whether each node is a member.
+    logical, intent(inout) :: member(:)
+    !> The set as asked for.
+    type(node_set_t), intent(in) :: wanted
+    !> Receives the error of numbers that no node has.
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: named(size(member))
+    integer :: i
+
+    named = .false.
+    do i = 1, size(wanted%range, 2)
+      if (wanted%range(2, i) > size(member)) then
+        call errors%push_input(wanted%source%entry(wanted%source%find("nodes"))%value(i)%at, &
+                               "there is no node "//to_text(wanted%range(2, i)), &
+                               "numbers from 1 to "//to_text(size(member)))
+        cycle
+      end if
+      named(wanted%range(1, i):wanted%range(2, i)) = .true.
+    end do
+    member = member .and. named
+  end subroutine keep_numbers
+
+  !> Keeps the member nearest to a point: of those that are equally near, the one with the lowest
+  !> number.
+  pure subroutine keep_nearest(member, x, point, tolerance)
+    !> Whether each node is a member.
+    logical, intent(inout) :: member(:)
+    !> Coordinates, (3, n).
+    real(wp), intent(in) :: x(:, :)
+    !> The point.
+    real(wp), intent(in) :: point(:)
+    !> Distances that differ by no more are equal.
+    real(wp), intent(in) :: tolerance
+
+    real(wp) :: distance(size(member)), least
+    integer :: i
+
+    if (.not. any(member)) return
+    distance = [(norm2(x(:, i) - point), i=1, size(member))]
+    least = minval(distance, mask=member)
+    do i = 1, size(member)
+      if (member(i) .and. distance(i) <= least + tolerance) exit
+    end do
+    member = .false.
+    member(i) = .true.
+  end subroutine keep_nearest
+
+end module dd3_mesh_select
