@@ -1,0 +1,41 @@
+!> Sheet metal forming with rigid tools: reads a keyword file, runs the process it describes,
+!> writes the results.
+program dd3imp
+  use, intrinsic :: iso_c_binding, only : c_int
+  use, intrinsic :: iso_fortran_env, only : error_unit
+  use dd3_app_command_line, only : options_t, read_command_line, usage_text
+  use dd3_app_help, only : show_help, show_version
+  use dd3_app_job, only : run_job, exit_end, exit_usage
+  use dd3_base_error, only : error_t
+  implicit none
+
+  interface
+    !> exit(3): ends the program with a code and without the words that `stop` adds to it.
+    subroutine c_exit(code) bind(c, name="exit")
+      import :: c_int
+      !> The code.
+      integer(c_int), value :: code
+    end subroutine c_exit
+  end interface
+
+  type(options_t) :: options
+  type(error_t), allocatable :: error
+  integer :: exit_code
+
+  call read_command_line(options, error)
+  if (allocated(error)) then
+    write (error_unit, '(a)') "dd3imp: "//error%message
+    write (error_unit, '(a)', advance="no") usage_text()
+    exit_code = exit_usage
+  else if (options%version) then
+    call show_version()
+    exit_code = exit_end
+  else if (options%help) then
+    call show_help(options%topic, exit_code)
+  else
+    call run_job(options, exit_code)
+  end if
+  flush (error_unit)
+  call c_exit(int(exit_code, c_int))
+
+end program dd3imp

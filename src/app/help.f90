@@ -1,0 +1,45 @@
+!> Answers to `--help` and `--version`.
+module dd3_app_help
+  use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
+  use dd3_app_command_line, only : usage_text
+  use dd3_app_job, only : exit_end, exit_usage
+  use dd3_base_text, only : same_name
+  use dd3_base_version, only : program_name, program_version
+  use dd3_input_help, only : help_blocks, help_topic, reference_markdown
+  implicit none
+  private
+  public :: show_help, show_version
+
+contains
+
+  !> Shows help on a topic.
+  subroutine show_help(topic, exit_code)
+    !> A block, a key, a law or `markdown`; empty for the usage and the list of blocks.
+    character(len=*), intent(in) :: topic
+    !> Whether there is such a topic.
+    integer, intent(out) :: exit_code
+
+    character(len=:), allocatable :: text
+
+    exit_code = exit_end
+    if (topic == "") then
+      text = usage_text()//"blocks of the input:"//achar(10)//help_blocks()
+    else if (same_name(topic, "markdown")) then
+      text = reference_markdown()
+    else
+      text = help_topic(topic)
+    end if
+    if (text == "") then
+      write (error_unit, '(a)') "there is no help on '"//topic//"'; dd3imp --help lists the blocks"
+      exit_code = exit_usage
+    else
+      write (output_unit, '(a)', advance="no") text
+    end if
+  end subroutine show_help
+
+  !> Shows the version.
+  subroutine show_version()
+    write (output_unit, '(a)') program_name//" "//program_version
+  end subroutine show_version
+
+end module dd3_app_help

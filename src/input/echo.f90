@@ -1,0 +1,108 @@
+!> The checked input as text, with every default filled in and marked: for the log and for
+!> `--check`.
+module dd3_input_echo
+  use dd3_base_text, only : upper_case
+  use dd3_base_parameter, only : parameter_t
+  use dd3_input_block, only : block_t, entry_t
+  use dd3_input_case, only : case_t
+  use dd3_input_table, only : block_row_t, block_table, find_block, find_key
+  implicit none
+  private
+  public :: echo_case
+
+  !> Ends a line.
+  character(len=1), parameter :: newline = achar(10)
+  !> Column of the remarks.
+  integer, parameter :: remark_column = 52
+
+contains
+
+  !> The whole case as text; lines end in a newline.
+  function echo_case(case) result(text)
+    !> The case.
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+
+    type(block_row_t), allocatable :: table(:)
+    integer :: i, row
+
+    table = block_table()
+    text = ""
+    do i = 1, case%deck%n_block
+      row = find_block(table, case%deck%block(i)%keyword)
+      if (row > 0) text = text//echo_block(case%deck%block(i), table(row))
+    end do
+  end function echo_case
+
+  !> One block as text.
+  function echo_block(block, row) result(text)
+    !> The block.
+    type(block_t), intent(in) :: block
+    !> Its row.
+    type(block_row_t), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    integer :: i, k
+
+    text = trim("*"//upper_case(block%keyword)//" "//block%name)//newline
+    do i = 1, block%n_entry
+      k = find_key(row%key, block%entry(i)%key)
+      if (k > 0) then
+        text = text//echo_entry(block%entry(i), trim(row%key(k)%unit))
+      else
+        text = text//"  "//words(block%entry(i))//newline
+      end if
+    end do
+  end function echo_block
+
+  !> One entry as text.
+  function echo_entry(entry, unit) result(text)
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+    !> Unit of its numbers.
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: remark
+
+    text = "  "//entry%key//" = "//words(entry)
+    remark = ""
+    if (unit /= "") remark = unit
+    if (entry%defaulted .and. remark /= "") remark = remark//", default"
+    if (entry%defaulted .and. remark == "") remark = "default"
+    if (remark /= "") then
+      text = text//repeat(" ", max(1, remark_column - len(text)))//"# "//remark
+    end if
+    text = text//newline
+  end function echo_entry
+
+  !> The words of a value as they would be written.
+  function words(entry) result(text)
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+    character(len=:), allocatable :: text
+
+    logical :: glued
+    integer :: i
+
+    text = ""
+    glued = .true.
+    do i = 1, size(entry%value)
+      associate (word => entry%value(i)%text)
+        if (entry%value(i)%quoted .and. entry%key /= "text") then
+          if (.not. glued) text = text//" "
+          text = text//'"'//word//'"'
+          glued = .false.
+        else if (word == "=") then
+          text = text//word
+          glued = .true.
+        else
+          if (.not. glued) text = text//" "
+          text = text//word
+          glued = .false.
+        end if
+      end associate
+    end do
+  end function words
+
+end module dd3_input_echo
