@@ -185,44 +185,44 @@ contains
     character(len=24), intent(out) :: text
     !> Its length.
     integer, intent(out) :: length
-    real(wp) :: size
+    real(wp) :: magnitude
     integer(i8) :: mantissa
     integer :: e
 
     text = ""
-    size = 0.0_wp
+    magnitude = 0.0_wp
     if (ieee_is_nan(value)) then
       text = "nan"
     else if (abs(value) > huge(value)) then
       text = merge("inf ", "-inf", value > 0.0_wp)
     else
-      size = abs(value)
-      if (size < 1.0e-99_wp) text = "0"
-      if (size > 1.0e99_wp) write (text, '(es17.9e3)') value
+      magnitude = abs(value)
+      if (magnitude < 1.0e-99_wp) text = "0"
+      if (magnitude > 1.0e99_wp) write (text, '(es17.9e3)') value
     end if
     text = adjustl(text)
     length = len_trim(text)
     if (length > 0) return
-    e = floor(log10(size))
-    mantissa = scaled(size, e)
+    e = floor(log10(magnitude))
+    mantissa = scaled(magnitude, e)
     if (mantissa >= 10_i8**digits .or. mantissa < 10_i8**(digits - 1)) then
       e = e + merge(1, -1, mantissa >= 10_i8**digits)
-      mantissa = scaled(size, e)
+      mantissa = scaled(magnitude, e)
     end if
     call put_number(mantissa, e, value < 0.0_wp, text, length)
   end subroutine short_real
 
   !> The number's first digits as a whole number.
-  pure integer(i8) function scaled(size, e)
+  pure integer(i8) function scaled(magnitude, e)
     !> The number, positive.
-    real(wp), intent(in) :: size
+    real(wp), intent(in) :: magnitude
     !> Power of ten of its first digit.
     integer, intent(in) :: e
 
     if (e < digits) then
-      scaled = nint(size*10.0_wp**(digits - 1 - e), i8)
+      scaled = nint(magnitude*10.0_wp**(digits - 1 - e), i8)
     else
-      scaled = nint(size/10.0_wp**(e - digits + 1), i8)
+      scaled = nint(magnitude/10.0_wp**(e - digits + 1), i8)
     end if
   end function scaled
 
@@ -269,7 +269,8 @@ contains
     integer, intent(in) :: e
     character(len=3) :: text
 
-    text = merge("-", "+", e < 0)//achar(iachar("0") + abs(e)/10)//achar(iachar("0") + mod(abs(e), 10))
+    text = merge("-", "+", e < 0)//achar(iachar("0") + abs(e)/10) &
+           //achar(iachar("0") + mod(abs(e), 10))
   end function exponent_text
 
 end module dd3_output_csv

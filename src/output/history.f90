@@ -1,6 +1,6 @@
-!> history.csv: travel, tools' displacements and forces, and the quantities of the followed node sets.
-!> One row for the initial state and one for every n-th accepted increment; the last state of a phase
-!> and of the run is always there.
+!> history.csv: travel, tools' displacements and forces, and the quantities of the followed node
+!> sets. One row for the initial state and one for every n-th accepted increment; the last state of a
+!> phase and of the run is always there.
 module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
@@ -108,7 +108,8 @@ contains
 
     if (state%phase /= self%phase) call put_waiting(self, error)
     if (allocated(error)) return
-    due = mod(state%increment, max(1, model%output%history_every)) == 0 .or. state%progress >= 1.0_wp
+    due = mod(state%increment, max(1, model%output%history_every)) == 0 &
+          .or. state%progress >= 1.0_wp
     self%phase = state%phase
     self%waiting = ""
     call fill_row(self%table, model, state)

@@ -161,11 +161,11 @@ contains
     character(len=100) :: buffer
 
     if (self%control_name(view%phase) == "") then
-      write (buffer, '(f8.1, " %", i12, f13.5, 2x, a16, i12)') 100.0_wp*view%progress, view%increment, &
-        view%r, view%limiter, view%iterations
+      write (buffer, '(f8.1, " %", i12, f13.5, 2x, a16, i12)') 100.0_wp*view%progress, &
+        view%increment, view%r, view%limiter, view%iterations
     else
-      write (buffer, '(f10.4, i12, f13.5, 2x, a16, i12, f14.1)') view%travel, view%increment, view%r, &
-        view%limiter, view%iterations, view%force
+      write (buffer, '(f10.4, i12, f13.5, 2x, a16, i12, f14.1)') view%travel, view%increment, &
+        view%r, view%limiter, view%iterations, view%force
     end if
     line = trim(buffer)
   end function plain_line

@@ -1,0 +1,77 @@
+!> Columns of nodes through the thickness of the sheet, found from the pairs of nodes that face each
+!> other in the elements.
+module dd3_output_columns
+  use dd3_base_kinds, only : wp
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: sheet_columns
+
+contains
+
+  !> Bottom and top node of the column in which each node lies: `column(2, n_node)`.
+  subroutine sheet_columns(model, column)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The columns; a node of no column is its own bottom and top.
+    integer, allocatable, intent(out) :: column(:, :)
+    integer, allocatable :: next(:, :)
+    integer :: e, p, i, below, above
+
+    allocate (next(2, model%n_node), column(2, model%n_node))
+    next = 0
+    do e = 1, model%n_element
+      do p = 1, model%element%n_pair
+        below = model%connectivity(model%element%pair(1, p), e)
+        above = model%connectivity(model%element%pair(2, p), e)
+        next(2, below) = above
+        next(1, above) = below
+      end do
+    end do
+    do i = 1, model%n_node
+      column(1, i) = last_of(next(1, :), i)
+      column(2, i) = last_of(next(2, :), i)
+    end do
+    call join_middle_nodes(model, column)
+  end subroutine sheet_columns
+
+  !> The last node of the chain that begins at a node.
+  pure integer function last_of(next, first)
+    !> The node that follows each node; 0 for none.
+    integer, intent(in) :: next(:)
+    !> The node.
+    integer, intent(in) :: first
+    integer :: steps
+
+    last_of = first
+    do steps = 1, size(next)
+      if (next(last_of) == 0) return
+      last_of = next(last_of)
+    end do
+  end function last_of
+
+  !> Nodes half-way through an element belong to the column of the pair they lie between.
+  subroutine join_middle_nodes(model, column)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The columns.
+    integer, intent(inout) :: column(:, :)
+    integer :: e, p, a, node
+    real(wp) :: apart
+
+    associate (element => model%element)
+      do a = 1, element%n_node
+        if (any(element%pair == a)) cycle
+        do p = 1, element%n_pair
+          apart = norm2(element%node(1:2, a) - element%node(1:2, element%pair(1, p)))
+          if (apart > 0.1_wp) cycle
+          do e = 1, model%n_element
+            node = model%connectivity(a, e)
+            column(:, node) = column(:, model%connectivity(element%pair(1, p), e))
+          end do
+        end do
+      end do
+    end associate
+  end subroutine join_middle_nodes
+
+end module dd3_output_columns
