@@ -1,4 +1,5 @@
-!> What the output needs from an element: means over the cell, values at the nodes, thickness, volume.
+!> What the output needs from an element: means over the cell, values at the nodes, thickness,
+!> volume.
 module dd3_element_field
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t

@@ -1,5 +1,6 @@
-!> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean of the Cauchy stress,
-!> g_a the group's mean gradient; where a point belongs to no group, sum w j T G_a.
+!> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean
+!> of the Cauchy stress, g_a the group's mean gradient; where a point belongs to no group, sum w j T
+!> G_a.
 module dd3_element_force
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -26,8 +27,9 @@ contains
       call add_forces(8, 8, 1, element%group, work%weight, work%cauchy, work%gradient, &
                       work%mean_gradient, work%force, work%pressure)
     else
-      call add_forces(element%n_node, element%n_point, element%n_group, element%group, work%weight, &
-                      work%cauchy, work%gradient, work%mean_gradient, work%force, work%pressure)
+      call add_forces(element%n_node, element%n_point, element%n_group, element%group, &
+                      work%weight, work%cauchy, work%gradient, work%mean_gradient, work%force, &
+                      work%pressure)
     end if
   end subroutine element_force
 
@@ -53,8 +55,8 @@ contains
   end function global_stress
 
   !> Sums the forces over the points.
-  pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, mean_gradient, &
-                             force, pressure)
+  pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, &
+                             mean_gradient, force, pressure)
     !> Sizes.
     integer, intent(in) :: n_node, n_point, n_group
     !> Group of each point.

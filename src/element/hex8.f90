@@ -1,5 +1,6 @@
-!> Hexahedron with 8 nodes, 2 x 2 x 2 Gauss points and selective reduced integration: all points share one mean
-!> dilatation (Nagtegaal, Parks & Rice 1974; Hughes 1980, the mean-dilatation form of B-bar).
+!> Hexahedron with 8 nodes, 2 x 2 x 2 Gauss points and selective reduced integration: all points
+!> share one mean dilatation (Nagtegaal, Parks & Rice 1974; Hughes 1980, the mean-dilatation form of
+!> B-bar).
 module dd3_element_hex8
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t, new_table, complete_table, set_table_point

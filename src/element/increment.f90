@@ -1,10 +1,11 @@
-!> Incremental kinematics of the points: right polar decomposition F = R U, logarithmic strain E = ln U, both in the
-!> material frame, with the volume change replaced by the mean one. Constant strain rate along the increment's
-!> unrotated path; objective for any rotation (Hughes 1984; Weber & Anand 1990).
+!> Incremental kinematics of the points: right polar decomposition F = R U and logarithmic strain
+!> E = ln U, in the material frame, with the volume change replaced by the mean one. The material
+!> axes turn with R, so that nothing stored in them has to be rotated (Hughes 1984; Weber & Anand 1990).
 !>
-!> For small stretches, which is what increments are, E and R come from series in X = e (I+e)^-1, e = (C-I)/2, that is
-!> X = tanh E: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both in powers of X^2 up to X^8. Below the limit on |X| the
-!> remainder is under 2e-16. Nothing has to be said about equal stretches. Larger ones take the eigenvalues of C.
+!> For small stretches, which is what increments are, E and R come from series in X = e (I+e)^-1,
+!> e = (C-I)/2, that is X = tanh E: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both with powers of
+!> X^2 up to X^8. Below the limit on |e| the remainder is under 2e-16, and equal stretches need no
+!> special case. Larger ones take the eigenvalues of C.
 module dd3_element_increment
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t

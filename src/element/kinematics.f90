@@ -1,6 +1,7 @@
-!> Kinematics of an element: gradients at the current configuration, their means over the groups that share a mean
-!> dilatation, volumes, and the deformation gradient of the increment. Mean dilatation after Nagtegaal, Parks & Rice
-!> (1974): J_0 = v/V of the group replaces det F, and g_a = (1/v) sum w j G_a goes with it.
+!> Kinematics of an element: gradients at the current configuration, their means over the groups
+!> that share a mean dilatation, volumes, and the deformation gradient of the increment. Mean
+!> dilatation after Nagtegaal, Parks & Rice (1974): J_0 = v/V of the group replaces det F, and g_a =
+!> (1/v) sum w j G_a goes with it.
 module dd3_element_kinematics
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
@@ -114,7 +115,8 @@ contains
   end subroutine add_jacobians
 
   !> G_a = (dN_a/dxi)(dxi/dx) and w j at all points.
-  pure subroutine invert(n_node, n_point, slope, weight, jacobian, gradient, volume_weight, bad_point)
+  pure subroutine invert(n_node, n_point, slope, weight, jacobian, gradient, volume_weight, &
+                         bad_point)
     !> Sizes.
     integer, intent(in) :: n_node, n_point
     !> Derivatives of the shape functions.

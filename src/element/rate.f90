@@ -1,4 +1,5 @@
-!> Strain and rotation of a trial displacement at the points, to first order, for the limits on the step.
+!> Strain and rotation of a trial displacement at the points, to first order, for the limits on the
+!> step.
 module dd3_element_rate
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -10,7 +11,8 @@ module dd3_element_rate
 
 contains
 
-  !> Strain rates in the material frame, with the mean dilatation, and rotations, after `element_gradients`.
+  !> Strain rates in the material frame, with the mean dilatation, and rotations, after
+  !> `element_gradients`.
   subroutine element_rate(element, du, rotation, work)
     !> The element's table.
     type(element_t), intent(in) :: element

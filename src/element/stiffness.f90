@@ -1,13 +1,16 @@
 !> Exact derivative of the internal forces with respect to the current positions.
 !>
-!> With dl = du_b (x) G_b, d = sym and w = skw of dl plus the mean-dilatation correction, the stress follows
-!>   dT = c : d + w T - T w,  c the point's tangent moduli (module dd3_element_moduli), global frame,
-!> and, per group, s-hat = T - pi I + (Pi/v) I, Pi = sum w j pi, m = c : I, c' = c - m (x) I/3:
-!>   K_ab = sum w j G_a.[ dev c' + w s-hat - s-hat w + s-hat (x) I - s-hat (.) I ].G_b
-!>          + p_a (x) g_b + g_a (x) q_b,   p_a = sum w j dev(m) G_a / 3,
-!>   q_b = sum w j (tr c'/3 + pi I).G_b + (sum w j tr m / 9 - Pi) g_b,
-!> so that the variation of g_a and everything that contains it is an outer product, formed once per group.
-!> The sum over points and directions is one product of a (9 n_node) x (3 n_point) by a (3 n_point) x n_node matrix.
+!> With dl = du_b (x) G_b, d = sym and w = skw of dl plus the mean-dilatation correction, the stress
+!> follows dT = c : d + w T - T w, c the point's tangent moduli of module dd3_element_moduli in the
+!> global frame. Per group, with pi = tr T/3, Pi = sum w j pi, S = T - pi I + (Pi/v) I, m = c : I
+!> and c' = c - m (x) I/3:
+!>   K_ab = sum w j G_a.[ dev c' : d + w S - S w + S tr(dl) - S dl^T ].G_b
+!>          + p_a (x) g_b + g_a (x) q_b,
+!>   p_a = sum w j dev(m) G_a/3,
+!>   q_b = sum w j (tr c'/3 + pi I).G_b + (sum w j tr m/9 - Pi) g_b,
+!> so that all that contains the mean gradients, their variation included, is an outer product,
+!> formed once per group. The sum over points and directions is one product of a (9 n_node) x (3 n_point)
+!> by a (3 n_point) x n_node matrix.
 module dd3_element_stiffness
   use dd3_base_kinds, only : wp
   use dd3_element_force, only : element_force
@@ -38,16 +41,19 @@ contains
       if (n == 8 .and. m == 8 .and. g == 1) then
         call contract_points(8, 8, 1, element%group, work)
         call multiply_up(72, 24, 8, work%half, work%gradient, work%stiffness)
-        call add_outer(8, 1, work%row_factor, work%column_factor, work%mean_gradient, work%stiffness)
+        call add_outer(8, 1, work%row_factor, work%column_factor, work%mean_gradient, &
+                       work%stiffness)
       else
         call contract_points(n, m, g, element%group, work)
         call multiply_up(9*n, 3*m, n, work%half, work%gradient, work%stiffness)
-        call add_outer(n, g, work%row_factor, work%column_factor, work%mean_gradient, work%stiffness)
+        call add_outer(n, g, work%row_factor, work%column_factor, work%mean_gradient, &
+                       work%stiffness)
       end if
     end associate
   end subroutine element_stiffness
 
-  !> Operator of each point, contracted with the column nodes' gradients; factors of the outer products.
+  !> Operator of each point, contracted with the column nodes' gradients; factors of the outer
+  !> products.
   subroutine contract_points(n_node, n_point, n_group, group, work)
     !> Sizes.
     integer, intent(in) :: n_node, n_point, n_group
@@ -73,7 +79,8 @@ contains
         curvature(g) = curvature(g) + work%weight(p)*(row(1) + row(2) + row(3))
         column(1:3) = column(1:3) + mean
         row(1:3) = row(1:3) - (row(1) + row(2) + row(3))/3.0_wp
-        call add_factor(n_node, work%weight(p), row, work%gradient(:, :, p), work%row_factor(:, :, g))
+        call add_factor(n_node, work%weight(p), row, work%gradient(:, :, p), &
+                        work%row_factor(:, :, g))
         call add_factor(n_node, work%weight(p), column, work%gradient(:, :, p), &
                         work%column_factor(:, :, g))
         do i = 1, 3
@@ -90,7 +97,8 @@ contains
     end do
   end subroutine contract_points
 
-  !> Takes the group's share out of the moduli: c becomes dev c', and the outer products' parts are returned.
+  !> Takes the group's share out of the moduli: c becomes dev c', and the outer products' parts are
+  !> returned.
   pure subroutine split_volume(c, row, column)
     !> Moduli, Kelvin, global frame.
     real(wp), intent(inout) :: c(6, 6)

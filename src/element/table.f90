@@ -1,6 +1,7 @@
-!> The table that is an element: nodes, integration points, shape functions, faces, and which points share a mean
-!> dilatation. An element is one filled `element_t`; every kernel works from the table for any number of nodes,
-!> points and groups. Shape functions and Gauss rules: Zienkiewicz & Taylor, The Finite Element Method, 1989, chap. 7.
+!> The table that is an element: nodes, integration points, shape functions, faces, and which points
+!> share a mean dilatation. An element is one filled `element_t`; every kernel works from the table
+!> for any number of nodes, points and groups. Shape functions and Gauss rules: Zienkiewicz &
+!> Taylor, The Finite Element Method, 1989, chap. 7.
 module dd3_element_table
   use dd3_base_kinds, only : wp
   implicit none
@@ -37,11 +38,13 @@ module dd3_element_table
     real(wp), allocatable :: shape(:, :)
     !> Their derivatives in the natural coordinates: `dshape(3,n_node,n_point)`.
     real(wp), allocatable :: dshape(:, :, :)
-    !> The same laid out for the kernels: `slope(3,n_point,n_node)` and `slope_row(n_node,3,n_point)`.
+    !> The same laid out for the kernels: `slope(3,n_point,n_node)` and
+    !> `slope_row(n_node,3,n_point)`.
     real(wp), allocatable :: slope(:, :, :), slope_row(:, :, :)
     !> Group of each point, 1 ... n_group (0 where there is none): `group(n_point)`.
     integer, allocatable :: group(:)
-    !> Values at the nodes from values at the points: `extrapolation(n_node,n_point)`; rows sum to 1.
+    !> Values at the nodes from values at the points: `extrapolation(n_node,n_point)`; rows sum to
+    !> 1.
     real(wp), allocatable :: extrapolation(:, :)
     !> Nodes of each face, turning so that the normal points outward: `face(n_face_node,n_face)`.
     !> Face 1 is zeta=-1 (bottom), 2 zeta=+1 (top), 3 eta=-1, 4 xi=+1, 5 eta=+1, 6 xi=-1.

@@ -8,7 +8,8 @@ module dd3_element_work
 
   !> Everything computed for one element. Kelvin vectors at points are in the material frame.
   type :: element_work_t
-    !> Gradients of the shape functions at the current configuration, 1/mm: `gradient(n_node,3,n_point)`.
+    !> Gradients of the shape functions at the current configuration, 1/mm:
+    !> `gradient(n_node,3,n_point)`.
     real(wp), allocatable :: gradient(:, :, :)
     !> Their means over each group, 1/mm: `mean_gradient(n_node,3,n_group)`.
     real(wp), allocatable :: mean_gradient(:, :, :)
@@ -20,11 +21,13 @@ module dd3_element_work
     real(wp), allocatable :: volume(:), volume_old(:)
     !> Deformation gradient of the increment, as interpolated: `deformation(3,3,n_point)`.
     real(wp), allocatable :: deformation(:, :, :)
-    !> Dilatation of the increment that the material sees, v/V of the point's group: `dilatation(n_point)`.
+    !> Dilatation of the increment that the material sees, v/V of the point's group:
+    !> `dilatation(n_point)`.
     real(wp), allocatable :: dilatation(:)
     !> Logarithmic strain of the increment, Kelvin, material frame: `strain(6,n_point)`.
     real(wp), allocatable :: strain(:, :)
-    !> Material axes at the end of the increment, as columns, in the global frame: `rotation(3,3,n_point)`.
+    !> Material axes at the end of the increment, as columns, in the global frame:
+    !> `rotation(3,3,n_point)`.
     real(wp), allocatable :: rotation(:, :, :)
     !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: `stress(6,n_point)`.
     real(wp), allocatable :: stress(:, :)
@@ -32,21 +35,24 @@ module dd3_element_work
     real(wp), allocatable :: tangent(:, :, :)
     !> Internal forces, N: `force(3,n_node)`.
     real(wp), allocatable :: force(:, :)
-    !> d force/d displacement, N/mm: `stiffness(3,3,n_node,n_node)`; the 3x3 block of row node a and column
-    !> node b is `stiffness(:,:,b,a)`.
+    !> d force/d displacement, N/mm: `stiffness(3,3,n_node,n_node)`; the 3x3 block of row node a and
+    !> column node b is `stiffness(:,:,b,a)`.
     real(wp), allocatable :: stiffness(:, :, :, :)
-    !> Strain rate of a trial displacement, with the mean dilatation, Kelvin, material frame: `rate(6,n_point)`.
+    !> Strain rate of a trial displacement, with the mean dilatation, Kelvin, material frame:
+    !> `rate(6,n_point)`.
     real(wp), allocatable :: rate(:, :)
     !> Rotation of a trial displacement, length of the axial vector, rad: `spin(n_point)`.
     real(wp), allocatable :: spin(:)
     !> Cauchy stress, MPa, tensor in the global frame: `cauchy(3,3,n_point)`.
     real(wp), allocatable :: cauchy(:, :, :)
-    !> Inner: dx/dxi of both configurations, `jacobian(3,n_point,3)`; the last index is the component of x.
+    !> Inner: dx/dxi of both configurations, `jacobian(3,n_point,3)`; the last index is the
+    !> component of x.
     real(wp), allocatable :: jacobian(:, :, :), jacobian_old(:, :, :)
     !> Inner: tangent contracted with the column node's gradient, `half(3,3,n_node,3,n_point)`.
     real(wp), allocatable :: half(:, :, :, :, :)
-    !> Inner: factors of the groups' outer products, N/mm2: `row_factor(3,n_node,n_group)`, `column_factor`
-    !> alike, and the group's volume integral of the mean stress, N mm: `pressure(n_group)`.
+    !> Inner: factors of the groups' outer products, N/mm2: `row_factor(3,n_node,n_group)`,
+    !> `column_factor` alike, and the group's volume integral of the mean stress, N mm:
+    !> `pressure(n_group)`.
     real(wp), allocatable :: row_factor(:, :, :), column_factor(:, :, :), pressure(:)
   end type element_work_t
 

@@ -14,10 +14,11 @@ module element_cases
   implicit none
   private
   public :: law_t, patch_t
-  public :: seed, random_number_in, random_rotation, rotation_about, elasticity, bent_law, identities
-  public :: make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system
+  public :: seed, random_number_in, random_rotation, rotation_about, elasticity, bent_law
+  public :: identities, make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system
 
-  !> A smooth law: T = T0 + C e + kappa (a.e) B e, whose tangent is unsymmetric; kappa = 0 is elastic.
+  !> A smooth law: T = T0 + C e + kappa (a.e) B e, with an unsymmetric tangent; kappa = 0 is
+  !> elastic, flow > 0 adds a radial return (Wilkins 1964).
   type :: law_t
     !> Elastic moduli, MPa.
     real(wp) :: c(6, 6) = 0.0_wp
