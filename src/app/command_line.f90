@@ -180,15 +180,17 @@ contains
 
     text = "usage: dd3imp [options] job.dat"//newline// &
            "  --check              read the input, check it, show all values, stop"//newline// &
-           "  --set name=value     gives a *PARAMETER of the input another value; may be repeated"//newline// &
+           "  --set name=value     gives a *PARAMETER of the input another value; repeatable"// &
+           newline// &
            "  --output DIR         folder of the results (job.out where nothing else is said)"// &
            newline// &
            "  --threads N          number of threads (1)"//newline// &
            "  --quiet              nothing on the screen but errors"//newline// &
            "  --version            the program's version"//newline// &
-           "  --help [name]        this text, or help on a block, a key or a law; markdown: the keyword reference"// &
+           "  --help [name]        this text, or help on a block, key or law, or markdown"// &
            newline// &
-           "exit codes: 0 reached the end; 1 usage; 2 errors in the input; 3 stopped before the end"//newline
+           "exit codes: 0 reached the end; 1 usage; 2 input errors; 3 stopped before the end"// &
+           newline
   end function usage_text
 
 end module dd3_app_command_line

@@ -293,8 +293,8 @@ contains
     integer :: k, before
 
     if (self%mode == into_nothing) then
-      if (.not. self%stray) call errors%push_input(token%item(1)%at, &
-          "this line belongs to no block", &
+      if (.not. self%stray) then
+        call errors%push_input(token%item(1)%at, "this line belongs to no block", &
                                "a line *BLOCK above; *INCLUDE ends the block before it")
       end if
       self%stray = .true.

@@ -1,6 +1,7 @@
 !> Builds the mesh of a case: nodes, elements and node sets, and checks that what the case does to
 !> nodes makes sense.
 module dd3_mesh_build
+  use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
   use dd3_input_case, only : case_t, phase_t
   use dd3_mesh_blank, only : new_blank_mesh
