@@ -1,6 +1,7 @@
 !> Comparisons of flattened arrays, behind the asserts with two sides.
 module pf_compare
   use, intrinsic :: iso_fortran_env, only : dp => real64, i8 => int64
+  use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_is_finite
   use pf_failure, only : SourceLocation, fail, with_message
   implicit none
   private
@@ -45,7 +46,7 @@ contains
       write (left, '(g0)') expected(j)
       write (right, '(g0)') actual(i)
       difference = "none: a NaN or infinity"
-      if (abs(expected(j)) <= huge(tolerance) .and. abs(actual(i)) <= huge(tolerance)) &
+      if (ieee_is_finite(expected(j)) .and. ieee_is_finite(actual(i))) &
         write (difference, '(g0,a,g0,a)') actual(i) - expected(j), " (tolerance ", tolerance, ")"
       call fail_at(operation, left, right, difference, i, actual_shape, message, location)
       return
@@ -54,7 +55,6 @@ contains
 
   !> Whether a pair of real numbers is as it should be; a NaN on either side never is.
   logical function reals_hold(operation, expected, actual, tolerance)
-    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
     !> One of the `compare_*` values.
     integer, intent(in) :: operation
     !> The pair, and what its difference may be.
@@ -86,7 +86,7 @@ contains
     real(dp), intent(in) :: expected, actual, tolerance
 
     near = .false.
-    if (abs(expected) <= huge(tolerance) .and. abs(actual) <= huge(tolerance)) &
+    if (ieee_is_finite(expected) .and. ieee_is_finite(actual)) &
       near = abs(actual - expected) <= tolerance
   end function near
 
