@@ -1,6 +1,7 @@
 !> Incremental kinematics of the points: right polar decomposition F = R U and logarithmic strain
 !> E = ln U, in the material frame, with the volume change replaced by the mean one. The material
-!> axes turn with R, so that nothing stored in them has to be rotated (Hughes 1984; Weber & Anand 1990).
+!> axes turn with R, so that nothing stored in them has to be rotated (Hughes 1984; Weber & Anand
+!> 1990).
 !>
 !> For small stretches, which is what increments are, E and R come from series in X = e (I+e)^-1,
 !> e = (C-I)/2, that is X = tanh E: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both with powers of

@@ -1,11 +1,12 @@
 !> Exact tangent moduli of the incremental update: dT = c : d + w T - T w for any change of shape
 !> d + w, d symmetric, w skew.
 !>
-!> In the eigenbasis of the log strain E = ln U, with h_ij = E_i - E_j, the rates are, in closed form,
+!> In the eigenbasis of the log strain E = ln U, with h_ij = E_i - E_j, the rates are in closed form
 !>   dE_ij = d_ij h_ij/sinh(h_ij),   (R^T dR)_ij = w_ij - tanh(h_ij/2) d_ij
 !> (d, w in the unrotated frame). Both are functions of the commutator ad(d) = E d - d E, so that no
 !> eigenbasis is needed. With Z the 3x6 matrix that takes d (Kelvin) to the commutator's axial
-!> vector (times sqrt 2), B = Z Z^T, Z_T the same for the stress, and C the material's d stress/d strain:
+!> vector (times sqrt 2), B = Z Z^T, Z_T the same for the stress, and C the material's
+!> d stress/d strain:
 !>   c = C - (C Z^T P(B) - Z_T^T S(B)) Z,   P(x^2) = (1 - x/sinh x)/x^2,   S(x^2) = tanh(x/2)/x.
 !> B has the eigenvalues h_ij^2: power series when they are small, else the eigenvectors of E, whose
 !> k-th is also the axial vector of the pair (i,j). Rates of U and R: Hill, Aspects of invariance in

@@ -9,8 +9,8 @@
 !>   p_a = sum w j dev(m) G_a/3,
 !>   q_b = sum w j (tr c'/3 + pi I).G_b + (sum w j tr m/9 - Pi) g_b,
 !> so that all that contains the mean gradients, their variation included, is an outer product,
-!> formed once per group. The sum over points and directions is one product of a (9 n_node) x (3 n_point)
-!> by a (3 n_point) x n_node matrix.
+!> formed once per group. The sum over points and directions is one product of a
+!> (9 n_node) x (3 n_point) by a (3 n_point) x n_node matrix.
 module dd3_element_stiffness
   use dd3_base_kinds, only : wp
   use dd3_element_force, only : element_force
