@@ -1,0 +1,31 @@
+"""Checks that every file named in the README and in CONTRIBUTING exists, and that its commands can be run."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PATH = re.compile(r"(?<![\w./-])\.?/?((?:utils|docs|tests|src|input_files|cmake|\.ci)/[\w./-]*\w)")
+
+
+def main():
+    """Exit code 1 and a list where something is missing."""
+    wrong = []
+    for name in ("README.md", "CONTRIBUTING.md"):
+        document = ROOT / name
+        if not document.exists():
+            wrong.append(f"{name} does not exist")
+            continue
+        for path in sorted(set(PATH.findall(document.read_text(encoding="utf-8")))):
+            if ".out" in path:
+                continue
+            target = ROOT / path
+            if not target.exists():
+                wrong.append(f"{name}: {path} does not exist")
+            elif target.suffix == ".sh" and not target.stat().st_mode & 0o100:
+                wrong.append(f"{name}: {path} cannot be run")
+    if wrong:
+        sys.exit("\n".join(wrong))
+
+
+if __name__ == "__main__":
+    main()
