@@ -1,0 +1,332 @@
+!> Bézier patches of any degree, polynomial or rational, and their derivatives.
+!>
+!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein polynomials come from their
+!> triangular recurrence, B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1): the triangle of de Casteljau with the roles of points and
+!> weights exchanged. It only adds positive numbers, so that it is stable for any degree. Derivatives are differences of the
+!> polynomials of the next lower degrees; rational patches are evaluated in homogeneous coordinates, with the quotient rule.
+!> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 5, 13, 14; Piegl and Tiller, The NURBS Book,
+!> 2nd ed. (1997), algorithm A1.3 and section 4.5.
+module dd3_contact_bezier
+  use dd3_base_kinds, only : wp
+  implicit none
+  private
+  public :: patch_t, new_patch, evaluate, evaluate_relative, position_at, normal_at, unit_normal
+  public :: curve_length, largest_degree, n_sample
+
+  !> Largest degree of a patch along one of its parameters.
+  integer, parameter :: largest_degree = 25
+  !> Intervals along each parameter of the grid of stored points.
+  integer, parameter :: n_sample = 8
+  !> A normal is taken as degenerate where |S_u x S_v| is below this share of the patch's size squared.
+  real(wp), parameter :: degenerate_area = 1.0e-9_wp
+
+  !> One patch.
+  type :: patch_t
+    !> Degrees along u and v.
+    integer :: degree(2) = 0
+    !> Whether the weights differ from one.
+    logical :: rational = .false.
+    !> Whether it is a parallelogram: degrees 1 and 1, no twist.
+    logical :: flat = .false.
+    !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
+    real(wp), allocatable :: control(:, :, :)
+    !> Control points relative to `centre`, multiplied by their weights, and the weights, `(4, 0:.., 0:..)`.
+    real(wp), allocatable :: homogeneous(:, :, :)
+    !> Points on a regular grid of the parameters, relative to `centre`, mm; none where it is flat.
+    real(wp), allocatable :: sample(:, :, :)
+    !> Middle of its box, mm.
+    real(wp) :: centre(3) = 0.0_wp
+    !> Box that holds it, mm.
+    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
+    !> Diagonal of the box, mm.
+    real(wp) :: size = 0.0_wp
+    !> Shorter of the mean lengths along u and v, mm.
+    real(wp) :: reach = 0.0_wp
+    !> Line of its file where it begins; 0 where it comes from none.
+    integer :: line = 0
+  end type patch_t
+
+contains
+
+  !> Makes a patch of its control points.
+  subroutine new_patch(self, control, weight, line)
+    !> The patch made.
+    type(patch_t), intent(out) :: self
+    !> Control points, `(3, m + 1, n + 1)`, u fastest, mm.
+    real(wp), intent(in) :: control(:, :, :)
+    !> Their weights, all positive; a polynomial patch without.
+    real(wp), intent(in), optional :: weight(:, :)
+    !> Line of its file where it begins.
+    integer, intent(in), optional :: line
+
+    integer :: i, j, m, n
+    real(wp) :: w
+
+    m = size(control, 2) - 1
+    n = size(control, 3) - 1
+    self%degree = [m, n]
+    if (present(line)) self%line = line
+    allocate (self%control(3, 0:m, 0:n), self%homogeneous(4, 0:m, 0:n))
+    self%control(:, :, :) = control
+    self%lower = minval(minval(control, dim=3), dim=2)
+    self%upper = maxval(maxval(control, dim=3), dim=2)
+    self%centre = 0.5_wp*(self%lower + self%upper)
+    self%size = sqrt(sum((self%upper - self%lower)**2))
+    if (present(weight)) self%rational = any(abs(weight - weight(1, 1)) > 0.0_wp)
+    do j = 0, n
+      do i = 0, m
+        w = 1.0_wp
+        if (self%rational) w = weight(i + 1, j + 1)/weight(1, 1)
+        self%homogeneous(1:3, i, j) = w*(self%control(:, i, j) - self%centre)
+        self%homogeneous(4, i, j) = w
+      end do
+    end do
+    if (m == 1 .and. n == 1 .and. .not. self%rational) then
+      self%flat = all(abs(self%control(:, 0, 0) - self%control(:, 1, 0) - self%control(:, 0, 1) &
+                          + self%control(:, 1, 1)) <= 1.0e-14_wp*self%size)
+    end if
+    if (.not. self%flat) call store_sample(self)
+    self%reach = min(mean_length(self, 1), mean_length(self, 2))
+  end subroutine new_patch
+
+  !> Stores the points from which searches begin.
+  subroutine store_sample(self)
+    !> The patch.
+    type(patch_t), intent(inout) :: self
+
+    integer :: i, j
+    real(wp), parameter :: step = 1.0_wp/n_sample
+
+    allocate (self%sample(3, 0:n_sample, 0:n_sample))
+    do j = 0, n_sample
+      do i = 0, n_sample
+        self%sample(:, i, j) = position_at(self, real(i, wp)*step, real(j, wp)*step) - self%centre
+      end do
+    end do
+  end subroutine store_sample
+
+  !> Mean length of the patch along one of its parameters, mm.
+  pure real(wp) function mean_length(self, direction)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> 1 for u, 2 for v.
+    integer, intent(in) :: direction
+
+    integer :: i
+
+    mean_length = 0.0_wp
+    do i = 0, 2
+      mean_length = mean_length + curve_length(self, direction, 0.5_wp*real(i, wp))/3.0_wp
+    end do
+  end function mean_length
+
+  !> Length of a line of constant parameter, as the sum of eight chords, mm.
+  pure real(wp) function curve_length(self, direction, other)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> Which parameter runs: 1 for u, 2 for v.
+    integer, intent(in) :: direction
+    !> Value of the other parameter.
+    real(wp), intent(in) :: other
+
+    real(wp) :: at(2), previous(3), next(3)
+    integer :: i
+
+    curve_length = 0.0_wp
+    at = other
+    do i = 0, 8
+      at(direction) = 0.125_wp*real(i, wp)
+      next = position_at(self, at(1), at(2))
+      if (i > 0) curve_length = curve_length + sqrt(sum((next - previous)**2))
+      previous = next
+    end do
+  end function curve_length
+
+  !> Point of the patch and its first and second derivatives.
+  pure subroutine evaluate(self, u, v, point, first, second)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> Parameters; a little outside 0 ... 1 gives the patch's own continuation.
+    real(wp), intent(in) :: u, v
+    !> Point, mm.
+    real(wp), intent(out) :: point(3)
+    !> S_u, S_v, mm.
+    real(wp), intent(out) :: first(3, 2)
+    !> S_uu, S_vv, S_uv, mm.
+    real(wp), intent(out) :: second(3, 3)
+
+    call evaluate_relative(self%degree(1), self%degree(2), self%rational, self%homogeneous, u, v, &
+                           point, first, second)
+    point = point + self%centre
+  end subroutine evaluate
+
+  !> Point of the patch relative to its centre, with derivatives, from plain arrays.
+  pure subroutine evaluate_relative(m, n, rational, homogeneous, u, v, point, first, second)
+    !> Degrees.
+    integer, intent(in) :: m, n
+    !> Whether the weights count.
+    logical, intent(in) :: rational
+    !> Weighted control points and weights.
+    real(wp), intent(in) :: homogeneous(4, 0:m, 0:n)
+    !> Parameters.
+    real(wp), intent(in) :: u, v
+    !> Point, mm.
+    real(wp), intent(out) :: point(3)
+    !> S_u, S_v, mm.
+    real(wp), intent(out) :: first(3, 2)
+    !> S_uu, S_vv, S_uv, mm.
+    real(wp), intent(out) :: second(3, 3)
+
+    real(wp) :: bu(0:largest_degree, 0:2), bv(0:largest_degree, 0:2)
+    real(wp) :: row(4, 0:2), sums(4, 0:5), p(4)
+    integer :: i, j
+
+    call bernstein(m, u, bu)
+    call bernstein(n, v, bv)
+    sums = 0.0_wp
+    do j = 0, n
+      row = 0.0_wp
+      do i = 0, m
+        p = homogeneous(:, i, j)
+        row(:, 0) = row(:, 0) + bu(i, 0)*p
+        row(:, 1) = row(:, 1) + bu(i, 1)*p
+        row(:, 2) = row(:, 2) + bu(i, 2)*p
+      end do
+      sums(:, 0) = sums(:, 0) + bv(j, 0)*row(:, 0)
+      sums(:, 1) = sums(:, 1) + bv(j, 0)*row(:, 1)
+      sums(:, 2) = sums(:, 2) + bv(j, 1)*row(:, 0)
+      sums(:, 3) = sums(:, 3) + bv(j, 0)*row(:, 2)
+      sums(:, 4) = sums(:, 4) + bv(j, 2)*row(:, 0)
+      sums(:, 5) = sums(:, 5) + bv(j, 1)*row(:, 1)
+    end do
+    point = sums(1:3, 0)
+    first = sums(1:3, 1:2)
+    second = sums(1:3, 3:5)
+    if (rational) call quotient_rule(sums(4, :), point, first, second)
+  end subroutine evaluate_relative
+
+  !> Turns the derivatives of w S and of w into those of S.
+  pure subroutine quotient_rule(w, point, first, second)
+    !> w, w_u, w_v, w_uu, w_vv, w_uv.
+    real(wp), intent(in) :: w(0:5)
+    !> The point times w; the point.
+    real(wp), intent(inout) :: point(3)
+    !> Its first derivatives.
+    real(wp), intent(inout) :: first(3, 2)
+    !> Its second derivatives uu, vv, uv.
+    real(wp), intent(inout) :: second(3, 3)
+
+    real(wp) :: inverse
+
+    inverse = 1.0_wp/w(0)
+    point = inverse*point
+    first(:, 1) = inverse*(first(:, 1) - w(1)*point)
+    first(:, 2) = inverse*(first(:, 2) - w(2)*point)
+    second(:, 1) = inverse*(second(:, 1) - 2.0_wp*w(1)*first(:, 1) - w(3)*point)
+    second(:, 2) = inverse*(second(:, 2) - 2.0_wp*w(2)*first(:, 2) - w(4)*point)
+    second(:, 3) = inverse*(second(:, 3) - w(1)*first(:, 2) - w(2)*first(:, 1) - w(5)*point)
+  end subroutine quotient_rule
+
+  !> Bernstein polynomials of a degree and their first two derivatives.
+  pure subroutine bernstein(degree, t, b)
+    !> The degree, at least 1.
+    integer, intent(in) :: degree
+    !> The parameter.
+    real(wp), intent(in) :: t
+    !> Values, first and second derivatives in `b(0:degree, 0:2)`.
+    real(wp), intent(out) :: b(0:largest_degree, 0:2)
+
+    real(wp) :: s, factor
+    integer :: k, i
+
+    s = 1.0_wp - t
+    if (degree == 1) then
+      b(0, :) = [s, -1.0_wp, 0.0_wp]
+      b(1, :) = [t, 1.0_wp, 0.0_wp]
+      return
+    end if
+    b(0, 0) = 1.0_wp
+    do k = 1, degree
+      if (k == degree - 1) b(0:k - 1, 2) = b(0:k - 1, 0)
+      if (k == degree) b(0:k - 1, 1) = b(0:k - 1, 0)
+      b(k, 0) = t*b(k - 1, 0)
+      do i = k - 1, 1, -1
+        b(i, 0) = s*b(i, 0) + t*b(i - 1, 0)
+      end do
+      b(0, 0) = s*b(0, 0)
+    end do
+    factor = real(degree, wp)
+    b(degree, 1) = factor*b(degree - 1, 1)
+    do i = degree - 1, 1, -1
+      b(i, 1) = factor*(b(i - 1, 1) - b(i, 1))
+    end do
+    b(0, 1) = -factor*b(0, 1)
+    factor = real(degree*(degree - 1), wp)
+    b(degree - 1:degree, 2) = 0.0_wp
+    do i = degree, 2, -1
+      b(i, 2) = factor*(b(i, 2) - 2.0_wp*b(i - 1, 2) + b(i - 2, 2))
+    end do
+    b(1, 2) = factor*(b(1, 2) - 2.0_wp*b(0, 2))
+    b(0, 2) = factor*b(0, 2)
+  end subroutine bernstein
+
+  !> Point of the patch, mm.
+  pure function position_at(self, u, v) result(point)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> Parameters.
+    real(wp), intent(in) :: u, v
+    real(wp) :: point(3), first(3, 2), second(3, 3)
+
+    call evaluate(self, u, v, point, first, second)
+  end function position_at
+
+  !> Unit normal S_u x S_v of the patch; where it is degenerate, that of a near point towards the middle.
+  pure subroutine normal_at(self, u, v, normal, regular)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> Parameters.
+    real(wp), intent(in) :: u, v
+    !> Unit normal; zero where no near point has one.
+    real(wp), intent(out) :: normal(3)
+    !> Whether a normal was found.
+    logical, intent(out) :: regular
+
+    real(wp) :: point(3), first(3, 2), second(3, 3), step
+    integer :: i
+
+    step = 0.0_wp
+    do i = 1, 4
+      call evaluate(self, u + step*(0.5_wp - u), v + step*(0.5_wp - v), point, first, second)
+      call unit_normal(self, first, normal, regular)
+      if (regular) return
+      step = max(1.0e-6_wp, 30.0_wp*step)
+    end do
+  end subroutine normal_at
+
+  !> Unit normal from the first derivatives.
+  pure subroutine unit_normal(self, first, normal, regular)
+    !> The patch.
+    type(patch_t), intent(in) :: self
+    !> S_u, S_v, mm.
+    real(wp), intent(in) :: first(3, 2)
+    !> Unit normal; zero where there is none.
+    real(wp), intent(out) :: normal(3)
+    !> Whether there is one.
+    logical, intent(out) :: regular
+
+    real(wp) :: length
+
+    normal(1) = first(2, 1)*first(3, 2) - first(3, 1)*first(2, 2)
+    normal(2) = first(3, 1)*first(1, 2) - first(1, 1)*first(3, 2)
+    normal(3) = first(1, 1)*first(2, 2) - first(2, 1)*first(1, 2)
+    length = sqrt(dot_product(normal, normal))
+    regular = length > degenerate_area*self%size**2
+    if (regular) then
+      normal = normal/length
+    else
+      normal = 0.0_wp
+    end if
+  end subroutine unit_normal
+
+end module dd3_contact_bezier
