@@ -172,7 +172,7 @@ def main():
         results = options.work.resolve() / (folder.name + (f"-{i + 1}" if i else "") + ".out")
         try:
             compared += run(case, folder, options.program.resolve(), results, arguments)
-        except (Mismatch, subprocess.TimeoutExpired) as error:
+        except (Mismatch, OSError, subprocess.TimeoutExpired) as error:
             sys.exit(f"FAILED {folder.name} {' '.join(arguments)}\n{error}")
     if compared == 0 and case.get("exit_code", 0) == 0:
         sys.exit(f"FAILED {folder.name}: nothing was compared")
