@@ -22,10 +22,6 @@ contains
 
     integer :: i
 
-    do i = 2, size(case%blank)
-      call errors%push_input(case%blank(i)%source%opened, "there is more than one *BLANK", &
-          "one sheet")
-    end do
     do i = 1, size(case%blank)
       if (case%blank(i)%source%valid) call check_blank(case%blank(i), errors)
     end do
@@ -96,7 +92,7 @@ contains
     integer :: i, k
 
     if (.not. block%has(key)) return
-    x = block%numbers(key)
+    allocate (x, source=block%numbers(key))
     k = block%find(key)
     if (size(x) /= n + 1) then
       call errors%push_input(block%at(key), "there are "//to_text(size(x))//" abscissae for "// &

@@ -188,7 +188,11 @@ contains
       call take_line(self, line, text, i)
       call split_line(line, token, continues, errors)
     end do
-    if (token%count == 0 .or. errors%count > before) return
+    if (token%count == 0) return
+    if (errors%count > before) then
+      call add_broken_entry(self, token%item(1))
+      return
+    end if
     if (token%item(1)%text(1:min(1, len(token%item(1)%text))) == "*" .and. &
         .not. token%item(1)%quoted) then
       call open_block(self, token, line%file, errors)
@@ -196,6 +200,22 @@ contains
       call read_assignment(self, token, errors)
     end if
   end subroutine read_statement
+
+  !> Keeps the key of a line that could not be read, so that it is not reported as missing too.
+  subroutine add_broken_entry(self, key)
+    !> What is known so far.
+    type(reader_t), intent(inout) :: self
+    !> The first word of the line.
+    type(token_t), intent(in) :: key
+
+    type(entry_t) :: entry
+
+    if (self%mode /= into_block .or. scan(key%text, "*=") == 1) return
+    entry%key = lower_case(key%text)
+    entry%at = key%at
+    allocate (entry%value(0))
+    call self%open%add_entry(entry)
+  end subroutine add_broken_entry
 
   !> Reads `*BLOCK name`.
   recursive subroutine open_block(self, token, file, errors)
@@ -300,7 +320,10 @@ contains
       self%stray = .true.
       return
     end if
-    if (.not. is_assignment(token, errors)) return
+    if (.not. is_assignment(token, errors)) then
+      call add_broken_entry(self, token%item(1))
+      return
+    end if
     before = errors%count
     do k = 3, token%count
       call self%substitution%expand(token%item(k), value, errors)

@@ -2,10 +2,10 @@
 module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
-  use dd3_input_block, only : block_t, entry_t
+  use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_t, contact_t, limits_t, limit_t, newton_t, tool_name_t, &
       tool_vector_t, &
-                             displace_t, load_t, until_displacement, until_force
+                             displace_t, load_t, until_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -22,7 +22,6 @@ contains
     type(block_t), intent(in) :: block
 
     type(phase_t) :: phase
-    integer :: k
 
     phase%name = block%name
     phase%source = block
@@ -39,11 +38,13 @@ contains
     call fill_contact(phase%contact, block)
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
-    allocate (phase%hold(0), phase%release(0), phase%move(0), phase%press(0), phase%displace(0), &
-        phase%load(0))
-    do k = 1, block%n_entry
-      if (block%entry(k)%valid) call fill_action(phase, case, block%entry(k))
-    end do
+    call fill_tool_names(phase%hold, case, block, "hold")
+    call fill_tool_names(phase%release, case, block, "release")
+    call fill_tool_vectors(phase%move, case, block, "move")
+    call fill_tool_vectors(phase%press, case, block, "press")
+    call fill_displacements(phase%displace, block)
+    call fill_loads(phase%load, block)
+    call fill_until(phase%until, case, block)
     case%phase(i) = phase
   end subroutine fill_phase
 
@@ -60,44 +61,132 @@ contains
     tool_position = 0
   end function tool_position
 
-  !> Adds what one entry asks for.
-  subroutine fill_action(phase, case, entry)
-    !> The phase.
-    type(phase_t), intent(inout) :: phase
-    !> The case.
+  !> Positions of the valid entries with a key.
+  pure function entries(block, key) result(position)
+    !> The block.
+    type(block_t), intent(in) :: block
+    !> The key.
+    character(len=*), intent(in) :: key
+    integer, allocatable :: position(:)
+
+    integer :: i
+
+    allocate (position(0))
+    do i = 1, block%n_entry
+      if (block%entry(i)%key == key .and. block%entry(i)%valid) position = [position, i]
+    end do
+  end function entries
+
+  !> Fills the tools that one key names.
+  subroutine fill_tool_names(list, case, block, key)
+    !> The tools.
+    type(tool_name_t), allocatable, intent(out) :: list(:)
+    !> The case, its tools filled.
     type(case_t), intent(in) :: case
-    !> The entry.
-    type(entry_t), intent(in) :: entry
+    !> The phase's block.
+    type(block_t), intent(in) :: block
+    !> The key.
+    character(len=*), intent(in) :: key
 
-    integer :: tool
+    integer, allocatable :: position(:)
+    integer :: i
 
-    select case (entry%key)
-    case ("hold")
-      tool = tool_position(case, entry%value(1)%text)
-      phase%hold = [phase%hold, tool_name_t(tool, entry%value(1)%at)]
-    case ("release")
-      tool = tool_position(case, entry%value(1)%text)
-      phase%release = [phase%release, tool_name_t(tool, entry%value(1)%at)]
-    case ("move")
-      tool = tool_position(case, entry%value(1)%text)
-      phase%move = [phase%move, tool_vector_t(tool, entry%number(:3), entry%value(1)%at)]
-    case ("press")
-      tool = tool_position(case, entry%value(1)%text)
-      phase%press = [phase%press, tool_vector_t(tool, entry%number(:3), entry%value(1)%at)]
-    case ("displace")
-      phase%displace = [phase%displace, displace_t(entry%value(1)%text, nint(entry%number(1)), &
-          entry%number(2), &
-                                                   entry%value(1)%at)]
-    case ("load")
-      phase%load = [phase%load, load_t(entry%value(1)%text, entry%number(:3), entry%value(1)%at)]
-    case ("until")
-      phase%until%kind = merge(until_force, until_displacement, same_name(entry%value(1)%text, &
-          "force"))
-      phase%until%tool = tool_position(case, entry%value(2)%text)
-      phase%until%value = entry%number(1)
-      phase%until%at = entry%value(1)%at
-    end select
-  end subroutine fill_action
+    position = entries(block, key)
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (word => block%entry(position(i))%value(1))
+        list(i)%tool = tool_position(case, word%text)
+        list(i)%at = word%at
+      end associate
+    end do
+  end subroutine fill_tool_names
+
+  !> Fills the tools and vectors that one key names.
+  subroutine fill_tool_vectors(list, case, block, key)
+    !> The tools and their vectors.
+    type(tool_vector_t), allocatable, intent(out) :: list(:)
+    !> The case, its tools filled.
+    type(case_t), intent(in) :: case
+    !> The phase's block.
+    type(block_t), intent(in) :: block
+    !> The key.
+    character(len=*), intent(in) :: key
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, key)
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%tool = tool_position(case, entry%value(1)%text)
+        list(i)%vector = entry%number(:3)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_tool_vectors
+
+  !> Fills the prescribed displacements.
+  subroutine fill_displacements(list, block)
+    !> The displacements.
+    type(displace_t), allocatable, intent(out) :: list(:)
+    !> The phase's block.
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "displace")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%set = entry%value(1)%text
+        list(i)%axis = nint(entry%number(1))
+        list(i)%value = entry%number(2)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_displacements
+
+  !> Fills the forces on nodes.
+  subroutine fill_loads(list, block)
+    !> The forces.
+    type(load_t), allocatable, intent(out) :: list(:)
+    !> The phase's block.
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "load")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%set = entry%value(1)%text
+        list(i)%force = entry%number(:3)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_loads
+
+  !> Fills what ends the phase early.
+  subroutine fill_until(until, case, block)
+    !> The end.
+    type(until_t), intent(inout) :: until
+    !> The case, its tools filled.
+    type(case_t), intent(in) :: case
+    !> The phase's block.
+    type(block_t), intent(in) :: block
+
+    if (.not. block%has("until")) return
+    associate (entry => block%entry(block%find("until")))
+      until%kind = until_displacement
+      if (same_name(entry%value(1)%text, "force")) until%kind = until_force
+      until%tool = tool_position(case, entry%value(2)%text)
+      until%value = entry%number(1)
+      until%at = entry%value(1)%at
+    end associate
+  end subroutine fill_until
 
   !> Takes over the limits a block gives.
   subroutine fill_limits(limits, block)
@@ -137,7 +226,7 @@ contains
     limit%active = .not. block%entry(block%find(key))%is_off
     limit%value = without
     if (.not. limit%active) return
-    number = block%numbers(key)
+    allocate (number, source=block%numbers(key))
     limit%value = number(component)
   end subroutine fill_limit
 

@@ -67,7 +67,7 @@ contains
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i, wanted, before
+    integer :: i, wanted, given, before
 
     before = errors%count
     do i = 1, size(entry%value)
@@ -81,20 +81,31 @@ contains
     end do
     if (errors%count > before) return
     wanted = row%count
+    given = size(entry%value)
     if (row%kind == kind_real .or. row%kind == kind_integer) wanted = 1
-    if (wanted == 0 .or. size(entry%value) == wanted) return
-    if (size(entry%value) > wanted) then
-      call errors%push_input(entry%value(wanted + 1)%at, "there are "// &
-          to_text(size(entry%value))// &
-                             " values where "//to_text(wanted)//merge(" is ", " are", &
-                             wanted == 1)//" asked for", describe(row))
+    if (wanted == 0 .or. given == wanted) return
+    if (given > wanted) then
+      call errors%push_input(entry%value(wanted + 1)%at, counted(given, "value")// &
+          " given where "// &
+                             to_text(wanted)//" would do", describe(row))
     else
-      call errors%push_input(entry%value(size(entry%value))%at, "there "//merge("is ", "are", &
-          size(entry%value) == 1)//" only "// &
-                             to_text(size(entry%value))//" of "//to_text(wanted)//" values", &
+      call errors%push_input(entry%value(given)%at, "only "//counted(given, "value")//" of "// &
+          to_text(wanted), &
                              describe(row))
     end if
   end subroutine check_numbers
+
+  !> A number of things in words.
+  function counted(number, thing)
+    !> How many.
+    integer, intent(in) :: number
+    !> What one of them is called.
+    character(len=*), intent(in) :: thing
+    character(len=:), allocatable :: counted
+
+    counted = to_text(number)//" "//thing
+    if (number /= 1) counted = counted//"s"
+  end function counted
 
   !> Takes a word as a real number.
   subroutine take_real(entry, token, expected, errors)
@@ -261,6 +272,10 @@ contains
       call errors%push_input(entry%value(1)%at, "'"//entry%value(1)%text//"' "//not_available)
       return
     end if
+    if (is_equals(entry%value(1))) then
+      call errors%push_input(entry%value(1)%at, "the law's name is missing", describe(row))
+      return
+    end if
     i = 2
     do while (i <= size(entry%value))
       if (i + 2 > size(entry%value)) then
@@ -275,8 +290,6 @@ contains
       end if
       i = i + 3
     end do
-    if (is_equals(entry%value(1))) call errors%push_input(entry%value(1)%at, &
-        "the law's name is missing", describe(row))
   end subroutine check_law
 
   !> Whether a word is an equals sign.
