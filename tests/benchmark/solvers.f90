@@ -1,0 +1,275 @@
+!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices written by a run.
+!>
+!> Without arguments: strips of several sizes. With a file name: the system in that file (matrix, and `.rhs` beside it).
+!> Columns: level of fill (- for the direct solver), numbering, blocks in the factors against those in the matrix,
+!> iterations, restarts, symbolic set-up, factorisation and solution in ms (best of several), relative residual, and
+!> the largest difference from the direct solution relative to its largest member.
+program benchmark_solvers
+  use dd3_base_clock, only : wall_time
+  use dd3_base_error, only : error_t
+  use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_linalg_ilu, only : level_of_fill
+  use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
+  use dd3_linalg_matrix_market, only : read_matrix_market
+  use dd3_linalg_scaled_system, only : scaled_system_t
+  use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
+  use dd3_linalg_solver_registry, only : new_linear_solver
+  use dd3_linalg_ordering, only : find_ordering, ordering_names
+  implicit none
+
+  type(block_matrix_t) :: matrix
+  type(error_t), allocatable :: error
+  real(wp), allocatable :: b(:)
+  character(len=1000) :: file
+
+  if (command_argument_count() > 0) then
+    call get_command_argument(1, file)
+    call read_matrix_market(matrix, b, trim(file), error)
+    if (allocated(error)) then
+      print '(a)', error%message
+      error stop 1
+    end if
+    call compare(trim(file), matrix, b)
+  else
+    call compare_strip([10, 3, 2])
+    call compare_strip([80, 4, 2])
+    call compare_strip([60, 20, 3])
+    call compare_strip([175, 10, 3])
+  end if
+
+contains
+
+  !> Compares the solvers on a strip.
+  subroutine compare_strip(divisions)
+    !> Number of elements along length, width and thickness.
+    integer, intent(in) :: divisions(3)
+    character(len=40) :: name
+
+    call make_strip(divisions, matrix, b)
+    write (name, '(a,i0,2("x",i0))') "strip ", divisions
+    call compare(trim(name), matrix, b)
+  end subroutine compare_strip
+
+  !> Compares the solvers on a system.
+  subroutine compare(name, matrix, b)
+    !> Its name.
+    character(len=*), intent(in) :: name
+    !> The system.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Its right-hand side.
+    real(wp), intent(in) :: b(:)
+    !> Levels of fill compared.
+    integer, parameter :: levels(6) = [0, 1, 2, 3, 5, 1000000]
+    real(wp), allocatable :: reference(:)
+    type(solver_options_t) :: options
+    integer :: i, k
+
+    print '(/,a,": ",i0," unknowns, ",i0," blocks")', name, size(b), size(matrix%column)
+    print '(a)', "  level  order   fill  iter  re    set-up    factor     solve   residual   error"
+    options%method = "umfpack"
+    allocate (reference(size(b)))
+    reference = 0.0_wp
+    call measure(options, matrix, b, reference)
+    options%method = "cgs"
+    do i = 1, size(ordering_names)
+      do k = 1, size(levels)
+        options%ordering = ordering_names(i)
+        options%ilu_level = levels(k)
+        if (levels(k) > 100 .and. size(b) > 20000) cycle
+        call measure(options, matrix, b, reference)
+      end do
+    end do
+  end subroutine compare
+
+  !> Times one solver on a system and prints a line.
+  subroutine measure(options, matrix, b, reference)
+    !> The solver's options.
+    type(solver_options_t), intent(in) :: options
+    !> The system.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Its right-hand side.
+    real(wp), intent(in) :: b(:)
+    !> The direct solution; made where it is zero.
+    real(wp), intent(inout) :: reference(:)
+    class(linear_solver_t), allocatable :: solver
+    type(solver_report_t) :: report
+    type(verdict_t) :: verdict
+    type(error_t), allocatable :: error
+    real(wp), allocatable :: x(:)
+    real(wp) :: began, setup, factor, solve
+    integer :: round
+
+    allocate (x(size(b)))
+    call new_linear_solver(solver, options, error)
+    if (allocated(error)) error stop 1
+    began = wall_time()
+    call solver%setup(matrix)
+    setup = wall_time() - began
+    factor = huge(factor)
+    solve = huge(solve)
+    do round = 1, max(2, min(200, 400000/size(b)))
+      began = wall_time()
+      call solver%factor(matrix, verdict)
+      factor = min(factor, wall_time() - began)
+      began = wall_time()
+      if (verdict%outcome == verdict_converged) call solver%solve(b, x, report)
+      solve = min(solve, wall_time() - began)
+      if (factor + solve > 1.0_wp) exit
+    end do
+    call solver%release()
+    if (all(abs(reference) <= 0.0_wp)) reference = x
+    if (options%method == "umfpack") then
+      print '(a,f34.3,2f10.3,es11.1)', "  umfpack", 1.0e3_wp*[setup, factor, solve], report%residual
+    else
+      print '(i7,3x,a4,f7.2,i6,i4,3f10.3,2es11.1,1x,a)', min(options%ilu_level, 999), options%ordering(:4), &
+        fill_of(options, matrix), &
+        report%iterations, report%restarts, 1.0e3_wp*[setup, factor, solve], report%residual, &
+        maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%reason)//trim(report%reason)
+    end if
+  end subroutine measure
+
+  !> Blocks in the factors against those in the matrix.
+  real(wp) function fill_of(options, matrix)
+    !> The solver's options.
+    type(solver_options_t), intent(in) :: options
+    !> The system.
+    type(block_matrix_t), intent(in) :: matrix
+    type(scaled_system_t) :: system
+    type(error_t), allocatable :: error
+    integer, allocatable :: order(:), fill_start(:), fill_column(:), fill_diagonal(:)
+
+    call find_ordering(trim(options%ordering), matrix, order, error)
+    call system%setup(matrix, order)
+    call level_of_fill(matrix%n, system%matrix%row_start, system%matrix%column, options%ilu_level, fill_start, &
+                       fill_column, fill_diagonal)
+    fill_of = real(size(fill_column), wp)/real(size(matrix%column), wp)
+  end function fill_of
+
+  !> Elastic stiffness of a strip of 175 x 35 x 0.78 mm, clamped at one end, its top nodes at the other end held by stiff
+  !> contact rows as a sheet between tools is; nodes numbered through the thickness, then across, then along.
+  subroutine make_strip(divisions, matrix, b)
+    !> Number of elements along length, width and thickness.
+    integer, intent(in) :: divisions(3)
+    !> The matrix.
+    type(block_matrix_t), intent(out) :: matrix
+    !> A right-hand side.
+    real(wp), allocatable, intent(out) :: b(:)
+    real(wp), parameter :: size_of_strip(3) = [175.0_wp, 35.0_wp, 0.78_wp]
+    integer, allocatable :: connectivity(:, :), position(:, :, :)
+    real(wp) :: stiffness(3, 3, 8, 8)
+    integer :: i, j, k, e, p, q, node, corner(4)
+
+    allocate (connectivity(8, product(divisions)))
+    e = 0
+    do i = 1, divisions(1)
+      do j = 1, divisions(2)
+        do k = 1, divisions(3)
+          e = e + 1
+          corner(1:4) = [number(divisions, i, j, k), number(divisions, i + 1, j, k), &
+                         number(divisions, i + 1, j + 1, k), number(divisions, i, j + 1, k)]
+          connectivity(:, e) = [corner(1:4), corner(1:4) + 1]
+        end do
+      end do
+    end do
+    call new_pattern(matrix, product(divisions + 1), connectivity)
+    call find_positions(matrix, connectivity, position)
+    call brick_stiffness(size_of_strip/real(divisions, wp), stiffness)
+    do e = 1, size(connectivity, 2)
+      do q = 1, 8
+        do p = 1, 8
+          associate (block => matrix%value(:, :, position(p, q, e)))
+            block = block + stiffness(:, :, p, q)
+          end associate
+        end do
+      end do
+    end do
+    allocate (b(3*matrix%n))
+    b = 0.0_wp
+    do j = 1, divisions(2) + 1
+      do k = 1, divisions(3) + 1
+        call hold(matrix, number(divisions, 1, j, k), [1, 2, 3])
+      end do
+    end do
+    do i = divisions(1)/2, divisions(1)/2 + max(1, divisions(1)/10)
+      do j = 1, divisions(2) + 1
+        node = number(divisions, i, j, divisions(3) + 1)
+        call hold(matrix, node, [3])
+        b(3*node) = -1.0e-2_wp
+      end do
+    end do
+    do j = 1, divisions(2) + 1
+      b(3*number(divisions, divisions(1) + 1, j, 1)) = 1.0_wp
+    end do
+
+  end subroutine make_strip
+
+  !> Number of a node of the grid.
+  pure integer function number(divisions, i, j, k)
+    !> Number of elements along length, width and thickness.
+    integer, intent(in) :: divisions(3)
+    !> Place along length, width and thickness.
+    integer, intent(in) :: i, j, k
+
+    number = k + (divisions(3) + 1)*(j - 1 + (divisions(2) + 1)*(i - 1))
+  end function number
+
+  !> Replaces rows of a node by unit rows.
+  subroutine hold(matrix, node, components)
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: matrix
+    !> The node.
+    integer, intent(in) :: node
+    !> The components.
+    integer, intent(in) :: components(:)
+    integer :: c
+
+    matrix%value(components, :, matrix%row_start(node):matrix%row_start(node + 1) - 1) = 0.0_wp
+    do c = 1, size(components)
+      matrix%value(components(c), components(c), matrix%diagonal(node)) = 1.0e3_wp
+    end do
+  end subroutine hold
+
+  !> Stiffness of an elastic brick, shear strains at the Gauss points and volume strain at the middle.
+  subroutine brick_stiffness(edge, stiffness)
+    !> Lengths of its edges, mm.
+    real(wp), intent(in) :: edge(3)
+    !> Row component, column component, row node, column node.
+    real(wp), intent(out) :: stiffness(3, 3, 8, 8)
+    !> Bulk and shear modulus of steel, MPa.
+    real(wp), parameter :: bulk = 175000.0_wp, shear = 80769.0_wp
+    real(wp), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
+                                                        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], wp), [3, 8])
+    real(wp) :: g(3, 8), mean(3, 8), point(3), weight
+    integer :: p, a, b, i, j
+
+    stiffness = 0.0_wp
+    weight = product(edge)/8.0_wp
+    do a = 1, 8
+      mean(:, a) = corner(:, a)/(4.0_wp*edge)
+    end do
+    do p = 1, 8
+      point = corner(:, p)/sqrt(3.0_wp)
+      do a = 1, 8
+        do i = 1, 3
+          g(i, a) = 0.25_wp*corner(i, a)/edge(i)
+          do j = 1, 3
+            if (j /= i) g(i, a) = g(i, a)*(1.0_wp + point(j)*corner(j, a))
+          end do
+        end do
+      end do
+      do b = 1, 8
+        do a = 1, 8
+          do j = 1, 3
+            do i = 1, 3
+              stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*(bulk*mean(i, a)*mean(j, b) &
+                                      + shear*(g(j, a)*g(i, b) - 2.0_wp/3.0_wp*g(i, a)*g(j, b)))
+              if (i == j) stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*shear*dot_product(g(:, a), g(:, b))
+            end do
+          end do
+        end do
+      end do
+    end do
+  end subroutine brick_stiffness
+
+end program benchmark_solvers
