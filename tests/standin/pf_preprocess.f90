@@ -123,10 +123,22 @@ contains
       after = name
     else
       if (lower(name(1:5)) /= "test_") call refuse("the name of a test begins with test_")
-      test = [character(len=64) :: test, name]
+      call add_test(name)
     end if
     awaited = await_nothing
   end subroutine subroutine_line
+
+  !> Adds a name to the list of tests.
+  subroutine add_test(name)
+    !> The name.
+    character(len=*), intent(in) :: name
+    character(len=64), allocatable :: longer(:)
+
+    allocate (longer(size(test) + 1))
+    longer(:size(test)) = test
+    longer(size(longer)) = name
+    call move_alloc(longer, test)
+  end subroutine add_test
 
   !> Looks at a line of plain Fortran.
   subroutine plain_line(word)
