@@ -55,6 +55,7 @@ program pf_preprocess
   if (size(test) == 0) call refuse("no test")
   call write_suite()
   close (unit_out)
+  deallocate (test)
 
 contains
 
