@@ -42,43 +42,64 @@ contains
 
     type(parameter_t) :: nothing(0)
 
-    table = [ &
-      block_row_t("title", help="Free text, line by line; shown in the log.", key=nothing), &
-      block_row_t("include", repeatable=.true., &
-      help="*INCLUDE file: reads another file in this place.", key=nothing), &
-      block_row_t("parameter", repeatable=.true., key=nothing, &
-                  help="name = value; used as ${name} in later values. "// &
-                  "--set name=value on the command line overrides it."), &
-      block_row_t("blank", .true., &
-      help="A structured blank. Defines the node sets x_min x_max y_min y_max z_min z_max all.", &
-                  key=blank_keys()), &
-      block_row_t("mesh", .true., later=.true., &
-      help="A mesh from a file; its groups become node sets.", key=mesh_keys()), &
-      block_row_t("set", .true., .true., help="A node set chosen from the initial coordinates.", &
-      key=set_keys()), &
-      block_row_t("material", .true., .true., .true., help="A material.", key=material_keys()), &
-      block_row_t("tool", .true., .true., help="A rigid tool made of Bezier patches.", &
-      key=tool_keys()), &
-      block_row_t("contact", help="Settings of the contact; needed where there are tools.", &
-      key=contact_keys()), &
-      block_row_t("boundary", .true., .true., help="Nodes held in every phase.", &
-      key=boundary_keys()), &
-      block_row_t("limits", &
-      help="Limits of the predictor, which choose the size of the next increment.", &
-      key=limits_keys()), &
-      block_row_t("newton", help="Settings of the corrector.", key=newton_keys()), &
-      block_row_t("solver", help="Settings of the linear solver.", key=solver_keys()), &
-      block_row_t("phase", .true., .true., .true., key=phase_keys(), &
-                  help="A stage of the process. "// &
-                  "What it does not name stays as it is: tools held, forces and loads kept."), &
-      block_row_t("history", .true., .true., &
-      help="Further columns of history.csv: <name>_ux, _rx, _x and so on.", &
-                  key=history_keys()), &
-      block_row_t("output", help="What is written when.", key=output_keys()), &
-      block_row_t("point", .true., .true., later=.true., &
-      help="A run of a single material point, without a mesh.", &
-                  key=point_keys())]
+    allocate (table(17))
+    call describe(table(1), "title", "once", "Free text, line by line; shown in the log.", nothing)
+    call describe(table(2), "include", "many", "*INCLUDE file: reads another file in this place.", &
+        nothing)
+    call describe(table(3), "parameter", "many", &
+        "name = value; used as ${name} in later values. "// &
+                  "--set name=value on the command line overrides it.", nothing)
+    call describe(table(4), "blank", "named", "A structured blank. Defines the node sets "// &
+                  "x_min x_max y_min y_max z_min z_max all.", blank_keys())
+    call describe(table(5), "mesh", "named later", &
+        "A mesh from a file; its groups become node sets.", mesh_keys())
+    call describe(table(6), "set", "named many", &
+        "A node set chosen from the initial coordinates.", set_keys())
+    call describe(table(7), "material", "named many required", "A material.", material_keys())
+    call describe(table(8), "tool", "named many", "A rigid tool made of Bezier patches.", &
+        tool_keys())
+    call describe(table(9), "contact", "once", &
+        "Settings of the contact; needed where there are tools.", contact_keys())
+    call describe(table(10), "boundary", "named many", "Nodes held in every phase.", &
+        boundary_keys())
+    call describe(table(11), "limits", "once", &
+        "Limits of the predictor, which choose the size of the next "// &
+                  "increment.", limits_keys())
+    call describe(table(12), "newton", "once", "Settings of the corrector.", newton_keys())
+    call describe(table(13), "solver", "once", "Settings of the linear solver.", solver_keys())
+    call describe(table(14), "phase", "named many required", &
+        "A stage of the process. What it does not name "// &
+                  "stays as it is: tools held, forces and loads kept.", phase_keys())
+    call describe(table(15), "history", "named many", &
+        "Further columns of history.csv: <name>_ux, _rx, _x and so "// &
+                  "on.", history_keys())
+    call describe(table(16), "output", "once", "What is written when.", output_keys())
+    call describe(table(17), "point", "named many later", &
+        "A run of a single material point, without a mesh.", &
+                  point_keys())
   end function block_table
+
+  !> Fills the row of a block.
+  pure subroutine describe(row, keyword, properties, help, key)
+    !> The row.
+    type(block_row_t), intent(inout) :: row
+    !> The word after the star, in small letters.
+    character(len=*), intent(in) :: keyword
+    !> Any of the words: named, many (there may be several), required, later (not in this version).
+    character(len=*), intent(in) :: properties
+    !> One line of help.
+    character(len=*), intent(in) :: help
+    !> Its keys.
+    type(parameter_t), intent(in) :: key(:)
+
+    row%keyword = keyword
+    row%named = index(properties, "named") > 0
+    row%repeatable = index(properties, "many") > 0
+    row%required = index(properties, "required") > 0
+    row%later = index(properties, "later") > 0
+    row%help = help
+    row%key = key
+  end subroutine describe
 
   !> Keys of `*BLANK`.
   function blank_keys() result(key)
