@@ -1,0 +1,315 @@
+!> One step of the stress: elastic, or brought back to the yield surface by backward Euler, for any
+!> criterion, hardening law and back-stresses. Unknowns are the effective stress xi = T - X and the
+!> plastic increment dp:
+!>
+!>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
+!>
+!> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and
+!> its consistent tangent). Without a dependence of X or Y on xi the matrix is symmetric and its
+!> 6x6 block C^-1 + dp H positive definite: it is inverted without pivoting, and the last unknown
+!> eliminated. The inverse of the last iteration gives the last correction and the tangent.
+module dd3_material_return_mapping
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : solve_small
+  use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
+                                       add_back_stresses
+  use dd3_material_elasticity, only : elastic_strain, elastic_stress
+  use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
+  implicit none
+  private
+  public :: step_t, take_step, iteration_limit
+
+  !> Most Newton iterations in a step, and most halvings in one of them.
+  integer, parameter :: iteration_limit = 30, halving_limit = 8
+  !> Strain that weighs as much as a relative error of one in the yield condition.
+  real(wp), parameter :: strain_weight = 1.0e-3_wp
+  !> Norm below which one more correction ends the iteration.
+  real(wp), parameter :: tolerance = 1.0e-8_wp
+  !> Relative excess of the trial stress over the flow stress that still counts as elastic.
+  real(wp), parameter :: elastic_margin = 1.0e-12_wp
+  !> Relative excess below which the iteration starts by a step along the trial stress' normal.
+  real(wp), parameter :: near_surface = 0.5_wp
+
+  !> A step, and what its derivatives need.
+  type :: step_t
+    !> Whether it converged; whether plastic flow took place.
+    logical :: converged, plastic
+    !> Newton iterations.
+    integer :: iterations
+    !> Norm of the residual; equivalent trial stress over flow stress.
+    real(wp) :: norm, overstress
+    !> Trial stress and stress at the end, MPa.
+    real(wp) :: trial(6), stress(6)
+    !> Plastic increment.
+    real(wp) :: increment
+    !> Residual: strain, and relative excess of stress times the flow stress, MPa.
+    real(wp) :: residual(6), excess
+    !> Criterion, flow stress and back-stress at the end.
+    type(flow_direction_t) :: direction
+    !> See `direction`.
+    type(flow_response_t) :: flow
+    !> See `direction`.
+    type(back_response_t) :: back
+    !> Blocks of the inverse matrix: d xi/d strain, d xi/d stress, dp/d strain, dp/d stress.
+    real(wp) :: block(6, 6), column(6), row(6), corner
+  end type step_t
+
+contains
+
+  !> Takes a step from a state with a strain increment.
+  pure subroutine take_step(laws, stress, internal, strain, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Stress at the start, MPa.
+    real(wp), intent(in) :: stress(6)
+    !> Internal variables at the start.
+    real(wp), intent(in) :: internal(laws%n_internal)
+    !> Strain increment.
+    real(wp), intent(in) :: strain(6)
+    !> The step.
+    type(step_t), intent(out) :: step
+    real(wp) :: effective(6), value
+
+    step%trial = stress + elastic_stress(laws%elasticity, strain)
+    effective = step%trial
+    if (laws%kinematic) effective = effective - back_stress_of(laws, internal)
+    value = laws%criterion%value(effective)
+    call flow_response_of(laws, internal, step%flow)
+    step%overstress = value/step%flow%value
+    step%iterations = 0
+    step%norm = 0.0_wp
+    step%increment = 0.0_wp
+    step%plastic = value > step%flow%value*(1 + elastic_margin)
+    step%converged = .not. step%plastic
+    step%stress = step%trial
+    if (.not. step%plastic) return
+    if (step%overstress < 1 + near_surface) then
+      call start_along_normal(laws, effective, step)
+      call iterate(laws, internal, step)
+      if (step%converged) return
+      call flow_response_of(laws, internal, step%flow)
+    end if
+    call start_along_radius(laws, effective, value, step)
+    call iterate(laws, internal, step)
+  end subroutine take_step
+
+  !> Start near the surface: the first Newton iteration from the trial stress.
+  pure subroutine start_along_normal(laws, effective, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Trial stress less back-stress, MPa.
+    real(wp), intent(in) :: effective(6)
+    !> The step.
+    type(step_t), intent(inout) :: step
+    real(wp) :: value, normal(6), flow(6)
+
+    call laws%criterion%gradient(effective, value, normal)
+    flow = elastic_stress(laws%elasticity, normal)
+    step%increment = (value - step%flow%value)/(dot_product(normal, flow) + max(step%flow%slope, 0.0_wp))
+    step%direction%stress = effective - step%increment*flow
+  end subroutine start_along_normal
+
+  !> Start far from the surface: on the line to the origin, as if the material were isotropic.
+  pure subroutine start_along_radius(laws, effective, value, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Trial stress less back-stress, MPa.
+    real(wp), intent(in) :: effective(6)
+    !> Its equivalent stress, MPa.
+    real(wp), intent(in) :: value
+    !> The step.
+    type(step_t), intent(inout) :: step
+    real(wp) :: modulus, mean
+
+    modulus = 3*laws%elasticity%shear
+    step%increment = (value - step%flow%value)/(modulus + max(step%flow%slope, 0.0_wp))
+    mean = (effective(1) + effective(2) + effective(3))/3
+    step%direction%stress = (1 - modulus*step%increment/value)*effective
+    step%direction%stress(1:3) = step%direction%stress(1:3) + mean*modulus*step%increment/value
+  end subroutine start_along_radius
+
+  !> Newton's method from the start in `step%direction%stress` and `step%increment`.
+  pure subroutine iterate(laws, internal, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: internal(laws%n_internal)
+    !> The step.
+    type(step_t), intent(inout) :: step
+    real(wp) :: change(6), change_of_increment
+    logical :: regular, accepted
+    integer :: iteration
+
+    step%converged = .false.
+    call evaluate(laws, internal, step%direction%stress, step%increment, step)
+    do iteration = 1, iteration_limit
+      step%iterations = step%iterations + 1
+      if (laws%symmetric) then
+        call invert_symmetric(laws, step, regular)
+      else
+        call invert_general(laws, step, regular)
+      end if
+      if (.not. regular) return
+      change = -matmul(step%block, step%residual) - step%excess*step%column
+      change_of_increment = -dot_product(step%row, step%residual) - step%excess*step%corner
+      if (step%norm < tolerance) then
+        call finish(laws, internal, change, change_of_increment, step)
+        return
+      end if
+      call search_along(laws, internal, change, change_of_increment, step, accepted)
+      if (.not. accepted) return
+    end do
+  end subroutine iterate
+
+  !> Criterion, laws and residual at an effective stress and a plastic increment.
+  pure subroutine evaluate(laws, internal, stress, increment, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: internal(laws%n_internal)
+    !> Effective stress, MPa; plastic increment.
+    real(wp), intent(in) :: stress(6), increment
+    !> The step.
+    type(step_t), intent(inout) :: step
+
+    call laws%criterion%second_derivative(stress, step%direction)
+    call laws%hardening%flow_stress(internal(1), internal(laws%first:laws%last), increment, &
+                                    step%direction, step%flow)
+    step%increment = increment
+    step%stress = stress
+    if (laws%kinematic) then
+      call add_back_stresses(laws, internal, increment, step%direction, step%back)
+      step%stress = stress + step%back%value
+    end if
+    step%residual = elastic_strain(laws%elasticity, step%stress - step%trial) &
+                    + increment*step%direction%gradient
+    step%excess = step%direction%equivalent - step%flow%value
+    step%norm = sqrt(dot_product(step%residual, step%residual)/strain_weight**2 &
+                     + (step%excess/step%flow%value)**2)
+  end subroutine evaluate
+
+  !> The longest of the halved changes that lowers the residual.
+  pure subroutine search_along(laws, internal, change, change_of_increment, step, accepted)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: internal(laws%n_internal)
+    !> Newton's change of the effective stress, MPa, and of the plastic increment.
+    real(wp), intent(in) :: change(6), change_of_increment
+    !> The step.
+    type(step_t), intent(inout) :: step
+    !> Whether one was found.
+    logical, intent(out) :: accepted
+    real(wp) :: stress(6), increment, norm, part
+    integer :: halving
+
+    stress = step%direction%stress
+    increment = step%increment
+    norm = step%norm
+    part = 1.0_wp
+    do halving = 0, halving_limit
+      call evaluate(laws, internal, stress + part*change, &
+                    max(0.0_wp, increment + part*change_of_increment), step)
+      accepted = step%norm < norm
+      if (accepted) return
+      part = 0.5_wp*part
+    end do
+  end subroutine search_along
+
+  !> Applies the last correction.
+  pure subroutine finish(laws, internal, change, change_of_increment, step)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: internal(laws%n_internal)
+    !> Newton's change of the effective stress, MPa, and of the plastic increment.
+    real(wp), intent(in) :: change(6), change_of_increment
+    !> The step.
+    type(step_t), intent(inout) :: step
+
+    if (laws%symmetric) then
+      step%stress = step%stress + change
+      step%increment = max(0.0_wp, step%increment + change_of_increment)
+    else
+      call evaluate(laws, internal, step%direction%stress + change, &
+                    max(0.0_wp, step%increment + change_of_increment), step)
+    end if
+    step%converged = .true.
+  end subroutine finish
+
+  !> Inverse of the symmetric matrix [C^-1 + dp H, V; V, -Y'].
+  pure subroutine invert_symmetric(laws, step, regular)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> The step.
+    type(step_t), intent(inout) :: step
+    !> Whether the matrix could be inverted.
+    logical, intent(out) :: regular
+    real(wp) :: pivot, factor, column(6), modulus
+    integer :: j, k
+
+    step%block = laws%elasticity%compliance + step%increment*step%direction%second
+    regular = .false.
+    do k = 1, 6
+      pivot = step%block(k, k)
+      if (.not. pivot > 0.0_wp) return
+      pivot = 1/pivot
+      column = step%block(:, k)
+      column(k) = 0.0_wp
+      do j = 1, 6
+        factor = pivot*step%block(k, j)
+        step%block(:, j) = step%block(:, j) - factor*column
+        step%block(k, j) = factor
+      end do
+      step%block(:, k) = -pivot*column
+      step%block(k, k) = pivot
+    end do
+    step%row = matmul(step%block, step%direction%gradient)
+    modulus = dot_product(step%row, step%direction%gradient) + step%flow%slope
+    regular = modulus > 0.0_wp
+    if (.not. regular) return
+    step%corner = -1/modulus
+    step%column = step%row/modulus
+    do j = 1, 6
+      step%block(:, j) = step%block(:, j) - step%row(j)*step%column
+    end do
+    step%row = step%column
+  end subroutine invert_symmetric
+
+  !> Inverse of [C^-1 (I + dX/dxi) + dp H, C^-1 dX/dp + V; V - dY/dxi, -dY/dp], made of order one
+  !> by twice the shear modulus before it is factorised.
+  pure subroutine invert_general(laws, step, regular)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> The step.
+    type(step_t), intent(inout) :: step
+    !> Whether the matrix could be inverted.
+    logical, intent(out) :: regular
+    real(wp) :: matrix(7, 7), inverse(7, 7), scale
+    integer :: j
+
+    scale = 2*laws%elasticity%shear
+    matrix(1:6, 1:6) = laws%elasticity%compliance + step%increment*step%direction%second
+    matrix(1:6, 7) = step%direction%gradient
+    if (laws%kinematic) then
+      do j = 1, 6
+        matrix(1:6, j) = matrix(1:6, j) + elastic_strain(laws%elasticity, step%back%gradient(:, j))
+      end do
+      matrix(1:6, 7) = matrix(1:6, 7) + elastic_strain(laws%elasticity, step%back%slope)
+    end if
+    matrix(1:6, 1:6) = scale*matrix(1:6, 1:6)
+    matrix(7, 1:6) = step%direction%gradient - step%flow%gradient
+    matrix(7, 7) = -step%flow%slope/scale
+    inverse = 0.0_wp
+    do j = 1, 7
+      inverse(j, j) = 1.0_wp
+    end do
+    call solve_small(7, 7, matrix, inverse, regular)
+    if (.not. regular) return
+    step%block = scale*inverse(1:6, 1:6)
+    step%column = inverse(1:6, 7)
+    step%row = inverse(7, 1:6)
+    step%corner = inverse(7, 7)/scale
+  end subroutine invert_general
+
+end module dd3_material_return_mapping

@@ -1,0 +1,98 @@
+!> The isotropic criterion of R. von Mises (1913): sb = sqrt(3/2 s:s), s the deviator of the stress.
+module dd3_material_yield_von_mises
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t
+  use dd3_linalg_tensor, only : kelvin_deviator, kelvin_deviator_projector
+  use dd3_material_description, only : description_t
+  use dd3_material_flow, only : flow_direction_t
+  use dd3_material_yield_criterion, only : yield_criterion_t
+  implicit none
+  private
+  public :: von_mises_t
+
+  !> The criterion; it has no parameters.
+  type, extends(yield_criterion_t) :: von_mises_t
+  contains
+    procedure, nopass :: describe
+    procedure :: set
+    procedure :: value
+    procedure :: gradient
+    procedure :: second_derivative
+  end type von_mises_t
+
+contains
+
+  !> Says its name, source and parameters.
+  subroutine describe(description)
+    !> What the law says of itself.
+    type(description_t), intent(out) :: description
+
+    description%name = "von_mises"
+    description%title = "isotropic, quadratic"
+    description%source = "R. von Mises, Nachr. Ges. Wiss. Goettingen (1913) 582-592"
+    allocate (description%rows(0), description%example(0))
+  end subroutine describe
+
+  !> Takes nothing.
+  subroutine set(self, values)
+    !> The criterion.
+    class(von_mises_t), intent(inout) :: self
+    !> No values.
+    type(law_value_t), intent(in) :: values(:)
+
+    associate (unchanged => self, unused => values)
+    end associate
+  end subroutine set
+
+  !> The equivalent stress.
+  pure real(wp) function value(self, stress)
+    !> The criterion.
+    class(von_mises_t), intent(in) :: self
+    !> Stress, MPa.
+    real(wp), intent(in) :: stress(6)
+    real(wp) :: s(6)
+
+    associate (unused => self)
+    end associate
+    s = kelvin_deviator(stress)
+    value = sqrt(1.5_wp*dot_product(s, s))
+  end function value
+
+  !> The equivalent stress and its gradient.
+  pure subroutine gradient(self, stress, value, normal)
+    !> The criterion.
+    class(von_mises_t), intent(in) :: self
+    !> Stress, MPa.
+    real(wp), intent(in) :: stress(6)
+    !> Equivalent stress, MPa.
+    real(wp), intent(out) :: value
+    !> Its gradient.
+    real(wp), intent(out) :: normal(6)
+
+    value = self%value(stress)
+    normal = 0.0_wp
+    if (value > 0.0_wp) normal = (1.5_wp/value)*kelvin_deviator(stress)
+  end subroutine gradient
+
+  !> The equivalent stress with both derivatives.
+  pure subroutine second_derivative(self, stress, direction)
+    !> The criterion.
+    class(von_mises_t), intent(in) :: self
+    !> Stress, MPa.
+    real(wp), intent(in) :: stress(6)
+    !> The stress, its equivalent stress and the derivatives.
+    type(flow_direction_t), intent(out) :: direction
+    real(wp) :: factor
+    integer :: j
+
+    direction%stress = stress
+    call self%gradient(stress, direction%equivalent, direction%gradient)
+    factor = 0.0_wp
+    if (direction%equivalent > 0.0_wp) factor = 1/direction%equivalent
+    do j = 1, 6
+      direction%second(:, j) = factor*(1.5_wp*kelvin_deviator_projector(:, j) &
+                                       - direction%gradient(j)*direction%gradient)
+    end do
+  end subroutine second_derivative
+
+end module dd3_material_yield_von_mises
