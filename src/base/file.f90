@@ -17,8 +17,12 @@ module dd3_base_file
   integer, parameter :: buffer_size = 65536
   !> Longest time a line waits in the buffer while others follow, s.
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Error numbers of Linux: interrupted call, file exists.
-  integer(c_int), parameter :: eintr = 4, eexist = 17
+  !> Error numbers of Linux: interrupted call, file exists, too large, disk full, quota used up.
+  integer(c_int), parameter :: eintr = 4, eexist = 17, efbig = 27, enospc = 28, edquot = 122
+  !> Linux' limit on the size of a file, as `getrlimit` knows it.
+  integer(c_int), parameter :: rlimit_fsize = 1
+  !> Reserving room leaves the size of the file as it is (Linux).
+  integer(c_int), parameter :: keep_size = 1
 
   !> A text file open for writing.
   type :: file_t
@@ -41,6 +45,8 @@ module dd3_base_file
     procedure :: attach => file_attach
     procedure :: put => file_put
     procedure :: flush => file_flush
+    procedure :: reserve => file_reserve
+    procedure :: release => file_release
     procedure :: close => file_close
   end type file_t
 
@@ -64,11 +70,30 @@ module dd3_base_file
       integer(c_int), value :: descriptor
       integer(c_long), value :: length
     end function posix_ftruncate
+    !> lseek(2).
+    integer(c_long) function posix_lseek(descriptor, offset, whence) bind(c, name="lseek")
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor, whence
+      integer(c_long), value :: offset
+    end function posix_lseek
     !> close(2).
     integer(c_int) function posix_close(descriptor) bind(c, name="close")
       import :: c_int
       integer(c_int), value :: descriptor
     end function posix_close
+    !> fallocate(2).
+    integer(c_int) function linux_fallocate(descriptor, mode, offset, length) &
+      bind(c, name="fallocate")
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor, mode
+      integer(c_long), value :: offset, length
+    end function linux_fallocate
+    !> getrlimit(2).
+    integer(c_int) function posix_getrlimit(resource, limits) bind(c, name="getrlimit")
+      import :: c_int, c_long
+      integer(c_int), value :: resource
+      integer(c_long), intent(out) :: limits(2)
+    end function posix_getrlimit
     !> mkdir(2).
     integer(c_int) function posix_mkdir(path, mode) bind(c, name="mkdir")
       import :: c_char, c_int
@@ -197,6 +222,44 @@ contains
     if (end_of_line > 0) self%whole = self%length + end_of_line
     self%length = self%length + len(text)
   end subroutine count_written
+
+  !> Reserves room on the disk for what another library is about to write behind the file's end. On
+  !> a file system that cannot reserve, the writes themselves tell.
+  subroutine file_reserve(self, size, more, error)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    !> Its size now, and how much it may grow.
+    integer(i8), intent(in) :: size, more
+    !> Says why there is no room.
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_long) :: limits(2)
+    integer(c_int) :: cause
+
+    cause = 0
+    if (posix_getrlimit(rlimit_fsize, limits) == 0) then
+      if (limits(1) >= 0 .and. limits(1) < size + more) cause = efbig
+    end if
+    if (cause == 0) then
+      if (linux_fallocate(self%descriptor, keep_size, int(size, c_long), &
+                          int(more, c_long)) /= 0) cause = errno()
+    end if
+    if (cause == efbig .or. cause == enospc .or. cause == edquot) then
+      call self%release()
+      call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
+    end if
+  end subroutine file_reserve
+
+  !> Gives back the room that is reserved and not used.
+  subroutine file_release(self)
+    !> The file.
+    class(file_t), intent(inout) :: self
+    integer(c_int), parameter :: from_end = 2
+    integer(c_long) :: size
+    integer(c_int) :: ignored
+
+    size = posix_lseek(self%descriptor, 0_c_long, from_end)
+    if (size >= 0) ignored = posix_ftruncate(self%descriptor, size)
+  end subroutine file_release
 
   !> Writes what waits and closes the file; nothing happens where it is closed.
   subroutine file_close(self, error)

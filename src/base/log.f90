@@ -119,7 +119,7 @@ contains
     call move_alloc(error, self%failure)
   end subroutine log_note
 
-  !> Rewrites the line in place; an empty text wipes it. Nothing happens where the screen is no terminal.
+  !> Rewrites the line in place; an empty text wipes it. Only a terminal has such a line.
   subroutine log_live(self, text)
     !> The log.
     class(log_t), intent(inout) :: self

@@ -1,6 +1,6 @@
-!> The table of the output fields: name, where it lives, components, unit, meaning, and what fills
-!> it. A field of the integration points is written twice: its mean at the cells, extrapolated at the
-!> nodes.
+!> The table of the output fields: name, place, components, unit, meaning, and what fills them.
+!> A field of the integration points is written twice: its mean at the cells, and extrapolated at
+!> the nodes.
 module dd3_output_field_table
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : tensor_from_kelvin
@@ -115,7 +115,7 @@ contains
 
     value = 0.0_wp
     do i = 1, model%n_contact
-      value(:, model%contact_node(i)) = -state%lambda(:, i)
+      value(:, model%contact_node(i)) = 0.0_wp - state%lambda(:, i)
     end do
   end subroutine fill_contact_force
 

@@ -3,7 +3,7 @@
 !> an order that leaves the file readable wherever the program is killed: data, places of the data,
 !> flush, number of steps, flush. Readers trust the number of steps.
 module dd3_output_fields
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_file, only : file_t
   use dd3_model_model, only : model_t
@@ -13,7 +13,8 @@ module dd3_output_fields
                               rewrite_attribute, flush_hdf5, kind_real, kind_long, kind_int, &
                               kind_byte
   use dd3_output_record, only : record_t
-  use hdf5, only : hid_t, h5fcreate_f, h5fclose_f, h5gclose_f, h5aclose_f, H5F_ACC_TRUNC_F
+  use hdf5, only : hid_t, hsize_t, h5fcreate_f, h5fclose_f, h5fget_filesize_f, h5gclose_f, &
+                   h5aclose_f, H5F_ACC_TRUNC_F
   implicit none
   private
   public :: field_record_t
@@ -22,6 +23,9 @@ module dd3_output_fields
   integer, parameter :: step_chunk = 64
   !> Steps at equal travel are set apart by this much, mm: readers want times that grow.
   real(wp), parameter :: least_time = 1.0e-6_wp
+
+  !> Bytes that the empty file, and the indices of a step, may take at most.
+  integer(i8), parameter :: first_room = 500000_i8, step_room = 300000_i8
 
   !> Where a field goes: its values, and where each step's begin.
   type :: target_t
@@ -49,8 +53,8 @@ module dd3_output_fields
     integer, private :: n_step = 0, last_increment = -1
     !> Time of the last one.
     real(wp), private :: last_time = -huge(1.0_wp)
-    !> Name of the file.
-    character(len=:), allocatable, private :: path
+    !> The same file, to reserve room in it.
+    type(file_t), private :: guard
     !> Elements that share each node.
     integer, allocatable, private :: sharing(:)
   contains
@@ -71,21 +75,21 @@ contains
     character(len=*), intent(in) :: directory
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
-    type(file_t) :: probe
+    character(len=:), allocatable :: path
     integer :: status
     logical :: ok
 
-    self%path = directory//"/fields.vtkhdf"
+    path = directory//"/fields.vtkhdf"
     self%n_step = 0
     self%last_increment = -1
     self%last_time = -huge(1.0_wp)
-    call probe%create(self%path, error)
+    call self%guard%create(path, error)
     if (allocated(error)) return
-    call probe%close(error)
+    call self%guard%reserve(0_i8, first_room + 8_i8*size(model%connectivity), error)
     if (allocated(error)) return
     call start_hdf5(ok)
     if (ok) then
-      call h5fcreate_f(self%path, H5F_ACC_TRUNC_F, self%file, status)
+      call h5fcreate_f(path, H5F_ACC_TRUNC_F, self%file, status)
       ok = status >= 0
     end if
     self%field = field_table()
@@ -305,6 +309,8 @@ contains
     logical :: ok
 
     if (self%file < 0 .or. state%increment == self%last_increment) return
+    call reserve_step(self, model, error)
+    if (allocated(error)) return
     ok = .true.
     call append(self%points, reshape(state%x, [size(state%x)]), ok)
     i_cell = 0
@@ -317,6 +323,7 @@ contains
     end do
     call append_step(self, state, ok)
     call flush_hdf5(self%file, ok)
+    call append_time(self, state%travel, ok)
     call rewrite_attribute(self%step_count, [self%n_step + 1], ok)
     call flush_hdf5(self%file, ok)
     if (ok) then
@@ -325,6 +332,30 @@ contains
       call give_up(self, error)
     end if
   end subroutine fields_write
+
+  !> Reserves room for a step: a full disk is found before the file is touched, which stays whole.
+  subroutine reserve_step(self, model, error)
+    !> The record.
+    type(field_record_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Says why there is no room.
+    type(error_t), allocatable, intent(out) :: error
+    integer(hsize_t) :: length
+    integer(i8) :: more
+    integer :: i, status
+
+    call h5fget_filesize_f(self%file, length, status)
+    if (status < 0) return
+    more = step_room + self%points%data%room(model%n_node)
+    do i = 1, size(self%at_node)
+      more = more + self%at_node(i)%data%room(model%n_node)
+    end do
+    do i = 1, size(self%at_cell)
+      more = more + self%at_cell(i)%data%room(model%n_element)
+    end do
+    call self%guard%reserve(int(length, i8), more, error)
+  end subroutine reserve_step
 
   !> Adds a field of the integration points.
   subroutine append_points(self, model, state, i, i_cell, ok)
@@ -414,11 +445,7 @@ contains
     type(state_t), intent(in) :: state
     !> Whether all went well so far; nothing is done where not.
     logical, intent(inout) :: ok
-    real(wp) :: time
 
-    time = state%travel
-    if (self%n_step > 0) time = max(time, self%last_time + least_time)
-    call self%time%append_reals([time], ok)
     call self%first_part%append_integers([0], ok)
     call self%parts%append_integers([1], ok)
     call self%first_cell%append_integers([0], ok)
@@ -431,20 +458,38 @@ contains
       call self%tool%append_reals(reshape(state%tool_displacement, &
                                           [size(state%tool_displacement)]), ok)
     end if
-    self%last_time = time
     self%last_increment = state%increment
   end subroutine append_step
 
-  !> Closes what can be closed and says that the file cannot be written.
+  !> Adds the step's time. It comes last: readers of VTK 9 take all times there are, into room for
+  !> the number of steps they were told.
+  subroutine append_time(self, travel, ok)
+    !> The record.
+    type(field_record_t), intent(inout) :: self
+    !> Path of the controlling tools, mm.
+    real(wp), intent(in) :: travel
+    !> Whether all went well so far; nothing is done where not.
+    logical, intent(inout) :: ok
+
+    if (self%n_step == 0) then
+      self%last_time = travel
+    else
+      self%last_time = max(travel, self%last_time + least_time)
+    end if
+    call self%time%append_reals([self%last_time], ok)
+  end subroutine append_time
+
+  !> Leaves the file as it is on the disk, with the steps flushed before, and says that it cannot be
+  !> written. Closing it would write on and might spoil these.
   subroutine give_up(self, error)
     !> The record.
     type(field_record_t), intent(inout) :: self
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
-    logical :: ok
 
-    call close_all(self, ok)
-    call fatal_error(error, "cannot write '"//self%path//"': the disk is full or cannot be reached")
+    self%file = -1
+    call fatal_error(error, "cannot write '"//self%guard%path &
+                     //"': the disk is full or cannot be reached")
   end subroutine give_up
 
   !> Closes the file.
@@ -457,7 +502,7 @@ contains
 
     if (self%file < 0) return
     call close_all(self, ok)
-    if (.not. ok) call fatal_error(error, "cannot write '"//self%path//"': the disk is full")
+    if (.not. ok) call give_up(self, error)
   end subroutine fields_close
 
   !> Closes all datasets and the file.
@@ -466,6 +511,7 @@ contains
     class(field_record_t), intent(inout) :: self
     !> Whether the file is whole.
     logical, intent(out) :: ok
+    type(error_t), allocatable :: ignored
     integer :: status
 
     if (allocated(self%at_node)) call close_targets(self%at_node)
@@ -487,6 +533,8 @@ contains
     if (self%file >= 0) call h5fclose_f(self%file, status)
     self%file = -1
     ok = status >= 0
+    call self%guard%release()
+    call self%guard%close(ignored)
   end subroutine close_all
 
   !> Closes the datasets of fields.

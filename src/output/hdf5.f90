@@ -2,7 +2,7 @@
 !> killed program when data, flush, number of steps, flush follow each other in this order.
 module dd3_output_hdf5
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, i8
   use hdf5, only : hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5screate_simple_f, &
                    h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, &
                    h5dwrite_f, h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, &
@@ -30,17 +30,22 @@ module dd3_output_hdf5
     integer :: components = 1
     !> Whether a row of one number still has an index of its own.
     logical :: table = .false.
-    !> Rows so far.
-    integer(hsize_t) :: rows = 0
+    !> Rows so far, and rows that are stored together.
+    integer(hsize_t) :: rows = 0, chunk = 1
   contains
     procedure :: create => series_create
     procedure :: append_reals => series_append_reals
     procedure :: append_integers => series_append_integers
     procedure :: describe => series_describe
+    procedure :: room => series_room
     procedure :: close => series_close
   end type series_t
 
   interface
+    !> Keeps the library from touching its files once more when the program ends.
+    integer(c_int) function h5_dont_atexit() bind(c, name="H5dont_atexit")
+      import :: c_int
+    end function h5_dont_atexit
     !> setenv(3).
     integer(c_int) function c_setenv(name, value, overwrite) bind(c, name="setenv")
       import :: c_char, c_int
@@ -51,7 +56,8 @@ module dd3_output_hdf5
 
 contains
 
-  !> Readies the library: it keeps quiet, and locks no file, so that a run can be looked at.
+  !> Readies the library: it keeps quiet, and locks no file, so that a run can be looked at. Files
+  !> that failed must not be touched when the program ends: that would spoil them, or crash.
   subroutine start_hdf5(ok)
     !> Whether all went well.
     logical, intent(out) :: ok
@@ -59,6 +65,7 @@ contains
     integer(c_int) :: set
 
     set = c_setenv("HDF5_USE_FILE_LOCKING"//c_null_char, "FALSE"//c_null_char, 0_c_int)
+    set = h5_dont_atexit()
     call h5open_f(status)
     ok = status >= 0
     if (ok) call h5eset_auto_f(0, status)
@@ -94,7 +101,8 @@ contains
     size_chunk = size_now
     size_now(rank) = 0
     size_most(rank) = H5S_UNLIMITED_F
-    size_chunk(rank) = int(max(1, min(chunk, largest_chunk)), hsize_t)
+    self%chunk = int(max(1, min(chunk, largest_chunk)), hsize_t)
+    size_chunk(rank) = self%chunk
     call h5screate_simple_f(rank, size_now(:rank), space, status, size_most(:rank))
     ok = status >= 0
     if (ok) call h5pcreate_f(H5P_DATASET_CREATE_F, plist, status)
@@ -218,6 +226,16 @@ contains
     call text_attribute(self%id, "unit", unit, ok)
     call text_attribute(self%id, "description", description, ok)
   end subroutine series_describe
+
+  !> Bytes that new rows may take on the disk at most.
+  pure integer(i8) function series_room(self, more)
+    !> The dataset.
+    class(series_t), intent(in) :: self
+    !> Number of rows to come.
+    integer, intent(in) :: more
+
+    series_room = ((more - 1)/self%chunk + 2)*self%chunk*self%components*8 + 4096
+  end function series_room
 
   !> Closes a dataset.
   subroutine series_close(self)

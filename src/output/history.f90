@@ -1,6 +1,6 @@
 !> history.csv: travel, tools' displacements and forces, and the quantities of the followed node
-!> sets. One row for the initial state and one for every n-th accepted increment; the last state of a
-!> phase and of the run is always there.
+!> sets. One row for the initial state and one for every n-th accepted increment; the last state of
+!> a phase and of the run is always there.
 module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
