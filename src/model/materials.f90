@@ -1,0 +1,121 @@
+!> Materials from the case: the laws as written, checked against the registries, every problem shown where it stands.
+module dd3_model_materials
+  use dd3_base_error, only : error_list_t, error_t, location_t
+  use dd3_base_parameter, only : law_value_t, parameter_t
+  use dd3_input_case, only : case_t, law_spec_t, material_spec_t
+  use dd3_input_law, only : check_law_name, check_law_values
+  use dd3_material_check, only : check_law, known_laws, law_backstress, law_hardening, law_rows, law_yield
+  use dd3_material_description, only : law_choice_t, problem_t
+  use dd3_material_material, only : new_material
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: new_materials
+
+  !> What the kinds of laws are called in a message.
+  character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", "hardening law", &
+                                                  "back-stress law"]
+
+contains
+
+  !> Makes the materials; incomplete where errors were added.
+  subroutine new_materials(model, case, errors)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: m, n
+
+    n = size(case%material)
+    allocate (model%material(n), model%material_name(n), model%axes(3, 3, n))
+    model%n_internal = 1
+    do m = 1, n
+      model%material_name(m) = case%material(m)%name
+      model%axes(:, :, m) = case%material(m)%frame
+      call make_material(model, m, case%material(m), errors)
+      model%n_internal = max(model%n_internal, model%material(m)%n_internal)
+    end do
+  end subroutine new_materials
+
+  !> Makes one material.
+  subroutine make_material(model, m, spec, errors)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> Number of the material.
+    integer, intent(in) :: m
+    !> The material as written.
+    type(material_spec_t), intent(in) :: spec
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    type(law_choice_t) :: yield, hardening
+    type(law_choice_t), allocatable :: backstress(:)
+    type(error_t), allocatable :: error
+    integer :: found, i
+
+    found = errors%count
+    call choose(law_yield, spec%yield, yield, errors)
+    call choose(law_hardening, spec%hardening, hardening, errors)
+    allocate (backstress(size(spec%backstress)))
+    do i = 1, size(backstress)
+      call choose(law_backstress, spec%backstress(i), backstress(i), errors)
+    end do
+    if (errors%count > found) return
+    call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, error)
+    if (allocated(error)) call errors%push_input(spec%source%opened, error%message)
+  end subroutine make_material
+
+  !> Checks a law as written and takes its values.
+  subroutine choose(kind, spec, choice, errors)
+    !> One of the `law_*` values.
+    integer, intent(in) :: kind
+    !> The law as written.
+    type(law_spec_t), intent(in) :: spec
+    !> The law with its values.
+    type(law_choice_t), intent(out) :: choice
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=24), allocatable :: names(:)
+    type(parameter_t), allocatable :: rows(:)
+    type(problem_t), allocatable :: problems(:)
+    integer :: position, found, i
+
+    found = errors%count
+    call known_laws(kind, names)
+    call check_law_name(spec, trim(kind_name(kind)), names, position, errors)
+    if (position == 0) return
+    choice%name = names(position)
+    call law_rows(kind, names(position), rows)
+    call check_law_values(spec, rows, choice%values, errors)
+    if (errors%count > found) return
+    call check_law(kind, choice%name, choice%values, problems)
+    do i = 1, size(problems)
+      call errors%push_input(problem_place(spec, choice%values, problems(i)%index), trim(problems(i)%message), &
+                             trim(problems(i)%expected))
+    end do
+  end subroutine choose
+
+  !> Where the value is written that a problem speaks of; the law's name where it speaks of the law as a whole.
+  function problem_place(spec, values, index) result(place)
+    !> The law as written.
+    type(law_spec_t), intent(in) :: spec
+    !> Its values in the order of its rows.
+    type(law_value_t), intent(in) :: values(:)
+    !> Position among the values, or 0.
+    integer, intent(in) :: index
+    type(location_t) :: place
+
+    integer :: i
+
+    place = spec%at
+    if (index == 0) return
+    do i = 1, size(spec%parameter)
+      if (spec%parameter(i)%key == values(index)%name) place = spec%parameter(i)%at
+    end do
+  end function problem_place
+
+end module dd3_model_materials

@@ -1,0 +1,78 @@
+!> What stays constant in a run: mesh, element table, materials, tools, contact candidates, supports and phases.
+module dd3_model_model
+  use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t
+  use dd3_material_material, only : material_t
+  use dd3_contact_tool, only : tool_t
+  use dd3_model_phase, only : phase_t
+  implicit none
+  private
+  public :: model_t, history_set_t, output_t
+
+  !> A node set whose quantities go into history.csv.
+  type :: history_set_t
+    !> Name of the block, the prefix of its columns.
+    character(len=:), allocatable :: name
+    !> Nodes of the set.
+    integer, allocatable :: node(:)
+    !> Which quantities are written.
+    logical :: displacement = .false., reaction = .false., position = .false.
+  end type history_set_t
+
+  !> What is written, and how often.
+  type :: output_t
+    !> A row of history.csv every so many increments.
+    integer :: history_every = 1
+    !> Fields every so many mm of travel of the controlling tool in its phase; 0 for not so.
+    real(wp) :: fields_every = 0.0_wp
+    !> Fields at these travels in the phase, mm, growing.
+    real(wp), allocatable :: fields_at(:)
+    !> Fields every so many increments; 0 for not so.
+    integer :: fields_increments = 0
+  end type output_t
+
+  !> The model of a job.
+  type :: model_t
+    !> Title of the job.
+    character(len=:), allocatable :: title
+    !> Sizes.
+    integer :: n_node = 0, n_element = 0, n_contact = 0, n_tool = 0, n_internal = 0
+    !> Initial positions of the nodes, `(3, n_node)`, mm.
+    real(wp), allocatable :: x0(:, :)
+    !> Nodes of the elements, `(element%n_node, n_element)`.
+    integer, allocatable :: connectivity(:, :)
+    !> The element all of the sheet is made of.
+    type(element_t) :: element
+    !> Materials.
+    type(material_t), allocatable :: material(:)
+    !> Their names.
+    character(len=24), allocatable :: material_name(:)
+    !> Material of each element, `(n_element)`.
+    integer, allocatable :: material_of(:)
+    !> Orthotropy axes of each material at the start, columns RD, TD, ND, `(3, 3, n_material)`.
+    real(wp), allocatable :: axes(:, :, :)
+    !> Thickness of the sheet at the start, mm.
+    real(wp) :: thickness = 0.0_wp
+    !> Depth inside a tool down to which a node still counts as touching it, mm.
+    real(wp) :: contact_depth = 0.0_wp
+    !> Tools.
+    type(tool_t), allocatable :: tool(:)
+    !> Candidates for contact, `(n_contact)`: their node numbers.
+    integer, allocatable :: contact_node(:)
+    !> Number of each node among the candidates, `(n_node)`; 0 for none.
+    integer, allocatable :: candidate_of(:)
+    !> Which tools a candidate may touch, `(n_tool, n_contact)`.
+    logical, allocatable :: candidate(:, :)
+    !> Block row of each tool behind the nodes' in the reduced system; 0 where the tool is never pressed, `(n_tool)`.
+    integer, allocatable :: tool_block(:)
+    !> Degrees of freedom held in every phase, `(3, n_node)`.
+    logical, allocatable :: fixed(:, :)
+    !> Phases, in order.
+    type(phase_t), allocatable :: phase(:)
+    !> Node sets followed in history.csv.
+    type(history_set_t), allocatable :: history(:)
+    !> Output settings.
+    type(output_t) :: output
+  end type model_t
+
+end module dd3_model_model

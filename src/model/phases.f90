@@ -1,0 +1,247 @@
+!> The phases with all names resolved. What a phase does not name stays as it is: tools held, forces and loads kept.
+module dd3_model_phases
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_list_t
+  use dd3_input_case, only : case_t, case_phase_t => phase_t, until_never
+  use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  implicit none
+  private
+  public :: new_phases
+
+  !> The force a node set carries at present.
+  type :: set_load_t
+    !> Name of the set.
+    character(len=:), allocatable :: set
+    !> Total force, N.
+    real(wp) :: force(3) = 0.0_wp
+  end type set_load_t
+
+contains
+
+  !> Resolves all phases.
+  subroutine new_phases(model, case, mesh, errors)
+    !> The model with its tools, candidates and supports.
+    type(model_t), intent(inout) :: model
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The mesh.
+    type(mesh_t), intent(in) :: mesh
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    type(phase_t) :: before
+    type(set_load_t), allocatable :: load(:)
+    integer :: i
+
+    call new_phase(before, model)
+    allocate (load(0))
+    allocate (model%phase(size(case%phase)))
+    do i = 1, size(case%phase)
+      call follow(model%phase(i), before)
+      call take_settings(model, case%phase(i), model%phase(i))
+      call take_tools(case%phase(i), model%phase(i), errors)
+      call take_displacements(case%phase(i), mesh, model%phase(i))
+      call take_loads(case%phase(i), mesh, load, model%phase(i))
+      before = model%phase(i)
+    end do
+  end subroutine new_phases
+
+  !> A phase in which nothing has happened yet.
+  subroutine new_phase(phase, model)
+    !> The phase.
+    type(phase_t), intent(out) :: phase
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    integer :: n_tool, n_node
+
+    n_tool = model%n_tool
+    n_node = model%n_node
+    phase%name = ""
+    allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), source=0.0_wp)
+    allocate (phase%tool_start(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
+    allocate (phase%pressed(n_tool), phase%released(n_tool), source=.false.)
+    allocate (phase%active(n_tool), source=.true.)
+    allocate (phase%displacement(3, n_node), phase%load_start(3, n_node), phase%load_end(3, n_node), source=0.0_wp)
+    phase%prescribed = model%fixed
+  end subroutine new_phase
+
+  !> A phase that goes on where the one before ends.
+  subroutine follow(phase, before)
+    !> The phase.
+    type(phase_t), intent(out) :: phase
+    !> The one before.
+    type(phase_t), intent(in) :: before
+
+    phase = before
+    phase%move = 0.0_wp
+    phase%displacement = 0.0_wp
+    phase%released = .false.
+    phase%load_start = before%load_end
+    phase%press_start = before%press_end
+  end subroutine follow
+
+  !> Takes name, control and limits.
+  subroutine take_settings(model, from, phase)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The phase of the case.
+    type(case_phase_t), intent(in) :: from
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+
+    phase%name = from%name
+    phase%control = from%control
+    phase%limits = from%limits
+    phase%newton = from%newton
+    phase%until = from%until
+    if (from%until%kind == until_never) phase%until%tool = 0
+    phase%penalty = from%contact%penalty
+    phase%search_distance = from%contact%search_distance
+    if (phase%search_distance <= 0.0_wp) phase%search_distance = model%thickness
+  end subroutine take_settings
+
+  !> Takes what the tools do, and the trial increment as a share of the phase.
+  subroutine take_tools(from, phase, errors)
+    !> The phase of the case.
+    type(case_phase_t), intent(in) :: from
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, t
+
+    do i = 1, size(from%hold)
+      t = from%hold(i)%tool
+      call stop_pressing(phase, t)
+    end do
+    do i = 1, size(from%move)
+      t = from%move(i)%tool
+      call stop_pressing(phase, t)
+      phase%move(:, t) = from%move(i)%vector
+      if (norm2(from%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(from%move(i)%vector)
+    end do
+    do i = 1, size(from%press)
+      t = from%press(i)%tool
+      call press(from, i, t, phase, errors)
+    end do
+    do i = 1, size(from%release)
+      t = from%release(i)%tool
+      phase%released(t) = phase%active(t)
+      phase%active(t) = .false.
+      call stop_pressing(phase, t)
+    end do
+    phase%trial = from%trial
+    phase%length = 0.0_wp
+    if (from%control == 0) return
+    phase%length = norm2(phase%move(:, from%control))
+    if (phase%length > 0.0_wp) phase%trial = from%trial/phase%length
+  end subroutine take_tools
+
+  !> A tool that is held or moved carries no prescribed force.
+  subroutine stop_pressing(phase, tool)
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+    !> The tool.
+    integer, intent(in) :: tool
+
+    phase%pressed(tool) = .false.
+    phase%press_start(:, tool) = 0.0_wp
+    phase%press_end(:, tool) = 0.0_wp
+  end subroutine stop_pressing
+
+  !> Puts a force on a tool; a tool that is pressed already keeps its line.
+  subroutine press(from, i, tool, phase, errors)
+    !> The phase of the case.
+    type(case_phase_t), intent(in) :: from
+    !> Position among its pressed tools.
+    integer, intent(in) :: i
+    !> The tool.
+    integer, intent(in) :: tool
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: line(3)
+
+    if (norm2(from%press(i)%vector) > 0.0_wp) then
+      line = unit(from%press(i)%vector)
+      if (phase%pressed(tool) .and. norm2(phase%press_start(:, tool)) > 0.0_wp) then
+        if (dot_product(line, phase%direction(:, tool)) < 1.0_wp - 1.0e-9_wp) then
+          call errors%push_input(from%press(i)%at, "the force turns away from the tool's line of motion", &
+                                 "a force along the same line and sense as in the phase before")
+        end if
+      end if
+      phase%direction(:, tool) = line
+    else if (.not. phase%pressed(tool)) then
+      call errors%push_input(from%press(i)%at, "a force of zero gives the tool no line of motion", &
+                             "press = tool fx fy fz with a force that is not zero")
+      return
+    end if
+    phase%pressed(tool) = .true.
+    phase%press_end(:, tool) = from%press(i)%vector
+  end subroutine press
+
+  !> Takes prescribed displacements.
+  subroutine take_displacements(from, mesh, phase)
+    !> The phase of the case.
+    type(case_phase_t), intent(in) :: from
+    !> The mesh.
+    type(mesh_t), intent(in) :: mesh
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+
+    integer, allocatable :: node(:)
+    integer :: i
+
+    do i = 1, size(from%displace)
+      node = mesh%nodes_of(from%displace(i)%set)
+      phase%prescribed(from%displace(i)%axis, node) = .true.
+      phase%displacement(from%displace(i)%axis, node) = from%displace(i)%value
+    end do
+  end subroutine take_displacements
+
+  !> Takes loads: a set named again changes its force, the others keep theirs; the nodes of a set share it equally.
+  subroutine take_loads(from, mesh, load, phase)
+    !> The phase of the case.
+    type(case_phase_t), intent(in) :: from
+    !> The mesh.
+    type(mesh_t), intent(in) :: mesh
+    !> The loads until now.
+    type(set_load_t), allocatable, intent(inout) :: load(:)
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+
+    integer, allocatable :: node(:)
+    integer :: i, j, k
+
+    do i = 1, size(from%load)
+      do j = 1, size(load)
+        if (load(j)%set == from%load(i)%set) exit
+      end do
+      if (j > size(load)) load = [load, set_load_t(from%load(i)%set)]
+      load(j)%force = from%load(i)%force
+    end do
+    phase%load_end = 0.0_wp
+    do j = 1, size(load)
+      node = mesh%nodes_of(load(j)%set)
+      do k = 1, size(node)
+        phase%load_end(:, node(k)) = phase%load_end(:, node(k)) + load(j)%force/real(size(node), wp)
+      end do
+    end do
+  end subroutine take_loads
+
+  !> The vector with length one.
+  pure function unit(vector)
+    !> The vector, not zero.
+    real(wp), intent(in) :: vector(3)
+    real(wp) :: unit(3)
+
+    unit = vector/norm2(vector)
+  end function unit
+
+end module dd3_model_phases

@@ -1,0 +1,299 @@
+!> The corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations, contact, friction).
+!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19), the norm of the
+!> internal forces standing in for that of the contact forces where it is larger (and where there is no contact).
+module dd3_process_corrector
+  use dd3_base_kinds, only : wp
+  use dd3_base_clock, only : section_material, section_assembly, section_contact
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_contact_operator, only : status_gap
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_system_contact, only : contact_work_t, evaluate_contact
+  use dd3_system_internal, only : update_material, assemble_stiffness
+  use dd3_system_reduced, only : contact_force_increment
+  use dd3_system_solve, only : solve_reduced, solve_info_t
+  use dd3_system_system, only : system_t
+  implicit none
+  private
+  public :: correct, correction_t
+
+  !> A pressed tool's force is met within this share of it.
+  real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
+  !> The largest displacement an iteration may make, as a multiple of the sheet's thickness.
+  real(wp), parameter :: largest_step = 20.0_wp
+  !> Status patterns remembered to see a cycle.
+  integer, parameter :: memory = 4
+
+  !> What the corrector leaves behind for the records.
+  type :: correction_t
+    !> Criterion of convergence, eq. (19), after each iteration.
+    real(wp), allocatable :: criterion(:)
+    !> Status of the candidates in the last iterations, the newest first, `(n_contact, memory)`.
+    integer, allocatable :: status(:, :)
+    !> Largest residual: node and value, N.
+    integer :: worst_node = 0
+    !> See above.
+    real(wp) :: worst_residual = 0.0_wp
+    !> Increment of the contact forces in the last iteration, `(3, n_contact)`, N.
+    real(wp), allocatable :: lambda(:, :)
+  end type correction_t
+
+contains
+
+  !> Corrects a trial state until it is in equilibrium and every contact condition holds.
+  subroutine correct(system, model, phase, old, new, info, correction, verdict)
+    !> Matrices and solver.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state: predicted at entry, corrected at return.
+    type(state_t), intent(inout) :: new
+    !> What the linear solver did.
+    type(solve_info_t), intent(inout) :: info
+    !> The course of the iterations.
+    type(correction_t), intent(inout) :: correction
+    !> Converged, or retry with the reason.
+    type(verdict_t), intent(out) :: verdict
+
+    integer :: j
+
+    call start(correction, model)
+    system%problem%displacement = 0.0_wp
+    system%problem%tool_motion = 0.0_wp
+    do j = 1, phase%newton%iterations
+      verdict%iterations = j
+      call evaluate(system, model, phase, old, new, verdict)
+      if (verdict%outcome /= verdict_converged) return
+      call judge(system, model, phase, new, j, correction, verdict)
+      if (verdict%outcome == verdict_converged) then
+        new%lambda = system%contact%force
+        return
+      end if
+      call system%profile%start()
+      call assemble_stiffness(system, model, old, new)
+      call system%profile%add(section_assembly)
+      call solve_reduced(system, model, phase, info, verdict)
+      verdict%iterations = j
+      if (verdict%outcome /= verdict_converged) return
+      call advance(system, model, phase, new, correction, verdict)
+      verdict%iterations = j
+      if (verdict%outcome /= verdict_converged) return
+    end do
+    verdict%outcome = verdict_retry
+    verdict%norm = correction%criterion(phase%newton%iterations)
+    verdict%node = correction%worst_node
+    verdict%reason = failure_text(model, phase, correction)
+  end subroutine correct
+
+  !> Makes the correction ready for a new increment.
+  subroutine start(correction, model)
+    !> The correction.
+    type(correction_t), intent(inout) :: correction
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    if (allocated(correction%criterion)) deallocate (correction%criterion)
+    allocate (correction%criterion(0))
+    if (.not. allocated(correction%status)) allocate (correction%status(model%n_contact, memory))
+    if (.not. allocated(correction%lambda)) allocate (correction%lambda(3, model%n_contact))
+    correction%status = -1
+    correction%lambda = 0.0_wp
+  end subroutine start
+
+  !> Stresses, internal forces and contact of the trial state, and the residuals from them.
+  subroutine evaluate(system, model, phase, old, new, verdict)
+    !> The system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+    !> Whether the material could be integrated.
+    type(verdict_t), intent(inout) :: verdict
+
+    integer :: c, node, tool, iterations
+
+    iterations = verdict%iterations
+    call system%profile%start()
+    call update_material(system, model, old, new, verdict)
+    verdict%iterations = iterations
+    call system%profile%add(section_material)
+    if (verdict%outcome /= verdict_converged) return
+    call evaluate_contact(system%contact, model, phase, old, new)
+    associate (problem => system%problem, contact => system%contact)
+      problem%residual = new%internal_force - new%external_force
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        problem%residual(:, node) = problem%residual(:, node) + new%lambda(:, c)
+      end do
+      problem%excess = contact%force - new%lambda
+      new%tool_force = 0.0_wp
+      do c = 1, model%n_contact
+        tool = contact%tool(c)
+        if (tool > 0) new%tool_force(:, tool) = new%tool_force(:, tool) + contact%force(:, c)
+      end do
+      do tool = 1, model%n_tool
+        problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
+                                                  new%tool_load(:, tool) + new%tool_force(:, tool))
+      end do
+    end associate
+    call system%profile%add(section_contact)
+  end subroutine evaluate
+
+  !> The criterion of convergence, eq. (19), and whether it is met with the status of the last iteration.
+  subroutine judge(system, model, phase, new, j, correction, verdict)
+    !> The evaluated system.
+    type(system_t), intent(in) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(in) :: new
+    !> The iteration, from 1.
+    integer, intent(in) :: j
+    !> Gets the criterion and the status.
+    type(correction_t), intent(inout) :: correction
+    !> Converged, or retry.
+    type(verdict_t), intent(inout) :: verdict
+
+    real(wp) :: sum_of_squares, scale
+    integer :: tool
+    logical :: forces_met, settled
+
+    call residual_norm(system, model, phase, correction, sum_of_squares)
+    forces_met = .true.
+    do tool = 1, model%n_tool
+      if (.not. phase%pressed(tool)) cycle
+      if (.not. any(system%contact%tool == tool .and. system%contact%status /= status_gap)) cycle
+      sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
+      forces_met = forces_met .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &
+                   *max(norm2(new%tool_load(:, tool)), tiny(1.0_wp))
+    end do
+    scale = max(norm2(new%lambda), norm2(new%internal_force), tiny(1.0_wp))
+    correction%criterion = [correction%criterion, (norm2(correction%lambda) + sqrt(sum_of_squares))/scale]
+    settled = all(system%contact%status == correction%status(:, 1))
+    correction%status(:, 2:) = correction%status(:, :memory - 1)
+    correction%status(:, 1) = system%contact%status
+    verdict%norm = correction%criterion(j)
+    verdict%outcome = verdict_retry
+    if (j > 1 .and. settled .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
+      verdict%outcome = verdict_converged
+  end subroutine judge
+
+  !> Sum of squares of the residuals of equilibrium and contact at the free degrees of freedom, with the worst node.
+  subroutine residual_norm(system, model, phase, correction, sum_of_squares)
+    !> The evaluated system.
+    type(system_t), intent(in) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Gets the worst node.
+    type(correction_t), intent(inout) :: correction
+    !> The sum, N2.
+    real(wp), intent(out) :: sum_of_squares
+
+    real(wp) :: equilibrium(3), share
+    integer :: node, c
+
+    sum_of_squares = 0.0_wp
+    correction%worst_residual = -1.0_wp
+    do node = 1, model%n_node
+      c = model%candidate_of(node)
+      equilibrium = system%problem%residual(:, node)
+      share = 0.0_wp
+      if (c > 0) then
+        equilibrium = equilibrium + system%problem%excess(:, c)
+        share = sum(system%problem%excess(:, c)**2, mask=.not. phase%prescribed(:, node))
+      end if
+      share = share + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
+      sum_of_squares = sum_of_squares + share
+      if (share <= correction%worst_residual) cycle
+      correction%worst_residual = share
+      correction%worst_node = node
+    end do
+    correction%worst_residual = sqrt(max(correction%worst_residual, 0.0_wp))
+  end subroutine residual_norm
+
+  !> Adds the solution to the trial state.
+  subroutine advance(system, model, phase, new, correction, verdict)
+    !> The solved system.
+    type(system_t), intent(in) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+    !> Gets the increment of the contact forces.
+    type(correction_t), intent(inout) :: correction
+    !> Retry where the solution is out of all proportion.
+    type(verdict_t), intent(inout) :: verdict
+
+    real(wp) :: largest
+    integer :: node, tool, block
+
+    largest = 0.0_wp
+    do node = 1, model%n_node
+      largest = max(largest, maxval(abs(system%problem%solution(3*node - 2:3*node))))
+    end do
+    if (.not. largest <= largest_step*model%thickness) then
+      verdict%outcome = verdict_retry
+      verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
+      return
+    end if
+    new%x = new%x + reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
+    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, correction%lambda)
+    new%lambda = new%lambda + correction%lambda
+    do tool = 1, model%n_tool
+      block = model%tool_block(tool)
+      if (block == 0) cycle
+      new%tool_displacement(:, tool) = new%tool_displacement(:, tool) + system%problem%solution(3*block - 2:3*block)
+    end do
+  end subroutine advance
+
+  !> Why the iterations did not converge: the nodes whose status would not settle, or the worst residual.
+  function failure_text(model, phase, correction) result(text)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The course of the iterations.
+    type(correction_t), intent(in) :: correction
+    character(len=:), allocatable :: text
+
+    character(len=5), parameter :: names(0:2) = ["gap  ", "stick", "slip "]
+    integer :: c, i, changing
+
+    changing = 0
+    text = ""
+    do c = 1, model%n_contact
+      if (all(correction%status(c, 2:3) == correction%status(c, 1))) cycle
+      changing = changing + 1
+      if (changing > 4) cycle
+      if (changing > 1) text = text//"; "
+      text = text//"node "//to_text(model%contact_node(c))
+      do i = 3, 1, -1
+        if (correction%status(c, i) >= 0) text = text//" "//trim(names(correction%status(c, i)))
+      end do
+    end do
+    if (changing > 0) then
+      text = "contact status changes at "//to_text(changing)//" nodes: "//text
+    else
+      text = "residual "//to_text(correction%worst_residual, 3)//" N at node "//to_text(correction%worst_node) &
+             //" after "//to_text(phase%newton%iterations)//" iterations"
+    end if
+  end function failure_text
+
+end module dd3_process_corrector

@@ -1,0 +1,149 @@
+!> The start of a phase: what only the state at that moment can tell.
+module dd3_process_stage
+  use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_operator, only : status_gap
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: begin_phase, next_output_progress, phase_is_over
+
+  !> How far a pressed tool that touches nothing is looked for along its line, mm.
+  real(wp), parameter :: reach = 1.0e3_wp
+  !> Advances of a pressed tool towards the sheet; each covers at least the smallest gap left.
+  integer, parameter :: most_advances = 200
+  !> A gap this small counts as touch, mm.
+  real(wp), parameter :: closed = 1.0e-9_wp
+  !> Share of a phase by which an end is met.
+  real(wp), parameter :: sharp = 1.0e-9_wp
+
+contains
+
+  !> Begins a phase: forces go on from where they are, released contacts become forces that fade over the phase, and
+  !> a pressed tool that touches nothing approaches to touch.
+  subroutine begin_phase(model, number, phase, state)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> The phase with its start filled in.
+    type(phase_t), intent(out) :: phase
+    !> The committed state.
+    type(state_t), intent(inout) :: state
+
+    integer :: c, tool, node
+
+    phase = model%phase(number)
+    state%phase = number
+    state%progress = 0.0_wp
+    phase%load_start = state%external_force
+    phase%press_start = state%tool_load
+    where (spread(.not. phase%pressed, 1, 3)) phase%press_start = 0.0_wp
+    do c = 1, model%n_contact
+      tool = state%contact_tool(c)
+      if (tool == 0) cycle
+      if (phase%active(tool)) cycle
+      node = model%contact_node(c)
+      phase%load_start(:, node) = phase%load_start(:, node) - state%lambda(:, c)
+      state%lambda(:, c) = 0.0_wp
+      state%status(c) = status_gap
+      state%contact_tool(c) = 0
+    end do
+    do tool = 1, model%n_tool
+      if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, phase, tool, state)
+    end do
+    phase%tool_start = state%tool_displacement
+  end subroutine begin_phase
+
+  !> Moves a pressed tool that touches nothing along its line until it touches.
+  subroutine approach(model, phase, tool, state)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> The tool.
+    integer, intent(in) :: tool
+    !> The committed state.
+    type(state_t), intent(inout) :: state
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    real(wp) :: smallest
+    integer :: c, k
+
+    if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
+    do k = 1, most_advances
+      smallest = huge(1.0_wp)
+      do c = 1, model%n_contact
+        if (.not. model%candidate(tool, c)) cycle
+        hint = hint_t()
+        call find_contact(model%tool(tool)%surface, &
+                          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, reach, &
+                          model%contact_depth, hit)
+        if (hit%found) smallest = min(smallest, hit%distance)
+      end do
+      if (smallest <= closed .or. smallest > reach) return
+      state%tool_displacement(:, tool) = state%tool_displacement(:, tool) + smallest*phase%direction(:, tool)
+    end do
+  end subroutine approach
+
+  !> Progress of the phase at the next output of fields; the phase's end is always one.
+  real(wp) function next_output_progress(model, phase, state) result(progress)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: state
+
+    real(wp) :: travel
+    integer :: i
+
+    progress = huge(1.0_wp)
+    if (phase%length <= 0.0_wp) return
+    travel = state%progress*phase%length
+    if (model%output%fields_every > 0.0_wp) then
+      progress = (aint(travel/model%output%fields_every + sharp) + 1)*model%output%fields_every/phase%length
+    else if (allocated(model%output%fields_at)) then
+      do i = 1, size(model%output%fields_at)
+        if (model%output%fields_at(i) <= travel + sharp*phase%length) cycle
+        progress = model%output%fields_at(i)/phase%length
+        exit
+      end do
+    end if
+    if (progress > 1.0_wp) progress = huge(1.0_wp)
+  end function next_output_progress
+
+  !> Whether the phase has come to its end, or met its early end.
+  logical function phase_is_over(phase, state)
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: state
+
+    phase_is_over = state%progress >= 1.0_wp - sharp
+    if (phase%until%tool > 0) phase_is_over = phase_is_over .or. until_met(phase, state)
+  end function phase_is_over
+
+  !> Whether the early end is met, within a thousandth of the force or a millionth of the displacement.
+  logical function until_met(phase, state)
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: state
+
+    real(wp) :: line(3), value
+
+    line = phase%direction(:, phase%until%tool)
+    if (phase%until%kind == 1) then
+      value = dot_product(line, state%tool_displacement(:, phase%until%tool) - phase%tool_start(:, phase%until%tool))
+      until_met = abs(value) >= phase%until%value*(1.0_wp - 1.0e-6_wp)
+    else
+      value = dot_product(line, state%tool_force(:, phase%until%tool))
+      until_met = abs(value) >= phase%until%value*(1.0_wp - 1.0e-3_wp)
+    end if
+  end function until_met
+
+end module dd3_process_stage

@@ -1,0 +1,296 @@
+!> The reduced system: contact forces eliminated node by node from the mixed equations, supports, and a row of
+!> force balance for every pressed tool.
+!>
+!> A candidate node A with residual r_A = F_int - F_ext + lambda and contact operator F_equ(u, lambda), linearised as
+!> dF_equ = D (du - dw) + E dlambda (dw: the tool's motion), gives
+!>     dlambda_A = -r_A - K_A du,
+!>     [(I - E) K_A + D] du - D dw = -[(I - E) r_A + F_equ - lambda].
+!> Source: Menezes and Teodosiu, J. Mater. Process. Technol. 97 (2000) 100-106; Oliveira and Menezes, J. Mater.
+!> Process. Technol. (2004), eq. (6).
+module dd3_system_reduced
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : identity
+  use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_contact_operator, only : status_gap
+  use dd3_system_contact, only : contact_work_t
+  implicit none
+  private
+  public :: linear_problem_t, new_linear_problem, reduce, contact_force_increment
+
+  !> Right-hand sides and prescribed values of one linear problem.
+  type :: linear_problem_t
+    !> Residual of the nodes' equilibrium, for candidates with their contact force: r_A, `(3, n_node)`, N.
+    real(wp), allocatable :: residual(:, :)
+    !> F_equ - lambda of the candidates, `(3, n_contact)`, N.
+    real(wp), allocatable :: excess(:, :)
+    !> Prescribed displacement increments, `(3, n_node)`, mm.
+    real(wp), allocatable :: displacement(:, :)
+    !> Prescribed motion of the tools that are not pressed, `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool_motion(:, :)
+    !> Out-of-balance force of the pressed tools along their line, `(n_tool)`, N.
+    real(wp), allocatable :: tool_residual(:)
+    !> Right-hand side of the reduced system, `3 * number of block rows`.
+    real(wp), allocatable :: rhs(:)
+    !> Its solution: displacements of the nodes, then of the tools that can be pressed.
+    real(wp), allocatable :: solution(:)
+  end type linear_problem_t
+
+contains
+
+  !> Allocates a linear problem and sets all to zero.
+  subroutine new_linear_problem(self, model, n_row)
+    !> The problem made.
+    type(linear_problem_t), intent(out) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Number of block rows of the reduced system.
+    integer, intent(in) :: n_row
+
+    allocate (self%residual(3, model%n_node), self%displacement(3, model%n_node), source=0.0_wp)
+    allocate (self%excess(3, model%n_contact), source=0.0_wp)
+    allocate (self%tool_motion(3, model%n_tool), self%tool_residual(model%n_tool), source=0.0_wp)
+    allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
+  end subroutine new_linear_problem
+
+  !> Builds the reduced matrix and its right-hand side from the stiffness and the contact operators.
+  subroutine reduce(model, phase, contact, stiffness, problem, reduced)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Contact operators of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> Stiffness of the sheet; its tool blocks are zero.
+    type(block_matrix_t), intent(in) :: stiffness
+    !> Residuals and prescribed values; gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    !> The reduced matrix, same pattern as the stiffness.
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: c, node
+
+    reduced%value(:, :, :) = stiffness%value
+    do node = 1, model%n_node
+      problem%rhs(3*node - 2:3*node) = -problem%residual(:, node)
+    end do
+    call start_tool_rows(model, phase, problem, reduced)
+    do c = 1, model%n_contact
+      node = model%contact_node(c)
+      if (contact%status(c) == status_gap) then
+        problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - problem%excess(:, c)
+        cycle
+      end if
+      call reduce_node(model, phase, contact, c, problem, reduced)
+    end do
+    call finish_tool_rows(model, phase, contact, problem, reduced)
+    call prescribe(phase, problem, reduced)
+  end subroutine reduce
+
+  !> Replaces a touching node's row by its reduced row, and adds its share to the row of a pressed tool.
+  subroutine reduce_node(model, phase, contact, c, problem, reduced)
+    !> The model and the running phase.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Contact operators of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> The candidate.
+    integer, intent(in) :: c
+    !> Residuals; gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: reduced
+
+    real(wp) :: remaining(3, 3), d(3, 3), residual(3), row(3, 3)
+    integer :: node, tool, block, k, line
+    logical :: pressed
+
+    node = model%contact_node(c)
+    tool = contact%tool(c)
+    block = model%tool_block(tool)
+    pressed = phase%pressed(tool)
+    d = contact%d(:, :, c)
+    remaining = identity - contact%e(:, :, c)
+    residual = node_residual(phase, contact, problem, node, c)
+    problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%excess(:, c)
+    if (.not. pressed) then
+      problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
+                                       + matmul(d, problem%tool_motion(:, tool))
+    else
+      line = maxloc(abs(phase%direction(:, tool)), dim=1)
+      problem%rhs(3*(block - 1) + line) = problem%rhs(3*(block - 1) + line) &
+        + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
+    end if
+    do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
+      if (reduced%column(k) > model%n_node) cycle
+      row = reduced%value(:, :, k)
+      where (spread(phase%prescribed(:, node), 2, 3)) row = 0.0_wp
+      reduced%value(:, :, k) = matmul(remaining, row)
+      if (pressed) call add_to_tool_row(reduced, block, line, reduced%column(k), &
+        -matmul(matmul(phase%direction(:, tool), contact%e(:, :, c)), row))
+    end do
+    k = reduced%diagonal(node)
+    reduced%value(:, :, k) = reduced%value(:, :, k) + d
+    if (pressed) then
+      k = position_of(reduced, node, block)
+      reduced%value(:, :, k) = -d
+      row(1, :) = matmul(phase%direction(:, tool), d)
+      call add_to_tool_row(reduced, block, line, node, row(1, :))
+      call add_to_tool_row(reduced, block, line, block, -row(1, :))
+    end if
+  end subroutine reduce_node
+
+  !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium holds the unknown
+  !> reaction, and the contact force's component is made to vanish instead.
+  pure function node_residual(phase, contact, problem, node, c) result(residual)
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Contact operators of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> Residuals.
+    type(linear_problem_t), intent(in) :: problem
+    !> The node and its number among the candidates.
+    integer, intent(in) :: node, c
+    real(wp) :: residual(3)
+
+    residual = merge(contact%lambda(:, c), problem%residual(:, node), phase%prescribed(:, node))
+  end function node_residual
+
+  !> Adds a row vector to the force row of a pressed tool.
+  subroutine add_to_tool_row(reduced, block, line, column, values)
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: reduced
+    !> Block row of the tool, the line in it, and the block column.
+    integer, intent(in) :: block, line, column
+    !> What is added.
+    real(wp), intent(in) :: values(3)
+
+    integer :: k
+
+    k = position_of(reduced, block, column)
+    reduced%value(line, :, k) = reduced%value(line, :, k) + values
+  end subroutine add_to_tool_row
+
+  !> Clears the rows of the tools; those not pressed in this phase follow their prescribed motion.
+  subroutine start_tool_rows(model, phase, problem, reduced)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Prescribed motion and residuals; gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: tool, block, line, k
+
+    do tool = 1, model%n_tool
+      block = model%tool_block(tool)
+      if (block == 0) cycle
+      do k = reduced%row_start(block), reduced%row_start(block + 1) - 1
+        reduced%value(:, :, k) = 0.0_wp
+      end do
+      problem%rhs(3*block - 2:3*block) = 0.0_wp
+      if (phase%pressed(tool)) then
+        line = maxloc(abs(phase%direction(:, tool)), dim=1)
+        problem%rhs(3*(block - 1) + line) = -problem%tool_residual(tool)
+      else
+        reduced%value(:, :, reduced%diagonal(block)) = identity
+        problem%rhs(3*block - 2:3*block) = problem%tool_motion(:, tool)
+      end if
+    end do
+  end subroutine start_tool_rows
+
+  !> Keeps the pressed tools on their line of motion; one that touches nothing stays where it is.
+  subroutine finish_tool_rows(model, phase, contact, problem, reduced)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Contact operators of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> Gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: tool, block, line, i, k
+
+    do tool = 1, model%n_tool
+      block = model%tool_block(tool)
+      if (block == 0) cycle
+      if (.not. phase%pressed(tool)) cycle
+      line = maxloc(abs(phase%direction(:, tool)), dim=1)
+      k = reduced%diagonal(block)
+      do i = 1, 3
+        if (i == line) cycle
+        reduced%value(i, i, k) = 1.0_wp
+        reduced%value(i, line, k) = -phase%direction(i, tool)/phase%direction(line, tool)
+      end do
+      if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
+      reduced%value(line, line, k) = 1.0_wp
+      problem%rhs(3*(block - 1) + line) = 0.0_wp
+    end do
+  end subroutine finish_tool_rows
+
+  !> Makes the rows of the prescribed displacements unit rows.
+  subroutine prescribe(phase, problem, reduced)
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Prescribed increments; gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: node, i, k
+
+    do node = 1, size(phase%prescribed, 2)
+      do i = 1, 3
+        if (.not. phase%prescribed(i, node)) cycle
+        do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
+          reduced%value(i, :, k) = 0.0_wp
+        end do
+        reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
+        problem%rhs(3*(node - 1) + i) = problem%displacement(i, node)
+      end do
+    end do
+  end subroutine prescribe
+
+  !> Contact force increments of the touching nodes from the solution: dlambda_A = -r_A - K_A du.
+  subroutine contact_force_increment(model, phase, contact, stiffness, problem, increment)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> Contact operators of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> Stiffness of the sheet.
+    type(block_matrix_t), intent(in) :: stiffness
+    !> Residuals and solution.
+    type(linear_problem_t), intent(in) :: problem
+    !> The increments; a node in a gap loses its force, `(3, n_contact)`, N.
+    real(wp), intent(out) :: increment(:, :)
+
+    real(wp) :: change(3)
+    integer :: c, node, k, b
+
+    do c = 1, model%n_contact
+      if (contact%status(c) == status_gap) then
+        increment(:, c) = -contact%lambda(:, c)
+        cycle
+      end if
+      node = model%contact_node(c)
+      change = 0.0_wp
+      do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
+        b = stiffness%column(k)
+        if (b > model%n_node) cycle
+        change = change + matmul(stiffness%value(:, :, k), problem%solution(3*b - 2:3*b))
+      end do
+      where (phase%prescribed(:, node)) change = 0.0_wp
+      increment(:, c) = -node_residual(phase, contact, problem, node, c) - change
+    end do
+  end subroutine contact_force_increment
+
+end module dd3_system_reduced
