@@ -62,12 +62,12 @@ contains
     !> `half`, `row_factor` and `column_factor` are set.
     type(element_work_t), intent(inout) :: work
 
-    real(wp) :: c(6, 6), s(3, 3), row(6), column(6), operator(3, 3, 3, 3), curvature(n_group), mean
+    real(wp) :: c(6, 6), s(3, 3), row(6), column(6), operator(3, 3, 3, 3), mean
     integer :: g, i, p
 
     work%row_factor = 0.0_wp
     work%column_factor = 0.0_wp
-    curvature = 0.0_wp
+    work%curvature = 0.0_wp
     do p = 1, n_point
       call point_moduli(work%strain(:, p), work%stress(:, p), work%tangent(:, :, p), &
                         work%rotation(:, :, p), c)
@@ -76,7 +76,7 @@ contains
       if (g > 0) then
         mean = (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
         call split_volume(c, row, column)
-        curvature(g) = curvature(g) + work%weight(p)*(row(1) + row(2) + row(3))
+        work%curvature(g) = work%curvature(g) + work%weight(p)*(row(1) + row(2) + row(3))/3.0_wp
         column(1:3) = column(1:3) + mean
         row(1:3) = row(1:3) - (row(1) + row(2) + row(3))/3.0_wp
         call add_factor(n_node, work%weight(p), row, work%gradient(:, :, p), &
@@ -91,9 +91,10 @@ contains
       call contract(n_node, operator, work%gradient(:, :, p), work%half(:, :, :, :, p))
     end do
     do g = 1, n_group
-      curvature(g) = curvature(g)/3.0_wp - work%pressure(g)
-      work%column_factor(:, :, g) = work%column_factor(:, :, g) &
-                                    + curvature(g)*transpose(work%mean_gradient(:, :, g))
+      do i = 1, 3
+        work%column_factor(i, :, g) = work%column_factor(i, :, g) &
+          + (work%curvature(g) - work%pressure(g))*work%mean_gradient(:, i, g)
+      end do
     end do
   end subroutine contract_points
 

@@ -54,6 +54,8 @@ module dd3_element_work
     !> `column_factor` alike, and the group's volume integral of the mean stress, N mm:
     !> `pressure(n_group)`.
     real(wp), allocatable :: row_factor(:, :, :), column_factor(:, :, :), pressure(:)
+    !> Inner: volume integral of the moduli's trace over 9, N mm: `curvature(n_group)`.
+    real(wp), allocatable :: curvature(:)
   end type element_work_t
 
 contains
@@ -77,7 +79,8 @@ contains
     allocate (self%force(3, n), self%stiffness(3, 3, n, n), self%rate(6, p), self%spin(p))
     allocate (self%jacobian(3, p, 3), self%jacobian_old(3, p, 3), self%cauchy(3, 3, p))
     allocate (self%half(3, 3, n, 3, p))
-    allocate (self%row_factor(3, n, g), self%column_factor(3, n, g), self%pressure(g))
+    allocate (self%row_factor(3, n, g), self%column_factor(3, n, g), self%pressure(g), &
+              self%curvature(g))
   end subroutine new_element_work
 
 end module dd3_element_work
