@@ -22,7 +22,7 @@ run_tests() {
     bad=$(sed -n 's/.* \([0-9]*\) tests failed out of .*/\1/p' "$log")
     good=$((run - bad))
   fi
-awk '/ Start +[0-9]+:| Passed /{show=0} /\*\*\*/{show=1} /tests passed/{exit} show' "$log"
+  awk '/ Start +[0-9]+:| Passed /{show=0} /\*\*\*/{show=1} /tests passed/{exit} show' "$log"
   passed=$((passed + good))
   failed=$((failed + bad))
 }
