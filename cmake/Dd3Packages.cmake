@@ -14,7 +14,7 @@ if(NOT SuiteSparse_FOUND)
 endif()
 
 set(HDF5_PREFER_PARALLEL OFF)
-find_package(HDF5 QUIET COMPONENTS Fortran HL)
+find_package(HDF5 QUIET COMPONENTS C Fortran HL)
 if(NOT HDF5_FOUND)
   dd3_missing("HDF5 with its Fortran interface" "libhdf5-dev")
 endif()

@@ -2,11 +2,20 @@
 module dd3_app_job
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : options_t
-  use dd3_base_error, only : error_list_t
+  use dd3_base_clock, only : section_names
+  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_file, only : make_directory
+  use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text
+  use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
+  use dd3_model_build, only : new_model
+  use dd3_model_materials, only : law_sources
+  use dd3_model_model, only : model_t
+  use dd3_output_interrupt, only : watch_interrupts
+  use dd3_process_run, only : run_model, run_summary_t
   implicit none
   private
   public :: run_job, results_directory
@@ -27,20 +36,103 @@ contains
     integer, intent(out) :: exit_code
 
     type(case_t) :: case
+    type(model_t) :: model
     type(error_list_t) :: errors
 
     call read_case(case, options%file, options%overrides, errors)
+    if (errors%count == 0) call new_model(model, case, errors)
     if (errors%count > 0) then
       call report_errors(errors, options%file)
       exit_code = exit_input
-      return
+    else if (options%check) then
+      if (.not. options%quiet) write (output_unit, '(a)', advance="no") echo_case(case)
+      if (.not. options%quiet) write (output_unit, '(a)') "checked: "//options%file
+      exit_code = exit_end
+    else
+      call run_checked(options, case, model, exit_code)
     end if
-    if (options%check .and. .not. options%quiet) then
-      write (output_unit, '(a)', advance="no") echo_case(case)
-      write (output_unit, '(a)') "checked: "//options%file
-    end if
-    exit_code = exit_end
   end subroutine run_job
+
+  !> Runs a job whose input is in order.
+  subroutine run_checked(options, case, model, exit_code)
+    !> What the user asks for.
+    type(options_t), intent(in) :: options
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> One of the `exit_*` values.
+    integer, intent(out) :: exit_code
+
+    type(log_t) :: log
+    type(run_summary_t) :: summary
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: directory
+
+    directory = results_directory(options, case)
+    exit_code = exit_stopped
+    call make_directory(directory, error)
+    if (.not. allocated(error)) call log%open(directory//"/job.log", options%quiet, error)
+    if (.not. allocated(error)) then
+      call introduce(log, case, model)
+      call watch_interrupts()
+      call run_model(model, case%solver, directory, log, summary, error)
+      if (.not. allocated(error)) exit_code = exit_end
+      call conclude(log, summary)
+    end if
+    if (allocated(error)) then
+      call log%note("stopped: "//error%message)
+      write (error_unit, '(a)') "dd3imp: stopped: "//error%message
+    else
+      call log%say("reached the end; results in "//directory)
+    end if
+    call log%close(error)
+    if (.not. allocated(error)) return
+    if (exit_code == exit_end) write (error_unit, '(a)') "dd3imp: "//error%message
+    exit_code = exit_stopped
+  end subroutine run_checked
+
+  !> Says what is run: version, title, sizes, laws; the echo of all values goes into the file.
+  subroutine introduce(log, case, model)
+    !> Where it is said.
+    type(log_t), intent(inout) :: log
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    character(len=12) :: date, time
+    integer :: i
+
+    call date_and_time(date=date, time=time)
+    call log%say("dd3imp "//version//": "//case%file)
+    if (len(model%title) > 0) call log%say(model%title)
+    call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"//time(3:4))
+    call log%say(to_text(model%n_element)//" "//model%element%title//", "//to_text(model%n_node)//" nodes, "// &
+                 to_text(model%n_contact)//" of them candidates for contact with "//to_text(model%n_tool)//" tools")
+    call log%note(echo_case(case))
+    do i = 1, size(model%material)
+      call log%note(law_sources(model%material_name(i), model%material(i)))
+    end do
+  end subroutine introduce
+
+  !> Says what the run took.
+  subroutine conclude(log, summary)
+    !> Where it is said.
+    type(log_t), intent(inout) :: log
+    !> The sums of the run.
+    type(run_summary_t), intent(in) :: summary
+
+    integer :: i
+
+    call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)//" cut back; "// &
+                 to_text(summary%iterations)//" iterations; "//to_text(summary%solver_iterations)// &
+                 " of the linear solver; "//to_text(summary%seconds, 3)//" s")
+    call log%note("time by section, s:")
+    do i = 1, size(section_names)
+      call log%note("  "//section_names(i)//" "//to_text(summary%profile%seconds(i), 4))
+    end do
+  end subroutine conclude
 
   !> Shows all errors of the input in the order of its lines.
   subroutine report_errors(errors, file)

@@ -5,12 +5,12 @@ module dd3_model_materials
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
   use dd3_material_check, only : check_law, known_laws, law_backstress, law_hardening, law_rows, law_yield
-  use dd3_material_description, only : law_choice_t, problem_t
-  use dd3_material_material, only : new_material
+  use dd3_material_description, only : description_t, law_choice_t, problem_t
+  use dd3_material_material, only : material_t, new_material
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: new_materials
+  public :: new_materials, law_sources
 
   !> What the kinds of laws are called in a message.
   character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", "hardening law", &
@@ -117,5 +117,36 @@ contains
       if (spec%parameter(i)%key == values(index)%name) place = spec%parameter(i)%at
     end do
   end function problem_place
+
+  !> The laws of a material with their sources, as lines of text.
+  function law_sources(name, material) result(text)
+    !> Name of the material.
+    character(len=*), intent(in) :: name
+    !> The material.
+    type(material_t), intent(in) :: material
+    character(len=:), allocatable :: text
+
+    type(description_t) :: description
+    integer :: i
+
+    text = "material "//trim(name)//": laws and their sources"
+    call material%laws%criterion%describe(description)
+    text = text//source_line(description)
+    call material%laws%hardening%describe(description)
+    text = text//source_line(description)
+    do i = 1, size(material%laws%backstress)
+      call material%laws%backstress(i)%law%describe(description)
+      text = text//source_line(description)
+    end do
+  end function law_sources
+
+  !> One law with its source, on a line of its own.
+  pure function source_line(description) result(text)
+    !> What the law says of itself.
+    type(description_t), intent(in) :: description
+    character(len=:), allocatable :: text
+
+    text = new_line("a")//"  "//trim(description%name)//": "//trim(description%title)//"; "//trim(description%source)
+  end function source_line
 
 end module dd3_model_materials

@@ -7,6 +7,7 @@ module dd3_process_run
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
+  use dd3_input_case, only : solver_t
   use dd3_linalg_solver, only : solver_options_t
   use dd3_model_initial, only : new_initial_state
   use dd3_model_model, only : model_t
@@ -56,11 +57,11 @@ module dd3_process_run
 contains
 
   !> Runs a model to the end of its last phase, or says why it stopped; the records are whole either way.
-  subroutine run_model(model, options, directory, log, summary, error)
+  subroutine run_model(model, solver, directory, log, summary, error)
     !> The model.
     type(model_t), intent(in) :: model
-    !> The linear solver.
-    type(solver_options_t), intent(in) :: options
+    !> The linear solver, as the case wants it.
+    type(solver_t), intent(in) :: solver
     !> The directory of the results; it exists.
     character(len=*), intent(in) :: directory
     !> Where the run speaks.
@@ -77,7 +78,7 @@ contains
     began = wall_time()
     call new_initial_state(run%committed, model)
     call new_initial_state(run%trial, model)
-    call new_system(run%stepper%system, model, options, error)
+    call new_system(run%stepper%system, model, solver_options(solver), error)
     if (allocated(error)) return
     call new_stepper(run%stepper, model)
     call open_records(run, model, directory, error)
@@ -95,6 +96,18 @@ contains
     summary%profile = run%stepper%system%profile
     summary%seconds = wall_time() - began
   end subroutine run_model
+
+  !> The linear solver's options from the case's.
+  pure type(solver_options_t) function solver_options(solver)
+    !> As the case wants it.
+    type(solver_t), intent(in) :: solver
+
+    solver_options%method = solver%method
+    solver_options%ilu_level = solver%ilu_level
+    solver_options%tolerance = solver%tolerance
+    solver_options%iterations = solver%iterations
+    solver_options%ordering = solver%ordering
+  end function solver_options
 
   !> Opens the records and writes the initial state.
   subroutine open_records(run, model, directory, error)
