@@ -44,7 +44,7 @@ contains
 
     allocate (table(17))
     call describe(table(1), "title", "once", "Free text, line by line; shown in the log.", nothing)
-    call describe(table(2), "include", "many", "*INCLUDE file: reads another file in this place.", &
+    call describe(table(2), "include", "many", "Reads another file in this place.", &
         nothing)
     call describe(table(3), "parameter", "many", &
         "name = value; used as ${name} in later values. "// &

@@ -312,28 +312,29 @@ contains
     character(len=word_length), allocatable :: form(:)
     character(len=word_length) :: wanted
     integer :: i, k, before
-    logical :: repeats
+    logical :: again
 
     before = errors%count
     form = form_for(entry, row)
     k = 1
+    again = .false.
     do i = 1, size(entry%value)
       if (k > size(form)) then
-        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
-            "' is one value too many", describe(row))
+        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text//"' is one value too many", &
+                               describe(row))
         return
       end if
       wanted = form(k)
-      repeats = index(wanted, "...") > 0
-      if (repeats) wanted = wanted(:index(wanted, "...") - 1)
+      again = index(wanted, "...") > 0
+      if (again) wanted = wanted(:index(wanted, "...") - 1)
       call check_form_word(entry, i, wanted, row, errors)
       if (errors%count > before) return
-      if (.not. repeats) k = k + 1
+      if (.not. again) k = k + 1
     end do
-    if (k > size(form)) return
-    if (index(form(k), "...") > 0 .or. form(k)(1:1) == "[") return
+    if (again .or. k > size(form)) return
+    if (form(k)(1:1) == "[") return
     call errors%push_input(entry%value(size(entry%value))%at, &
-        "something is missing after this: "//trim(form(k)), describe(row))
+                           "something is missing after this: "//trim(form(k)), describe(row))
   end subroutine check_form
 
   !> Checks one word of a value against one word of the form.
