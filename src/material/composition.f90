@@ -11,7 +11,8 @@ module dd3_material_composition
   use dd3_material_yield_criterion, only : yield_criterion_t
   implicit none
   private
-  public :: composition_t, complete, back_stress_of, flow_response_of, add_back_stresses, advance_internal
+  public :: composition_t, complete, back_stress_of, flow_response_of
+  public :: add_back_stresses, advance_internal
 
   !> The laws of a material.
   type :: composition_t
@@ -87,7 +88,8 @@ contains
     type(flow_direction_t) :: direction
 
     if (self%hardening%follows_path) direction = no_direction()
-    call self%hardening%flow_stress(internal(1), internal(self%first:self%last), 0.0_wp, direction, flow)
+    call self%hardening%flow_stress(internal(1), internal(self%first:self%last), 0.0_wp, &
+                                    direction, flow)
   end subroutine flow_response_of
 
   !> Sum of the back-stresses at the end of an increment, with its derivatives.

@@ -18,8 +18,8 @@ module dd3_material_description
     character(len=160) :: source = ""
     !> Its parameters; the default `-` marks those that may be left out.
     type(parameter_t), allocatable :: rows(:)
-    !> Values that make the law reduce to its plainest case (von Mises for a criterion, a usual sheet
-    !> for the others): the starting point of examples and generic tests.
+    !> Values that reduce a criterion to von Mises, those of a usual sheet for the other laws: the
+    !> starting point of examples and generic tests.
     type(law_value_t), allocatable :: example(:)
   end type description_t
 

@@ -26,6 +26,7 @@ contains
     type(elasticity_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
+    real(wp) :: normal
     integer :: i, j
 
     self%young = young
@@ -35,8 +36,9 @@ contains
     self%mean_factor = -poisson/(1 + poisson)
     do j = 1, 6
       do i = 1, 6
-        self%stiffness(i, j) = self%lame*kelvin_identity(i)*kelvin_identity(j)
-        self%compliance(i, j) = self%mean_factor*kelvin_identity(i)*kelvin_identity(j)/(2*self%shear)
+        normal = kelvin_identity(i)*kelvin_identity(j)
+        self%stiffness(i, j) = self%lame*normal
+        self%compliance(i, j) = self%mean_factor*normal/(2*self%shear)
       end do
       self%stiffness(j, j) = self%stiffness(j, j) + 2*self%shear
       self%compliance(j, j) = self%compliance(j, j) + 1/(2*self%shear)

@@ -61,7 +61,7 @@ contains
     integer :: i
 
     if (.not. (young > 0.0_wp .and. poisson > -1.0_wp .and. poisson < 0.5_wp)) then
-      call fatal_error(error, "Young's modulus must be positive, Poisson's ratio between -1 and 0.5")
+      call fatal_error(error, "Young's modulus must be positive, Poisson's ratio from -1 to 0.5")
       return
     end if
     call refuse(law_yield, criterion, error)
@@ -123,8 +123,9 @@ contains
     real(wp), intent(out) :: tangent(6, 6)
     !> Whether plastic flow took place.
     logical, intent(out) :: plastic
-    !> How it ended; iterations are those of the return mapping.
-    type(verdict_t), intent(out) :: verdict
+    !> How it ended; iterations are those of the return mapping. Node, element and point are left
+    !> as they were.
+    type(verdict_t), intent(inout) :: verdict
 
     call update_point(self%laws, self%least_parts, stress_old, internal_old, strain, &
                       stress, internal, tangent, plastic, verdict)

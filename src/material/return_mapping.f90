@@ -5,9 +5,9 @@
 !>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
 !>
 !> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and
-!> its consistent tangent). Without a dependence of X or Y on xi the matrix is symmetric and its
-!> 6x6 block C^-1 + dp H positive definite: it is inverted without pivoting, and the last unknown
-!> eliminated. The inverse of the last iteration gives the last correction and the tangent.
+!> its consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
+!> inverted without pivoting (with, where that fails), and the last unknown eliminated. The inverse
+!> of the last iteration gives the last correction and the tangent.
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
@@ -27,6 +27,16 @@ module dd3_material_return_mapping
   real(wp), parameter :: tolerance = 1.0e-8_wp
   !> Relative excess of the trial stress over the flow stress that still counts as elastic.
   real(wp), parameter :: elastic_margin = 1.0e-12_wp
+  !> Smallest pivot of a matrix made of order one by the shear modulus.
+  real(wp), parameter :: smallest_pivot = 1.0e-6_wp
+  !> Unit vectors.
+  real(wp), parameter :: unit(6, 6) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+                                               0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+                                               0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+                                               0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, &
+                                               0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
+                                               0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], &
+                                              [6, 6])
   !> Relative excess below which the iteration starts by a step along the trial stress' normal.
   real(wp), parameter :: near_surface = 0.5_wp
 
@@ -101,11 +111,12 @@ contains
     real(wp), intent(in) :: effective(6)
     !> The step.
     type(step_t), intent(inout) :: step
-    real(wp) :: value, normal(6), flow(6)
+    real(wp) :: value, normal(6), flow(6), modulus
 
     call laws%criterion%gradient(effective, value, normal)
     flow = elastic_stress(laws%elasticity, normal)
-    step%increment = (value - step%flow%value)/(dot_product(normal, flow) + max(step%flow%slope, 0.0_wp))
+    modulus = dot_product(normal, flow) + max(step%flow%slope, 0.0_wp)
+    step%increment = (value - step%flow%value)/modulus
     step%direction%stress = effective - step%increment*flow
   end subroutine start_along_normal
 
@@ -144,11 +155,7 @@ contains
     call evaluate(laws, internal, step%direction%stress, step%increment, step)
     do iteration = 1, iteration_limit
       step%iterations = step%iterations + 1
-      if (laws%symmetric) then
-        call invert_symmetric(laws, step, regular)
-      else
-        call invert_general(laws, step, regular)
-      end if
+      call invert(laws, step, regular)
       if (.not. regular) return
       change = -matmul(step%block, step%residual) - step%excess*step%column
       change_of_increment = -dot_product(step%row, step%residual) - step%excess*step%corner
@@ -237,48 +244,89 @@ contains
     step%converged = .true.
   end subroutine finish
 
-  !> Inverse of the symmetric matrix [C^-1 + dp H, V; V, -Y'].
-  pure subroutine invert_symmetric(laws, step, regular)
+  !> Inverse of the matrix of the iteration [A, c; r, -Y'], A = C^-1 (I + dX/dxi) + dp H,
+  !> c = C^-1 dX/dp + V, r = V - dY/dxi: of A without pivoting, then the last unknown eliminated.
+  pure subroutine invert(laws, step, regular)
     !> The laws.
     type(composition_t), intent(in) :: laws
     !> The step.
     type(step_t), intent(inout) :: step
     !> Whether the matrix could be inverted.
     logical, intent(out) :: regular
-    real(wp) :: pivot, factor, column(6), modulus
-    integer :: j, k
+    real(wp) :: row(6), modulus
+    integer :: j
 
-    step%block = laws%elasticity%compliance + step%increment*step%direction%second
-    regular = .false.
-    do k = 1, 6
-      pivot = step%block(k, k)
-      if (.not. pivot > 0.0_wp) return
-      pivot = 1/pivot
-      column = step%block(:, k)
-      column(k) = 0.0_wp
-      do j = 1, 6
-        factor = pivot*step%block(k, j)
-        step%block(:, j) = step%block(:, j) - factor*column
-        step%block(k, j) = factor
-      end do
-      step%block(:, k) = -pivot*column
-      step%block(k, k) = pivot
-    end do
-    step%row = matmul(step%block, step%direction%gradient)
-    modulus = dot_product(step%row, step%direction%gradient) + step%flow%slope
-    regular = modulus > 0.0_wp
+    call fill_matrix(laws, step, step%block, step%column, row)
+    call invert_in_place(step%block, smallest_pivot/laws%elasticity%shear, regular)
+    if (.not. regular) then
+      call invert_with_pivots(laws, step, regular)
+      return
+    end if
+    step%column = matmul(step%block, step%column)
+    modulus = dot_product(step%column, row) + step%flow%slope
+    regular = modulus > smallest_pivot*laws%elasticity%shear
     if (.not. regular) return
     step%corner = -1/modulus
-    step%column = step%row/modulus
+    step%row = matmul(row, step%block)/modulus
     do j = 1, 6
       step%block(:, j) = step%block(:, j) - step%row(j)*step%column
     end do
-    step%row = step%column
-  end subroutine invert_symmetric
+    step%column = step%column/modulus
+  end subroutine invert
 
-  !> Inverse of [C^-1 (I + dX/dxi) + dp H, C^-1 dX/dp + V; V - dY/dxi, -dY/dp], made of order one
-  !> by twice the shear modulus before it is factorised.
-  pure subroutine invert_general(laws, step, regular)
+  !> The matrix of the iteration but for its last entry, -Y'.
+  pure subroutine fill_matrix(laws, step, matrix, column, row)
+    !> The laws.
+    type(composition_t), intent(in) :: laws
+    !> The step.
+    type(step_t), intent(in) :: step
+    !> A, c and r.
+    real(wp), intent(out) :: matrix(6, 6), column(6), row(6)
+    integer :: j
+
+    matrix = laws%elasticity%compliance + step%increment*step%direction%second
+    column = step%direction%gradient
+    row = step%direction%gradient
+    if (laws%symmetric) return
+    row = row - step%flow%gradient
+    if (.not. laws%kinematic) return
+    do j = 1, 6
+      matrix(:, j) = matrix(:, j) + elastic_strain(laws%elasticity, step%back%gradient(:, j))
+    end do
+    column = column + elastic_strain(laws%elasticity, step%back%slope)
+  end subroutine fill_matrix
+
+  !> Inverse of a 6x6 matrix by Gauss-Jordan sweeps without pivoting, as a positive definite one of
+  !> small numbers allows. The unit vectors spare single stores amid vectors, which cost more than
+  !> the arithmetic.
+  pure subroutine invert_in_place(a, smallest, regular)
+    !> The matrix, then its inverse.
+    real(wp), intent(inout) :: a(6, 6)
+    !> Pivots below it are refused.
+    real(wp), intent(in) :: smallest
+    !> Whether there were none.
+    logical, intent(out) :: regular
+    real(wp) :: pivot, factor, column(6)
+    integer :: j, k
+
+    regular = .false.
+    do k = 1, 6
+      pivot = a(k, k)
+      if (.not. pivot > smallest) return
+      pivot = 1/pivot
+      column = a(:, k) - unit(:, k)
+      do j = 1, 6
+        factor = pivot*a(k, j)
+        a(:, j) = a(:, j) - factor*column
+      end do
+      a(:, k) = unit(:, k) - pivot*column
+    end do
+    regular = .true.
+  end subroutine invert_in_place
+
+  !> The same inverse with pivoting, for laws that leave A indefinite; the matrix is made of order
+  !> one by twice the shear modulus.
+  pure subroutine invert_with_pivots(laws, step, regular)
     !> The laws.
     type(composition_t), intent(in) :: laws
     !> The step.
@@ -289,16 +337,10 @@ contains
     integer :: j
 
     scale = 2*laws%elasticity%shear
-    matrix(1:6, 1:6) = laws%elasticity%compliance + step%increment*step%direction%second
-    matrix(1:6, 7) = step%direction%gradient
-    if (laws%kinematic) then
-      do j = 1, 6
-        matrix(1:6, j) = matrix(1:6, j) + elastic_strain(laws%elasticity, step%back%gradient(:, j))
-      end do
-      matrix(1:6, 7) = matrix(1:6, 7) + elastic_strain(laws%elasticity, step%back%slope)
-    end if
-    matrix(1:6, 1:6) = scale*matrix(1:6, 1:6)
-    matrix(7, 1:6) = step%direction%gradient - step%flow%gradient
+    call fill_matrix(laws, step, step%block, step%column, step%row)
+    matrix(1:6, 1:6) = scale*step%block
+    matrix(1:6, 7) = step%column
+    matrix(7, 1:6) = step%row
     matrix(7, 7) = -step%flow%slope/scale
     inverse = 0.0_wp
     do j = 1, 7
@@ -310,6 +352,6 @@ contains
     step%column = inverse(1:6, 7)
     step%row = inverse(7, 1:6)
     step%corner = inverse(7, 7)/scale
-  end subroutine invert_general
+  end subroutine invert_with_pivots
 
 end module dd3_material_return_mapping

@@ -36,12 +36,16 @@ contains
     real(wp), intent(out) :: tangent(6, 6)
     !> Whether plastic flow took place in the (last part of the) increment.
     logical, intent(out) :: plastic
-    !> How it ended.
-    type(verdict_t), intent(out) :: verdict
+    !> How it ended; its place is left as it was.
+    type(verdict_t), intent(inout) :: verdict
     type(step_t) :: step
     integer :: parts
 
     plastic = .false.
+    verdict%outcome = verdict_impossible
+    verdict%iterations = 0
+    verdict%norm = 0.0_wp
+    if (verdict%reason(1:1) /= " ") verdict%reason = ""
     if (.not. all_finite(laws%n_internal, stress_old, internal_old, strain)) then
       call give_up(laws, stress_old, internal_old, stress, internal, tangent)
       verdict%reason = "stress, strain or internal variables are no numbers"
@@ -216,8 +220,8 @@ contains
     real(wp), intent(out) :: stress(6), internal(laws%n_internal)
     !> The last step.
     type(step_t), intent(out) :: step
-    !> Derivatives in the whole strain of the stress, MPa, and of the plastic strain; right where the
-    !> state is stress and plastic strain.
+    !> Derivatives in the whole strain of the stress, MPa, and of the plastic strain; right where
+    !> the state is stress and plastic strain.
     real(wp), intent(out), optional :: stress_slope(6, 6), plastic_slope(6)
     real(wp) :: start(6), start_internal(laws%n_internal)
     integer :: part

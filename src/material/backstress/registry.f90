@@ -1,5 +1,5 @@
-!> The back-stress laws the program knows, by name: one array of laws, from which the look-up, the known
-!> names, the checks, `--help` and the generic tests derive.
+!> The back-stress laws the program knows, by name: one array of laws, from which the look-up, the
+!> known names, the checks, `--help` and the generic tests derive.
 module dd3_material_backstress_registry
   use dd3_material_backstress_prager, only : prager_t
   use dd3_material_backstress_lemaitre_chaboche, only : lemaitre_chaboche_t

@@ -61,7 +61,8 @@ contains
     !> Flow stress and its derivatives.
     type(flow_response_t), intent(out) :: flow
 
-    associate (unused => old, no_direction => direction, no_history => plastic, no_increment => increment)
+    associate (unused => old, no_direction => direction, no_history => plastic, &
+               no_increment => increment)
     end associate
     flow%value = self%y0
     flow%slope = 0.0_wp

@@ -1,5 +1,5 @@
-!> The hardening laws the program knows, by name: one array of laws, from which the look-up, the known
-!> names, the checks, `--help` and the generic tests derive.
+!> The hardening laws the program knows, by name: one array of laws, from which the look-up, the
+!> known names, the checks, `--help` and the generic tests derive.
 module dd3_material_hardening_registry
   use dd3_material_hardening_perfect, only : perfect_t
   use dd3_material_hardening_linear, only : linear_t

@@ -60,7 +60,7 @@ contains
           lower_open=.true.), &
       row("N", kind_real, "", "-", "half the factor of T12^2; 1.5 where left out", 0.0_wp, &
           lower_open=.true.), &
-      row("r0", kind_real, "", "-", "r-value along the rolling direction; then G+H = 1, L = M = N", &
+      row("r0", kind_real, "", "-", "r-value along the rolling direction; G+H = 1, L = M = N", &
           0.0_wp, lower_open=.true.), &
       row("r45", kind_real, "", "-", "r-value at 45 degrees", 0.0_wp), &
       row("r90", kind_real, "", "-", "r-value along the transverse direction", 0.0_wp, &

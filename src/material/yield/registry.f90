@@ -1,5 +1,5 @@
-!> The yield criteria the program knows, by name: one array of laws, from which the look-up, the known
-!> names, the checks, `--help` and the generic tests derive.
+!> The yield criteria the program knows, by name: one array of laws, from which the look-up, the
+!> known names, the checks, `--help` and the generic tests derive.
 module dd3_material_yield_registry
   use dd3_material_yield_von_mises, only : von_mises_t
   use dd3_material_yield_hill48, only : hill48_t

@@ -2,7 +2,7 @@
 module dd3_material_yield_von_mises
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
-  use dd3_linalg_tensor, only : kelvin_deviator, kelvin_deviator_projector
+  use dd3_linalg_tensor, only : kelvin_deviator_projector
   use dd3_material_description, only : description_t
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
@@ -44,6 +44,18 @@ contains
     end associate
   end subroutine set
 
+  !> Deviator of a stress, from differences of its normal components.
+  pure function deviator_of(t) result(s)
+    !> Stress, MPa.
+    real(wp), intent(in) :: t(6)
+    real(wp) :: s(6)
+
+    s(1) = ((t(1) - t(2)) + (t(1) - t(3)))/3
+    s(2) = ((t(2) - t(3)) + (t(2) - t(1)))/3
+    s(3) = ((t(3) - t(1)) + (t(3) - t(2)))/3
+    s(4:6) = t(4:6)
+  end function deviator_of
+
   !> The equivalent stress.
   pure real(wp) function value(self, stress)
     !> The criterion.
@@ -54,7 +66,7 @@ contains
 
     associate (unused => self)
     end associate
-    s = kelvin_deviator(stress)
+    s = deviator_of(stress)
     value = sqrt(1.5_wp*dot_product(s, s))
   end function value
 
@@ -69,9 +81,11 @@ contains
     !> Its gradient.
     real(wp), intent(out) :: normal(6)
 
-    value = self%value(stress)
-    normal = 0.0_wp
-    if (value > 0.0_wp) normal = (1.5_wp/value)*kelvin_deviator(stress)
+    associate (unused => self)
+    end associate
+    normal = deviator_of(stress)
+    value = sqrt(1.5_wp*dot_product(normal, normal))
+    if (value > 0.0_wp) normal = (1.5_wp/value)*normal
   end subroutine gradient
 
   !> The equivalent stress with both derivatives.

@@ -1,0 +1,163 @@
+!> Nanoseconds per stress update with its tangent, for combinations of the registered laws, and a
+!> long walk of random strain increments up to 10 %, of which every failure is counted. With an
+!> argument only the combinations whose names hold it ("hill48 swift").
+program benchmark_material
+  use dd3_base_clock, only : wall_time
+  use dd3_base_error, only : error_t
+  use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
+  use dd3_material_description, only : description_t, law_choice_t
+  use dd3_base_parameter, only : law_value_t
+  use dd3_material_material, only : material_t, new_material
+  implicit none
+
+  !> States prepared; best of so many rounds over them; random increments of the walk.
+  integer, parameter :: states = 1000, rounds = 20, walk = 100000
+  !> Sizes of the strain increments timed.
+  real(wp), parameter :: sizes(4) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp]
+  type(description_t), allocatable :: criteria(:), hardenings(:), backstresses(:)
+  type(law_choice_t), allocatable :: back(:)
+  character(len=60) :: wanted
+  integer :: i, j, k
+
+  call get_command_argument(1, wanted)
+  call describe_laws(law_yield, criteria)
+  call describe_laws(law_hardening, hardenings)
+  call describe_laws(law_backstress, backstresses)
+  print '(a)', "ns per update with tangent; strain increments 1e-5 1e-4 1e-3 1e-2; "// &
+    "mean Newton iterations; failures in the walk"
+  do k = 0, size(backstresses)
+    do i = 1, size(criteria)
+      do j = 1, size(hardenings)
+        if (k == 0) then
+          allocate (back(0))
+        else
+          allocate (back(1))
+          back(1) = law_choice_t(backstresses(k)%name, backstresses(k)%example)
+        end if
+        call measure(choice_of(criteria(i)), choice_of(hardenings(j)), back)
+        deallocate (back)
+      end do
+    end do
+  end do
+
+contains
+
+  !> A law with its example; Hill's with a mild steel in place of the isotropic one.
+  type(law_choice_t) function choice_of(description) result(choice)
+    !> The law.
+    type(description_t), intent(in) :: description
+
+    choice = law_choice_t(description%name, description%example)
+    if (description%name /= "hill48") return
+    choice%values = [law_value_t("F", 0.284_wp), law_value_t("G", 0.358_wp), &
+                     law_value_t("H", 0.642_wp), law_value_t("N", 1.289_wp)]
+  end function choice_of
+
+  !> Times one combination and prints a line.
+  subroutine measure(criterion, hardening, back)
+    !> The laws.
+    type(law_choice_t), intent(in) :: criterion, hardening, back(:)
+    type(material_t) :: material
+    type(error_t), allocatable :: error
+    real(wp) :: plastic_time(size(sizes)), iterations(size(sizes)), elastic_time
+    character(len=60) :: name
+    integer :: n
+
+    name = trim(criterion%name)//" "//trim(hardening%name)
+    if (size(back) > 0) name = trim(name)//" "//trim(back(1)%name)
+    if (index(name, trim(wanted)) == 0) return
+    call new_material(material, 2.1e5_wp, 0.3_wp, criterion, hardening, back, error)
+    if (allocated(error)) error stop "a material cannot be made"
+    do n = 1, size(sizes)
+      call time_updates(material, sizes(n), .true., plastic_time(n), iterations(n))
+    end do
+    call time_updates(material, 1.0e-5_wp, .false., elastic_time, iterations(1))
+    call time_updates(material, sizes(1), .true., plastic_time(1), iterations(1))
+    print '(a40, 2(a, f7.1), 3f8.1, a, 4f5.1, a, i0)', name, " elastic ", elastic_time, &
+      "  plastic ", plastic_time, "  iterations ", iterations, "  failures ", failures(material)
+  end subroutine measure
+
+  !> Random number between -1 and 1 in each component.
+  function random_vector() result(v)
+    real(wp) :: v(6)
+
+    call random_number(v)
+    v = 2*v - 1
+  end function random_vector
+
+  !> Time of one update from states on the yield surface, loaded or unloaded.
+  subroutine time_updates(material, length, load, time, iterations)
+    !> The material.
+    type(material_t), intent(in) :: material
+    !> Size of the strain increment.
+    real(wp), intent(in) :: length
+    !> Whether the increments load.
+    logical, intent(in) :: load
+    !> Nanoseconds; mean number of iterations.
+    real(wp), intent(out) :: time, iterations
+    real(wp) :: stress(6, states), internal(material%n_internal, states), strain(6, states)
+    real(wp) :: zero(6), zeros(material%n_internal), end_stress(6), end_internal(material%n_internal)
+    real(wp) :: tangent(6, 6), start
+    type(verdict_t) :: verdict
+    logical :: plastic
+    integer :: n, r, total
+
+    zero = 0.0_wp
+    zeros = 0.0_wp
+    do n = 1, states
+      strain(:, n) = 0.02_wp*random_vector()
+      call material%update(zero, zeros, strain(:, n), stress(:, n), internal(:, n), tangent, &
+                           plastic, verdict)
+      strain(:, n) = length*random_vector()
+      strain(:, n) = strain(:, n) - (strain(1, n) + strain(2, n) + strain(3, n)) &
+                     /3*[1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+      if (dot_product(strain(:, n), material%plastic_direction(stress(:, n), internal(:, n))) &
+          > 0.0_wp .neqv. load) strain(:, n) = -strain(:, n)
+    end do
+    time = huge(1.0_wp)
+    do r = 1, rounds
+      total = 0
+      start = wall_time()
+      do n = 1, states
+        call material%update(stress(:, n), internal(:, n), strain(:, n), end_stress, end_internal, &
+                             tangent, plastic, verdict)
+        total = total + verdict%iterations
+      end do
+      time = min(time, 1.0e9_wp*(wall_time() - start)/states)
+    end do
+    iterations = real(total, wp)/states
+  end subroutine time_updates
+
+  !> Failures in a walk of random strain increments up to 10 %.
+  integer function failures(material)
+    !> The material.
+    type(material_t), intent(in) :: material
+    real(wp) :: stress(6), internal(material%n_internal), new_stress(6), &
+                new_internal(material%n_internal), tangent(6, 6), size_of, strain(6)
+    type(verdict_t) :: verdict
+    logical :: plastic
+    integer :: n
+
+    failures = 0
+    stress = 0.0_wp
+    internal = 0.0_wp
+    do n = 1, walk
+      call random_number(size_of)
+      strain = 0.1_wp*10.0_wp**(-4*size_of)*random_vector()
+      ! Volume kept, or the walk ends at pressures without sense.
+      strain(3) = -strain(1) - strain(2)
+      call material%update(stress, internal, strain, new_stress, new_internal, tangent, plastic, &
+                           verdict)
+      if (verdict%outcome /= verdict_converged) failures = failures + 1
+      stress = new_stress
+      internal = new_internal
+      if (modulo(n, 100) == 0) then
+        stress = 0.0_wp
+        internal = 0.0_wp
+      end if
+    end do
+  end function failures
+
+end program benchmark_material
