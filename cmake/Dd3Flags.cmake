@@ -9,7 +9,8 @@ string(APPEND CMAKE_Fortran_FLAGS_DEBUG_INIT " -finit-real=snan -finit-derived -
 # arrays, -Wconversion-extra about the bounds of substrings: the first is off, the second never an error. -Winteger-division
 # takes issue with every third of a whole number.
 option(DD3_WARNINGS_ARE_ERRORS "Stop the build at the first warning" OFF)
-set(DD3_WARNINGS -std=f2008 -pedantic -Wall -Wextra -Wimplicit-interface -Wimplicit-procedure -Wno-maybe-uninitialized -Wno-integer-division
+set(DD3_WARNINGS -std=f2008 -pedantic -Wall -Wextra -Wimplicit-interface -Wimplicit-procedure -Wno-maybe-uninitialized
+  -Wno-integer-division
   $<$<CONFIG:Debug>:-Wconversion-extra>)
 if(DD3_WARNINGS_ARE_ERRORS)
   list(APPEND DD3_WARNINGS -Werror -Wno-error=conversion-extra)

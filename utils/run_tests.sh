@@ -27,11 +27,11 @@ run_tests() {
   failed=$((failed + bad))
 }
 
-# Configures and builds a preset; a build that fails counts as a failed test.
+# Configures (with the options that follow the preset) and builds; a build that fails counts as a failed test.
 build() {
   echo "== building: $1"
   mkdir -p "build/$1"
-  if ! { cmake --preset "$1" && cmake --build --preset "$1" -j "$jobs"; } >"build/$1/build.log" 2>&1; then
+  if ! { cmake --preset "$@" && cmake --build --preset "$1" -j "$jobs"; } >"build/$1/build.log" 2>&1; then
     tail -n 60 "build/$1/build.log"
     failed=$((failed + 1))
     return 1
@@ -46,7 +46,7 @@ finish() {
 
 utils/install_needed.sh || { failed=1; finish; }
 build release && run_tests release
-build debug && run_tests debug
+build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
 if [ "${1:-}" = --slow ]; then
   run_tests slow
 fi
