@@ -187,7 +187,7 @@ contains
     correction%status(:, 1) = system%contact%status
     verdict%norm = correction%criterion(j)
     verdict%outcome = verdict_retry
-    if (j > 1 .and. settled .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
+    if (j > 1 .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
       verdict%outcome = verdict_converged
   end subroutine judge
 
