@@ -6,6 +6,7 @@ module dd3_app_help
   use dd3_base_text, only : same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
+  use dd3_model_law_help, only : help_law, help_laws, law_reference_markdown
   implicit none
   private
   public :: show_help, show_version
@@ -23,14 +24,16 @@ contains
 
     exit_code = exit_end
     if (topic == "") then
-      text = usage_text()//"blocks of the input:"//achar(10)//help_blocks()
+      text = usage_text()//"blocks of the input:"//achar(10)//help_blocks()// &
+             "laws:"//achar(10)//help_laws()
     else if (same_name(topic, "markdown")) then
-      text = reference_markdown()
+      text = reference_markdown()//law_reference_markdown()
     else
-      text = help_topic(topic)
+      text = help_topic(topic)//help_law(topic)
     end if
     if (text == "") then
-      write (error_unit, '(a)') "there is no help on '"//topic//"'; dd3imp --help lists the blocks"
+      write (error_unit, '(a)') "there is no help on '"//topic// &
+          "'; dd3imp --help lists blocks and laws"
       exit_code = exit_usage
     else
       write (output_unit, '(a)', advance="no") text

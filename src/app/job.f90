@@ -107,9 +107,12 @@ contains
     call date_and_time(date=date, time=time)
     call log%say("dd3imp "//version//": "//case%file)
     if (len(model%title) > 0) call log%say(model%title)
-    call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"//time(3:4))
-    call log%say(to_text(model%n_element)//" "//model%element%title//", "//to_text(model%n_node)//" nodes, "// &
-                 to_text(model%n_contact)//" of them candidates for contact with "//to_text(model%n_tool)//" tools")
+    call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
+        time(3:4))
+    call log%say(to_text(model%n_element)//" "//model%element%title//", "//to_text(model%n_node)// &
+        " nodes, "// &
+                 to_text(model%n_contact)//" of them candidates for contact with "// &
+                 to_text(model%n_tool)//" tools")
     call log%note(echo_case(case))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
@@ -125,8 +128,10 @@ contains
 
     integer :: i
 
-    call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)//" cut back; "// &
-                 to_text(summary%iterations)//" iterations; "//to_text(summary%solver_iterations)// &
+    call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)// &
+        " cut back; "// &
+                 to_text(summary%iterations)//" iterations; "// &
+                 to_text(summary%solver_iterations)// &
                  " of the linear solver; "//to_text(summary%seconds, 3)//" s")
     call log%note("time by section, s:")
     do i = 1, size(section_names)

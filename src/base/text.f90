@@ -131,23 +131,28 @@ contains
     end do
   end function nearest_name
 
-  !> Number of insertions, deletions and replacements between two words (Levenshtein 1966).
+  !> Number of insertions, deletions, replacements and exchanges of neighbours between two words
+  !> (optimal string alignment; Damerau 1964).
   pure integer function edit_distance(a, b)
     !> The two words.
     character(len=*), intent(in) :: a, b
-    integer :: cost(0:len(b)), previous, i, j, saved
+    integer :: cost(0:len(b), 0:2), i, j
 
-    cost = [(j, j=0, len(b))]
+    cost = 0
+    cost(:, 2) = [(j, j=0, len(b))]
     do i = 1, len(a)
-      previous = cost(0)
-      cost(0) = i
+      cost(:, :1) = cost(:, 1:)
+      cost(0, 2) = i
       do j = 1, len(b)
-        saved = cost(j)
-        cost(j) = min(cost(j) + 1, cost(j - 1) + 1, previous + merge(0, 1, a(i:i) == b(j:j)))
-        previous = saved
+        cost(j, 2) = min(cost(j, 1) + 1, cost(j - 1, 2) + 1, &
+                         cost(j - 1, 1) + merge(0, 1, a(i:i) == b(j:j)))
+        if (i == 1 .or. j == 1) cycle
+        if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
+          cost(j, 2) = min(cost(j, 2), cost(j - 2, 0) + 1)
+        end if
       end do
     end do
-    edit_distance = cost(len(b))
+    edit_distance = cost(len(b), 2)
   end function edit_distance
 
   !> The words with a separator between them.

@@ -6,7 +6,7 @@ module dd3_input_help
   use dd3_input_value, only : describe, not_available
   implicit none
   private
-  public :: help_blocks, help_topic, reference_markdown, describe_key
+  public :: help_blocks, help_topic, reference_markdown, describe_key, escaped
 
   !> Ends a line.
   character(len=1), parameter :: newline = achar(10)
@@ -145,7 +145,7 @@ contains
            newline
     do i = 1, size(table)
       text = text//newline//"## `"//trim(title(table(i)))//"`"//newline//newline// &
-          trim(table(i)%help)//newline
+          escaped(trim(table(i)%help))//newline
       if (table(i)%later) text = text//newline//"This block "//not_available//"."//newline
       if (size(table(i)%key) == 0) cycle
       text = text//newline//"| key | value | default | meaning |"//newline//"|---|---|---|---|"// &

@@ -320,7 +320,8 @@ contains
     again = .false.
     do i = 1, size(entry%value)
       if (k > size(form)) then
-        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text//"' is one value too many", &
+        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
+            "' is one value too many", &
                                describe(row))
         return
       end if
@@ -545,7 +546,8 @@ contains
     case (kind_integers)
       text = many//" whole numbers"
     case (kind_names)
-      text = "any of: "//trim(row%choices)
+      text = many//" words"
+      if (row%choices /= "") text = "any of: "//trim(row%choices)
     case (kind_law)
       text = "a law and its parameters: name key=value key=value ..."
     case default

@@ -1,0 +1,89 @@
+!> Help on the laws, and the manual's reference of them, printed from the registries.
+module dd3_model_law_help
+  use dd3_base_text, only : same_name
+  use dd3_input_help, only : describe_key, escaped
+  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield, later_laws
+  use dd3_material_description, only : description_t
+  implicit none
+  private
+  public :: help_laws, help_law, law_reference_markdown
+
+  !> Ends a line.
+  character(len=1), parameter :: newline = achar(10)
+  !> The kinds of laws, and the key each is given with.
+  integer, parameter :: kinds(3) = [law_yield, law_hardening, law_backstress]
+  !> See above.
+  character(len=10), parameter :: keys(3) = [character(len=10) :: "yield", "hardening", &
+      "backstress"]
+  !> Width of the column of names.
+  integer, parameter :: name_width = 18
+
+contains
+
+  !> The list of all laws.
+  function help_laws() result(text)
+    character(len=:), allocatable :: text
+
+    type(description_t), allocatable :: law(:)
+    integer :: k, i
+
+    text = ""
+    do k = 1, size(kinds)
+      call describe_laws(kinds(k), law)
+      do i = 1, size(law)
+        text = text//"  "//law(i)%name(:name_width)//trim(keys(k))//": "//trim(law(i)%title)// &
+            newline
+      end do
+    end do
+  end function help_laws
+
+  !> Help on one law; empty if there is none of this name.
+  function help_law(name) result(text)
+    !> Name of the law.
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+
+    type(description_t), allocatable :: law(:)
+    integer :: k, i, p
+
+    text = ""
+    do k = 1, size(kinds)
+      call describe_laws(kinds(k), law)
+      do i = 1, size(law)
+        if (.not. same_name(law(i)%name, name)) cycle
+        text = text//trim(keys(k))//" = "//trim(law(i)%name)//newline//"  "//trim(law(i)%title)// &
+               newline//"  source: "//trim(law(i)%source)//newline
+        do p = 1, size(law(i)%rows)
+          text = text//"  "//describe_key(law(i)%rows(p))//newline//repeat(" ", 6)// &
+                 trim(law(i)%rows(p)%help)//newline
+        end do
+      end do
+    end do
+  end function help_law
+
+  !> The reference of all laws for the manual, in Markdown.
+  function law_reference_markdown() result(text)
+    character(len=:), allocatable :: text
+
+    type(description_t), allocatable :: law(:)
+    integer :: k, i, p
+
+    text = newline//"# Laws"//newline
+    do k = 1, size(kinds)
+      call describe_laws(kinds(k), law)
+      text = text//newline//"## `"//trim(keys(k))//" = law key=value ...`"//newline//newline// &
+             "| law | meaning | parameters | source |"//newline//"|---|---|---|---|"//newline
+      do i = 1, size(law)
+        text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
+        do p = 1, size(law(i)%rows)
+          if (p > 1) text = text//"; "
+          text = text//"`"//trim(law(i)%rows(p)%name)//"` "//escaped(trim(law(i)%rows(p)%help))
+        end do
+        text = text//" | "//escaped(trim(law(i)%source))//" |"//newline
+      end do
+      if (later_laws(kinds(k)) == "") cycle
+      text = text//newline//"Not available in this version: "//later_laws(kinds(k))//"."//newline
+    end do
+  end function law_reference_markdown
+
+end module dd3_model_law_help
