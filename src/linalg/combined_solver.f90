@@ -78,7 +78,8 @@ contains
     self%options = options
     self%has_iterative = iterative
     self%has_direct = direct
-    call new_preconditioner(self%preconditioner, trim(options%preconditioner), options%ilu_level, error)
+    call new_preconditioner(self%preconditioner, trim(options%preconditioner), options%ilu_level, &
+                            iterative .and. direct, error)
   end subroutine new_combined_solver
 
   !> Prepares for matrices of one pattern.
@@ -93,12 +94,19 @@ contains
 
     call self%release()
     n = 3*matrix%n
+    self%description = ""
     call find_ordering(trim(self%options%ordering), matrix, order, error)
     if (allocated(error)) call find_ordering("none", matrix, order, error)
     call self%system%setup(matrix, order)
     if (self%has_iterative) then
       call self%preconditioner%setup(self%system%matrix)
+      self%description = "CGS with "//self%preconditioner%description
       call self%iteration%setup(n, self%options%tolerance, self%options%iterations)
+    end if
+    if (self%has_direct .and. self%has_iterative) then
+      self%description = trim(self%description)//", UMFPACK to fall back on"
+    else if (self%has_direct) then
+      self%description = "UMFPACK"
     end if
     if (allocated(self%b)) deallocate (self%b, self%x, self%y, self%r)
     allocate (self%b(n), self%x(n), self%y(n), self%r(n))

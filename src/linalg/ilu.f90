@@ -5,11 +5,14 @@
 !> lev(i,k) + lev(k,j) + 1; the smallest counts, and what is above k is left out. The numeric phase goes row by row (IKJ),
 !> the diagonal blocks are kept inverted. A diagonal block near to singular is replaced by a shifted one.
 !>
+!> A narrow strip numbered section by section has so little fill that the complete factorisation costs hardly more than an
+!> incomplete one: if asked to, the set-up compares the two and raises the level where that pays.
+!>
 !> Layout, chosen for speed: a block row is held as three plain rows, so that subtracting a multiple of an earlier row
 !> runs along contiguous numbers; the symbolic phase lists for each pair of rows the stretches that both have in common.
 !> The triangular solutions read blocks, column by column.
 module dd3_linalg_ilu
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_matrix, only : block_matrix_t
@@ -23,6 +26,8 @@ module dd3_linalg_ilu
   type, extends(preconditioner_t) :: ilu_t
     !> Highest level of fill kept.
     integer :: level = 2
+    !> Whether the level may be raised where the complete factorisation is cheaper in the end.
+    logical :: may_raise = .false.
     !> Number of block rows.
     integer :: n = 0
     !> Where the rows of the factors begin in `column`, `(n + 1)`.
@@ -56,16 +61,24 @@ module dd3_linalg_ilu
   !> Size of the first shift.
   real(wp), parameter :: pivot_shift = 1.0e-3_wp
 
+  !> A complete factorisation is tried up to this many times the blocks of the matrix.
+  integer, parameter :: fill_limit = 12
+  !> Iterations that an incomplete factorisation is reckoned to cost.
+  integer, parameter :: reckoned_iterations = 40
+
 contains
 
   !> Makes an incomplete factorisation of a level of fill.
-  subroutine new_ilu(self, level)
+  subroutine new_ilu(self, level, may_raise)
     !> The preconditioner made.
     type(ilu_t), intent(out) :: self
     !> Highest level of fill kept.
     integer, intent(in) :: level
+    !> Whether the level may be raised where the complete factorisation is cheaper in the end.
+    logical, intent(in) :: may_raise
 
     self%level = level
+    self%may_raise = may_raise
   end subroutine new_ilu
 
   !> Symbolic phase: pattern, map of the matrix into it, stretches.
@@ -79,6 +92,8 @@ contains
     self%n = matrix%n
     call level_of_fill(matrix%n, matrix%row_start, matrix%column, self%level, self%row_start, self%column, &
                        self%diagonal)
+    self%description = "ILU("//to_text(self%level)//")"
+    if (self%may_raise) call raise_level(self, matrix)
     n_block = size(self%column)
     if (allocated(self%row)) deallocate (self%row, self%block)
     allocate (self%row(9*n_block), self%block(3, 3, n_block))
@@ -86,8 +101,43 @@ contains
     call find_stretches(self)
   end subroutine ilu_setup
 
+  !> Takes the pattern of the complete factorisation where it costs no more than the incomplete one and its iterations.
+  subroutine raise_level(self, matrix)
+    !> The preconditioner.
+    class(ilu_t), intent(inout) :: self
+    !> A matrix of the pattern.
+    type(block_matrix_t), intent(in) :: matrix
+    integer, allocatable :: row_start(:), column(:), diagonal(:)
+    integer(i8) :: limit
+
+    call level_of_fill(matrix%n, matrix%row_start, matrix%column, matrix%n, row_start, column, diagonal, &
+                       fill_limit*size(matrix%column))
+    if (.not. allocated(column)) return
+    limit = elimination_cost(self%row_start, self%column, self%diagonal) &
+            + 2_i8*reckoned_iterations*int(size(self%column) + size(matrix%column), i8)
+    if (elimination_cost(row_start, column, diagonal) > limit) return
+    call move_alloc(row_start, self%row_start)
+    call move_alloc(column, self%column)
+    call move_alloc(diagonal, self%diagonal)
+    self%description = "complete LU in place of "//trim(self%description)
+  end subroutine raise_level
+
+  !> Products of blocks that an elimination takes.
+  pure integer(i8) function elimination_cost(row_start, column, diagonal)
+    !> See `ilu_t`.
+    integer, intent(in) :: row_start(:), column(:), diagonal(:)
+    integer :: i, k
+
+    elimination_cost = 0
+    do i = 1, size(diagonal)
+      do k = row_start(i), diagonal(i) - 1
+        elimination_cost = elimination_cost + int(row_start(column(k) + 1) - diagonal(column(k)), i8)
+      end do
+    end do
+  end function elimination_cost
+
   !> Pattern of the factors by level of fill.
-  subroutine level_of_fill(n, row_start, column, level, fill_start, fill_column, fill_diagonal)
+  subroutine level_of_fill(n, row_start, column, level, fill_start, fill_column, fill_diagonal, most)
     !> Number of rows.
     integer, intent(in) :: n
     !> Where the rows of the matrix begin, and their columns, ascending; the diagonal is among them.
@@ -96,6 +146,8 @@ contains
     integer, intent(in) :: level
     !> Where the rows of the factors begin, `(n + 1)`, their columns, and the diagonal's positions, `(n)`.
     integer, allocatable, intent(out) :: fill_start(:), fill_column(:), fill_diagonal(:)
+    !> Most members allowed; beyond them the lists are not allocated on return.
+    integer, intent(in), optional :: most
     !> The row being built, as a chain of columns in ascending order that begins at 0 and ends at n + 1.
     integer, allocatable :: chain(:), chain_level(:)
     !> Levels of the finished rows.
@@ -132,6 +184,12 @@ contains
         j = chain(j)
       end do
       fill_start(i + 1) = position
+      if (present(most)) then
+        if (position > most) then
+          deallocate (fill_start, fill_column, fill_diagonal)
+          return
+        end if
+      end if
     end do
     fill_column = fill_column(:fill_start(n + 1) - 1)
 

@@ -9,6 +9,8 @@ module dd3_linalg_preconditioner
 
   !> An approximate inverse of a matrix.
   type, abstract :: preconditioner_t
+    !> What it is, for the log; known after the set-up.
+    character(len=80) :: description = ""
   contains
     !> Once per pattern.
     procedure(setup_interface), deferred :: setup

@@ -14,13 +14,15 @@ module dd3_linalg_preconditioner_registry
 contains
 
   !> Makes a preconditioner.
-  subroutine new_preconditioner(preconditioner, name, level, error)
+  subroutine new_preconditioner(preconditioner, name, level, may_raise, error)
     !> The preconditioner made.
     class(preconditioner_t), allocatable, intent(out) :: preconditioner
     !> One of `preconditioner_names`.
     character(len=*), intent(in) :: name
     !> Level of fill.
     integer, intent(in) :: level
+    !> Whether the level may be raised where that is cheaper in the end.
+    logical, intent(in) :: may_raise
     !> An unknown name.
     type(error_t), allocatable, intent(out) :: error
     type(ilu_t), allocatable :: ilu
@@ -28,7 +30,7 @@ contains
     select case (name)
     case ("ilu")
       allocate (ilu)
-      call new_ilu(ilu, level)
+      call new_ilu(ilu, level, may_raise)
       call move_alloc(ilu, preconditioner)
     case default
       call fatal_error(error, "unknown preconditioner "//trim(name)//"; known: "//join(preconditioner_names, ", "))

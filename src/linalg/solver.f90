@@ -14,7 +14,8 @@ module dd3_linalg_solver
     character(len=24) :: method = "auto"
     !> Name of the preconditioner of cgs and auto.
     character(len=24) :: preconditioner = "ilu"
-    !> Level of fill of the incomplete factorisation; any level from the number of rows on is a complete one.
+    !> Level of fill of the incomplete factorisation; any level from the number of rows on is a complete one. `auto` may
+    !> take a complete one where it costs no more than the iterations it saves.
     integer :: ilu_level = 2
     !> Residual wanted, relative to the right-hand side, rows scaled.
     real(wp) :: tolerance = 1.0e-10_wp
@@ -46,6 +47,8 @@ module dd3_linalg_solver
   type, abstract :: linear_solver_t
     !> The choices it was made with.
     type(solver_options_t) :: options
+    !> What it does, for the log; known after the set-up.
+    character(len=160) :: description = ""
   contains
     !> Once per pattern.
     procedure(setup_interface), deferred :: setup
