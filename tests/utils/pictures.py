@@ -1,0 +1,87 @@
+"""Draws both pictures of a small made-up run and looks at what comes out. Skipped (77) without the packages."""
+
+import importlib.util
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+UTILS = Path(__file__).resolve().parents[2] / "utils"
+if any(importlib.util.find_spec(name) is None for name in ("h5py", "matplotlib", "numpy", "pyvista")):
+    print("skipped: the packages of utils/requirements.txt are not installed")
+    sys.exit(77)
+
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+
+HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-
+increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts
+0,draw,0,0,0,0,0,0,0,0,0
+1,draw,1,0.5,0,0,-1,0,0,1500,4
+2,draw,2,1,0,0,-2,0,0,2500,4
+"""
+DECK = """*PARAMETER
+  shape = punch
+*TOOL punch
+  patches = "${shape}.bez"   # beside this file
+*PHASE draw
+  control = punch
+"""
+PATCHES = "patch 2 1 rational\n0 0 2 1\n1 0 2 0.7\n1 0 3 1\n0 1 2 1\n1 1 2 0.7\n1 1 3 1\n"
+
+
+def make_run(folder):
+    (folder / "job.dat").write_text(DECK)
+    (folder / "punch.bez").write_text(PATCHES)
+    run = folder / "job.out"
+    run.mkdir()
+    (run / "history.csv").write_text(HISTORY)
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+    with h5py.File(run / "fields.vtkhdf", "w") as file:
+        grid = file.create_group("VTKHDF")
+        grid["NumberOfPoints"], grid["NumberOfCells"], grid["NumberOfConnectivityIds"] = [8], [1], [8]
+        grid["Types"] = np.array([12], np.uint8)
+        grid["Connectivity"], grid["Offsets"] = np.arange(8), np.array([0, 8])
+        grid["Points"] = np.vstack([corners, corners - [0, 0, 2]])
+        grid["PointData/stress"] = np.arange(96.0).reshape(16, 6)
+        grid["CellData/thickness"] = np.array([1.0, 0.9])
+        steps = grid.create_group("Steps")
+        steps.attrs["NSteps"] = 2
+        steps["Values"], steps["PointOffsets"] = [0.0, 2.0], [0, 8]
+        steps["PointDataOffsets/stress"], steps["CellDataOffsets/thickness"] = [0, 8], [0, 1]
+    return run
+
+
+def size_of(picture):
+    data = picture.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{picture.name} is no PNG"
+    return struct.unpack(">II", data[16:24])
+
+
+def call(script, *arguments, expect=0):
+    done = subprocess.run([sys.executable, UTILS / script, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == expect, f"{script} {arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        run = make_run(folder)
+        call("plot_force.py", run, "--output", folder / "force.png")
+        assert size_of(folder / "force.png") == (1400, 900)
+        call("plot_force.py", run, run, "--label", "one", "--component", "z", "--output", folder / "force.svg")
+        assert "<svg" in (folder / "force.svg").read_text()
+        call("plot_sheet.py", run, "--field", "stress:13", "--size", 300, 200, "--output", folder / "one.png")
+        assert size_of(folder / "one.png") == (300, 200)
+        call("plot_sheet.py", run, "--field", "thickness", "--cells", "--at", 0, "--at", 2, "--mirror", "x", "--view",
+             "front", "--size", 300, 200, "--output", folder / "two.png")
+        assert size_of(folder / "two.png") == (300, 400)
+        assert "no field 'strain'" in call("plot_sheet.py", run, "--field", "strain", expect=1)
+        assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=1)
+        assert "No such file" in call("plot_force.py", folder / "none.out", expect=1)
+    print("pictures drawn")
+
+
+main()

@@ -1,0 +1,165 @@
+#!/usr/bin/env -S uv run --script
+# /// script
+# requires-python = ">=3.11"
+# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
+# ///
+"""Draw tool force against tool displacement, for one or several runs.
+
+    plot_force.py bending.out
+    plot_force.py p1000.out p10000.out --label "p = 1000" --label "p = 10000" --output force.svg
+
+A run is a folder of results or its history.csv. The tool is the one that controls the last phase; its
+displacement is counted from the start of the phases drawn, along its motion, and so is its force: positive
+where the sheet resists. A cross marks a run that stopped before the end of its last phase.
+"""
+
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+AXES = {"x": 0, "y": 1, "z": 2}
+
+
+class History:
+    """The columns of a history.csv."""
+
+    def __init__(self, run):
+        path = Path(run)
+        if path.is_dir():
+            path = path / "history.csv"
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                rows = list(csv.reader(line for line in file if not line.startswith("#")))
+        except OSError as error:
+            sys.exit(f"{path}: {error.strerror}")
+        if len(rows) < 2:
+            sys.exit(f"{path}: no rows")
+        self.path = path
+        self.names = rows[0]
+        rows = [row for row in rows[1:] if len(row) == len(self.names)]
+        self.text = {name: [row[i] for row in rows] for i, name in enumerate(self.names)}
+        for needed in ("phase", "travel", "progress"):
+            if needed not in self.text:
+                sys.exit(f"{path}: no column '{needed}'")
+        self.phase = np.array(self.text["phase"])
+
+    def column(self, name):
+        return np.array(self.text[name], dtype=float)
+
+    def tools(self):
+        return [name[: -len("_contacts")] for name in self.names if name.endswith("_contacts")]
+
+    def vector(self, tool, quantity):
+        return np.column_stack([self.column(f"{tool}_{quantity}{axis}") for axis in AXES])
+
+    def rows_of(self, phases):
+        """The rows of the phases, with the state they start from."""
+        for phase in phases:
+            if phase not in self.phase:
+                sys.exit(f"{self.path}: no phase '{phase}'; there are: {', '.join(dict.fromkeys(self.phase))}")
+        rows = np.flatnonzero(np.isin(self.phase, phases))
+        if rows[0] > 0:
+            rows = np.concatenate(([rows[0] - 1], rows))
+        return rows
+
+
+def controlling_tool(history):
+    """The tool whose path in the last phase is the travel; where none moves, the one pressed most."""
+    rows = history.rows_of([history.phase[-1]])
+    travel = np.ptp(history.column("travel")[rows])
+    paths = {tool: np.linalg.norm(np.ptp(history.vector(tool, "u")[rows], axis=0)) for tool in history.tools()}
+    if not paths:
+        sys.exit(f"{history.path}: there is no tool")
+    if travel > 0:
+        return min(paths, key=lambda tool: abs(paths[tool] - travel))
+    return max(paths, key=lambda tool: np.linalg.norm(history.vector(tool, "f")[rows], axis=1).max())
+
+
+def curve(history, tool, phases, component):
+    """Displacement (mm) and force (N) of the tool."""
+    rows = history.rows_of(phases)
+    displacement = history.vector(tool, "u")[rows]
+    force = history.vector(tool, "f")[rows]
+    displacement = displacement - displacement[0]
+    step = np.diff(displacement, axis=0)
+    path = np.concatenate(([0.0], np.cumsum(np.linalg.norm(step, axis=1))))
+    if component == "magnitude":
+        return path, np.linalg.norm(force, axis=1)
+    if component in AXES:
+        return path, force[:, AXES[component]]
+    direction = displacement[-1]
+    if not direction.any():
+        return path, np.linalg.norm(force, axis=1)
+    direction = direction / np.linalg.norm(direction)
+    return displacement @ direction, -force @ direction
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of results, or its history.csv")
+    parser.add_argument("--tool", help="tool (default: the one that controls the last phase)")
+    parser.add_argument("--component", choices=["motion", "x", "y", "z", "magnitude"], default="motion",
+                        help="part of the force: against the motion (default), along an axis, or all of it")
+    parser.add_argument("--phase", action="append", default=[], help="phase to draw; may be repeated (default: the last)")
+    parser.add_argument("--label", action="append", default=[], help="name of a run in the legend, in their order")
+    parser.add_argument("--factor", type=float, default=1.0, help="factor on the force; 2 for a half model")
+    parser.add_argument("--title", default="", help="title above the plot")
+    parser.add_argument("--output", default="force.png", help="picture to write: .png, .svg or .pdf (force.png)")
+    parser.add_argument("--size", type=float, nargs=2, default=[7.0, 4.5], metavar=("W", "H"), help="size in inches")
+    options = parser.parse_args()
+    if len(options.label) > len(options.runs):
+        parser.error("more labels than runs")
+    return options
+
+
+def main():
+    options = arguments()
+    curves = []
+    for number, run in enumerate(options.runs):
+        history = History(run)
+        tool = options.tool or controlling_tool(history)
+        if tool not in history.tools():
+            sys.exit(f"{history.path}: no tool '{tool}'; there are: {', '.join(history.tools())}")
+        phases = options.phase or [history.phase[-1]]
+        displacement, force = curve(history, tool, phases, options.component)
+        name = history.path.parent.resolve().name.removesuffix(".out")
+        label = options.label[number] if number < len(options.label) else name
+        curves.append((tool, label, displacement, options.factor * force, history.column("progress")[-1] < 1.0))
+
+    largest = max(np.abs(force).max() for _, _, _, force, _ in curves)
+    unit, scale = ("kN", 1000.0) if largest >= 1000.0 else ("N", 1.0)
+    figure, axes = plt.subplots(figsize=options.size, layout="constrained")
+    for _, label, displacement, force, stopped in curves:
+        line, = axes.plot(displacement, force / scale, linewidth=1.4, label=label)
+        if stopped:
+            axes.plot(displacement[-1], force[-1] / scale, "x", color=line.get_color(), markersize=8,
+                      markeredgewidth=2, clip_on=False, zorder=5)
+    tools = list(dict.fromkeys(tool.replace("_", " ") for tool, *_ in curves))
+    name = tools[0].capitalize() if len(tools) == 1 else "Tool"
+    part = {"motion": "", "magnitude": ", magnitude"}.get(options.component, f", along {options.component}")
+    axes.set_xlabel(f"{name} displacement (mm)")
+    axes.set_ylabel(f"{name} force{part} ({unit})")
+    axes.set_title(options.title)
+    axes.grid(True, color="0.88", linewidth=0.7)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_xlim(left=0.0)
+    if min(force.min() for _, _, _, force, _ in curves) >= -0.02 * largest:
+        axes.set_ylim(bottom=0.0)
+    if len(curves) > 1 or options.label:
+        axes.legend(frameon=False)
+    try:
+        figure.savefig(options.output, dpi=200)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{options.output}: {error}")
+    print(options.output)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,351 @@
+#!/usr/bin/env -S uv run --script
+# /// script
+# requires-python = ">=3.11"
+# dependencies = ["h5py==3.16.0", "numpy==2.4.6", "pyvista==0.49.1", "vtk==9.7.2"]
+# ///
+"""Draw the deformed sheet between its tools, coloured by a field. No display is needed.
+
+    plot_sheet.py bending.out
+    plot_sheet.py bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+
+The sheet comes from fields.vtkhdf, the tools' surfaces from the .bez files named in the job's input file
+(bending.dat beside bending.out; else --deck or --tool), their displacements from the run. Several --at give
+several pictures below each other.
+"""
+
+import argparse
+import csv
+import math
+import os
+import re
+import sys
+from pathlib import Path
+
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+import pyvista as pv  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkLogger  # noqa: E402
+
+COMPONENTS = {"stress": ["11", "22", "33", "12", "23", "13"]}
+VECTOR = ["x", "y", "z"]
+VIEWS = {  # where the camera stands, seen from the sheet, and what is up
+    "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
+    "front": ((0, -1, 0), (0, 0, 1)),
+    "back": ((0, 1, 0), (0, 0, 1)),
+    "side": ((-1, 0, 0), (0, 0, 1)),
+    "top": ((0, 0, 1), (0, 1, 0)),
+    "bottom": ((0, 0, -1), (0, 1, 0)),
+    "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
+}
+TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
+
+
+class Run:
+    """The field file of a run."""
+
+    def __init__(self, folder):
+        path = Path(folder)
+        if path.is_dir():
+            path = path / "fields.vtkhdf"
+        try:
+            self.file = h5py.File(path, "r")
+            self.grid = self.file["VTKHDF"]
+            self.steps = self.grid["Steps"]
+            self.count = int(self.steps.attrs["NSteps"])
+        except (OSError, KeyError) as error:
+            sys.exit(f"{path}: {error}")
+        if self.count == 0:
+            sys.exit(f"{path}: no steps")
+        self.path = path
+        self.folder = path.parent
+        self.travel = self.steps["Values"][: self.count]
+
+    def step_at(self, travel):
+        """The last step whose travel is nearest."""
+        distance = np.abs(self.travel - travel)
+        return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
+
+    def mesh(self, step, field, at_cells):
+        """The sheet at a step with its field, and the name of what it shows."""
+        connectivity = self.grid["Connectivity"][...]
+        offsets = self.grid["Offsets"][...]
+        n_point, n_cell = int(self.grid["NumberOfPoints"][0]), int(self.grid["NumberOfCells"][0])
+        cells = np.insert(connectivity, offsets[:-1], np.diff(offsets))
+        first = int(self.steps["PointOffsets"][step])
+        mesh = pv.UnstructuredGrid(cells, self.grid["Types"][...], self.grid["Points"][first:first + n_point])
+        where, rows = ("CellData", n_cell) if at_cells else ("PointData", n_point)
+        name, _, component = field.partition(":")
+        if name not in self.grid[where]:
+            sys.exit(f"{self.path}: no field '{name}'; there are: {', '.join(self.grid[where])}")
+        data = self.grid[where][name]
+        first = int(self.steps[where + "Offsets"][name][step])
+        values = data[first:first + rows].astype(float)
+        unit = data.attrs.get("unit", b"")
+        unit = unit.decode().strip() if isinstance(unit, bytes) else str(unit).strip()
+        values, label = self.component(values, name, component)
+        (mesh.cell_data if at_cells else mesh.point_data)["shown"] = values
+        return mesh, label + (f" ({unit})" if unit else "")
+
+    def component(self, values, name, component):
+        label = name.replace("_", " ")
+        if values.ndim == 1:
+            return values, label
+        names = COMPONENTS.get(name, VECTOR[: values.shape[1]])
+        if component in names:
+            return values[:, names.index(component)], f"{label} {component}"
+        if component in ("", "magnitude"):
+            return np.linalg.norm(values, axis=1), f"{label}, magnitude"
+        sys.exit(f"{self.path}: no component '{component}' of '{name}'; there are: {', '.join(names)}, magnitude")
+
+    def tool_displacement(self, step):
+        """Displacement of each tool at a step."""
+        job = self.file.get("job")
+        if job is not None and "tool_displacement" in job:
+            names = job.attrs["tools"]
+            names = (names.decode() if isinstance(names, bytes) else str(names)).split()
+            return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3)))
+        with open(self.folder / "history.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        row = min(rows, key=lambda r: abs(float(r["travel"]) - self.travel[step]))
+        tools = [name[: -len("_contacts")] for name in row if name.endswith("_contacts")]
+        return {tool: np.array([float(row[f"{tool}_u{axis}"]) for axis in VECTOR]) for tool in tools}
+
+
+def read_lines(path, seen=()):
+    """The lines of an input file and of those it includes, each with the folder it stands in."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        sys.exit(f"{path}: {error.strerror}")
+    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
+        line = re.sub(r"[#!].*", "", line).strip()
+        include = re.match(r"\*include\s+(.*)", line, re.IGNORECASE)
+        if include:
+            file = path.parent / include[1].strip().strip("\"'")
+            if file not in seen:
+                yield from read_lines(file, (*seen, file))
+        elif line:
+            yield line, path.parent
+
+
+def tools_of_deck(deck):
+    """The surfaces' files by the tools' names."""
+    tools, parameters, block, name = {}, {}, "", ""
+    for line, folder in read_lines(deck):
+        if line.startswith("*"):
+            block, _, name = line[1:].lower().partition(" ")
+            name = name.strip()
+            continue
+        key, _, value = (part.strip() for part in line.partition("="))
+        value = re.sub(r"\$\{(\w+)\}", lambda m: parameters.get(m[1].lower(), m[0]), value)
+        if block == "parameter":
+            parameters[key.lower()] = value
+        elif block == "tool" and key.lower() == "patches":
+            tools[name] = folder / value.strip("\"'")
+    return tools
+
+
+def read_patches(path):
+    """The patches of a .bez file: points (v, u, 3) and weights (v, u)."""
+    try:
+        lines = [re.sub(r"[#!].*", "", line).split() for line in path.read_text().splitlines()]
+    except OSError as error:
+        sys.exit(f"{path}: {error.strerror}")
+    lines = [line for line in lines if line]
+    patches, i = [], 0
+    try:
+        while i < len(lines):
+            if lines[i][0].lower() != "patch":
+                raise ValueError
+            m, n = int(lines[i][1]), int(lines[i][2])
+            rational = len(lines[i]) > 3
+            count = (m + 1) * (n + 1)
+            rows = np.array([[float(t.lower().replace("d", "e")) for t in row] for row in lines[i + 1:i + 1 + count]])
+            rows = rows.reshape(n + 1, m + 1, 4 if rational else 3)
+            patches.append((rows[..., :3], rows[..., 3] if rational else np.ones((n + 1, m + 1))))
+            i += 1 + count
+    except (ValueError, IndexError):
+        sys.exit(f"{path}: not a file of Bézier patches")
+    return patches
+
+
+def bernstein(degree, t):
+    return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
+
+
+def tool_surface(patches, shift):
+    """The tool's patches as surfaces, moved."""
+    surface = pv.MultiBlock()
+    for points, weights in patches:
+        n, m = weights.shape[0] - 1, weights.shape[1] - 1
+        u, v = np.linspace(0, 1, 2 if m == 1 else 25), np.linspace(0, 1, 2 if n == 1 else 25)
+        bu, bv = bernstein(m, u), bernstein(n, v)
+        total = np.einsum("ji,ia,jb->ba", weights, bu, bv)
+        xyz = np.einsum("ji,jid,ia,jb->bad", weights, points, bu, bv) / total[..., None] + shift
+        x, y, z = (xyz[..., k][..., None] for k in range(3))
+        surface.append(pv.StructuredGrid(x, y, z))
+    return surface
+
+
+def reflected(mesh, axes):
+    """The mesh and its images in the planes x = 0 and so on."""
+    parts = [mesh]
+    for axis in axes:
+        normal = tuple(float(axis == a) for a in VECTOR)
+        parts += [part.reflect(normal, point=(0.0, 0.0, 0.0)) for part in parts]
+    return parts
+
+
+def draw(plotter, run, step, options, tools, limits, box):
+    """One picture."""
+    mesh, label = run.mesh(step, options.field, options.cells)
+    bar = {"title": label + "\n", "vertical": False, "position_x": 0.3, "width": 0.4, "position_y": 0.03,
+           "height": 0.1, "title_font_size": 20, "label_font_size": 17, "fmt": "%.3g", "color": "black"}
+    for number, part in enumerate(reflected(mesh, options.mirror)):
+        skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
+        plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
+                         edge_color="#333333", line_width=1, scalar_bar_args=bar, show_scalar_bar=number == 0,
+                         smooth_shading=False, lighting=True, ambient=0.25)
+    # Tools are drawn a little farther from the eye than they are: where they touch the sheet, its colours show.
+    behind = -0.006 * diagonal(box) * eye(options)[0]
+    displacement = run.tool_displacement(step)
+    for number, (name, patches) in enumerate(tools.items()):
+        if name not in displacement:
+            continue
+        for block in tool_surface(patches, displacement[name]):
+            for part in reflected(block, options.mirror):
+                part = part.extract_surface(algorithm="dataset_surface").translate(behind)
+                plotter.add_mesh(part, color=TOOL_COLOURS[number % len(TOOL_COLOURS)], opacity=options.tool_opacity,
+                                 smooth_shading=False, ambient=0.2)
+                edges = part.extract_feature_edges(boundary_edges=True, feature_edges=False, manifold_edges=False,
+                                                   non_manifold_edges=False)
+                plotter.add_mesh(edges, color="#444444", line_width=1.5)
+    aim(plotter, box, options)
+    plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
+
+
+def diagonal(box):
+    return np.linalg.norm(box[1] - box[0])
+
+
+def box_of(run, steps, options):
+    """Corners of a box round the sheet at all steps drawn."""
+    count = int(run.grid["NumberOfPoints"][0])
+    places = [int(run.steps["PointOffsets"][step]) for step in steps]
+    points = np.concatenate([run.grid["Points"][first:first + count] for first in places])
+    low, high = points.min(axis=0), points.max(axis=0)
+    for axis in options.mirror:
+        i = VECTOR.index(axis)
+        low[i], high[i] = min(low[i], -high[i]), max(high[i], -low[i])
+    return low, high
+
+
+def eye(options):
+    """Unit vector towards the camera, and what is up."""
+    place, up = VIEWS[options.view] if options.view in VIEWS else (tuple(map(float, options.view.split())), (0, 0, 1))
+    return np.array(place) / np.linalg.norm(place), np.array(up)
+
+
+def aim(plotter, box, options):
+    """Points the camera at the sheet."""
+    (place, up), (low, high) = eye(options), box
+    centre = np.array(options.focus) if options.focus else (low + high) / 2
+    plotter.camera_position = [centre + 2 * diagonal(box) * place, centre, up]
+    plotter.enable_parallel_projection()
+    right = np.cross(up, place)
+    right /= np.linalg.norm(right)
+    over = np.cross(place, right)
+    width, height = plotter.window_size[0], plotter.window_size[1] / plotter.shape[0]
+    half_width = np.abs(right) @ (high - low) / 2
+    half_height = np.abs(over) @ (high - low) / 2
+    plotter.camera.parallel_scale = max(1.35 * half_height, 1.1 * half_width * height / width, 1e-3) / options.zoom
+    plotter.reset_camera_clipping_range()
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
+    parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
+                        help="travel in mm, the nearest step is drawn; may be repeated (default: the last step)")
+    parser.add_argument("--field", default="equivalent_plastic_strain",
+                        help="field, or field:component, such as stress:11 or displacement:z")
+    parser.add_argument("--cells", action="store_true", help="values of the cells, not of the nodes")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
+    parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
+    parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
+    parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
+    parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
+    parser.add_argument("--mirror", default="", help="planes of symmetry to complete the model at: x, y or xy")
+    parser.add_argument("--deck", type=Path, help="input file of the job (default: beside the folder of results)")
+    parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
+    parser.add_argument("--hide", action="append", default=[], metavar="NAME", help="tool to leave out, or 'all'")
+    parser.add_argument("--tool-opacity", type=float, default=0.35)
+    parser.add_argument("--no-edges", action="store_true", help="leave out the elements' edges")
+    parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
+    parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
+                        help="size of one picture in pixels")
+    parser.add_argument("--list", action="store_true", help="list the steps and fields, draw nothing")
+    options = parser.parse_args()
+    if set(options.mirror) - set(VECTOR):
+        parser.error("--mirror takes x, y or xy")
+    if options.view not in VIEWS and not re.fullmatch(r"\s*(\S+\s+){2}\S+\s*", options.view):
+        parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
+    return options
+
+
+def find_tools(run, options):
+    """Patches of the tools to draw."""
+    if "all" in options.hide:
+        return {}
+    files = {}
+    deck = options.deck
+    if deck is None:
+        folder = run.folder.resolve()
+        beside = [folder.with_suffix(ending) for ending in (".dat", ".inp", ".txt")]
+        deck = next((file for file in beside if file.is_file()), None)
+    if deck is not None:
+        files = tools_of_deck(deck)
+    for item in options.tool:
+        name, _, file = item.partition("=")
+        files[name.lower()] = Path(file)
+    if not files:
+        print("no input file beside the results: the tools are left out (see --deck)", file=sys.stderr)
+    return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
+
+
+def main():
+    options = arguments()
+    run = Run(options.run)
+    if options.list:
+        print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
+        print("at nodes: " + ", ".join(run.grid["PointData"]))
+        print("at cells: " + ", ".join(run.grid["CellData"]))
+        return
+    tools = find_tools(run, options)
+    steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
+    limits = options.limits
+    if limits is None:
+        ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
+        limits = [min(r.min() for r in ranges), max(r.max() for r in ranges)]
+        if limits[1] - limits[0] <= 1e-9 * max(map(abs, limits)):
+            limits[1] = limits[0] + max(1e-3, 1e-3 * abs(limits[0]))
+    box = box_of(run, steps, options)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    pv.OFF_SCREEN = True
+    plotter = pv.Plotter(shape=(len(steps), 1), off_screen=True, border=False,
+                         window_size=[options.size[0], options.size[1] * len(steps)])
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    for row, step in enumerate(steps):
+        plotter.subplot(row, 0)
+        draw(plotter, run, step, options, tools, limits, box)
+    try:
+        plotter.screenshot(options.output)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{options.output}: {error}")
+    print(options.output)
+
+
+if __name__ == "__main__":
+    main()
