@@ -1,11 +1,13 @@
 !> Bézier patches of any degree, polynomial or rational, and their derivatives.
 !>
-!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein polynomials come from their
-!> triangular recurrence, B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1): the triangle of de Casteljau with the roles of points and
-!> weights exchanged. It only adds positive numbers, so that it is stable for any degree. Derivatives are differences of the
-!> polynomials of the next lower degrees; rational patches are evaluated in homogeneous coordinates, with the quotient rule.
-!> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 5, 13, 14; Piegl and Tiller, The NURBS Book,
-!> 2nd ed. (1997), algorithm A1.3 and section 4.5.
+!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein
+!> polynomials come from their triangular recurrence, B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1):
+!> the triangle of de Casteljau with the roles of points and weights exchanged. It only adds
+!> positive numbers, so that it is stable for any degree. Derivatives are differences of the
+!> polynomials of the next lower degrees; rational patches are evaluated in homogeneous
+!> coordinates, with the quotient rule.
+!> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 5, 13, 14; Piegl and
+!> Tiller, The NURBS Book, 2nd ed. (1997), algorithm A1.3 and section 4.5.
 module dd3_contact_bezier
   use dd3_base_kinds, only : wp
   implicit none
@@ -17,7 +19,8 @@ module dd3_contact_bezier
   integer, parameter :: largest_degree = 25
   !> Intervals along each parameter of the grid of stored points.
   integer, parameter :: n_sample = 8
-  !> A normal is taken as degenerate where |S_u x S_v| is below this share of the patch's size squared.
+  !> A normal is taken as degenerate where |S_u x S_v| is below this share of the patch's size
+  !> squared.
   real(wp), parameter :: degenerate_area = 1.0e-9_wp
 
   !> One patch.
@@ -30,7 +33,8 @@ module dd3_contact_bezier
     logical :: flat = .false.
     !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
     real(wp), allocatable :: control(:, :, :)
-    !> Control points relative to `centre`, multiplied by their weights, and the weights, `(4, 0:.., 0:..)`.
+    !> Control points relative to `centre`, multiplied by their weights, and the weights,
+    !> `(4, 0:degree(1), 0:degree(2))`.
     real(wp), allocatable :: homogeneous(:, :, :)
     !> Points on a regular grid of the parameters, relative to `centre`, mm; none where it is flat.
     real(wp), allocatable :: sample(:, :, :)
@@ -281,7 +285,8 @@ contains
     call evaluate(self, u, v, point, first, second)
   end function position_at
 
-  !> Unit normal S_u x S_v of the patch; where it is degenerate, that of a near point towards the middle.
+  !> Unit normal S_u x S_v of the patch; where it is degenerate, that of a near point towards the
+  !> middle.
   pure subroutine normal_at(self, u, v, normal, regular)
     !> The patch.
     type(patch_t), intent(in) :: self

@@ -1,12 +1,15 @@
 !> Closest point of a tool's surface to a node.
 !>
-!> The whole surface is searched once per increment, and when a node has come far: patches whose box lies near enough are
-!> sampled and solved one by one, the nearest first-hand solution wins, and among equals the patch of the last query does.
-!> In between, a query starts from the last closest point, and steps over to the neighbour where it leaves a patch. The
-!> patches go on in a narrow band beyond smooth edges, so that a node near such an edge does not change patch with
-!> every iteration. What lies deeper inside than a given depth is on the wrong side and no contact.
-!> Source: Wang and Makinouchi, inside-outside contact search, in: Nakamachi, Makinouchi (eds.), Proc. NUMISHEET (1996);
-!> Oliveira, Alves and Menezes, Arch. Comput. Methods Eng. 15 (2008) 113-162.
+!> The whole surface is searched once per increment, and when a node has come far: patches whose
+!> box lies near enough are sampled and solved one by one, the nearest first-hand solution wins,
+!> and among equals the patch of the last query does. In between, a query starts from the last
+!> closest point, and steps over to the neighbour where it leaves a patch. The patches go on in a
+!> narrow band beyond smooth edges, so that a node near such an edge does not change patch with
+!> every iteration. What lies deeper inside than a given depth is on the wrong side and no
+!> contact.
+!> Source: Wang and Makinouchi, inside-outside contact search, in: Nakamachi, Makinouchi
+!> (eds.), Proc. NUMISHEET (1996); Oliveira, Alves and Menezes, Arch. Comput. Methods Eng. 15
+!> (2008) 113-162.
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t
@@ -124,7 +127,8 @@ contains
         return
       end if
       other%at = edge_parameters(surface%edge(e, k)%edge, &
-                                 merge(1.0_wp - foot%at(3 - a), foot%at(3 - a), surface%edge(e, k)%reversed))
+                                 merge(1.0_wp - foot%at(3 - a), foot%at(3 - a), &
+                                       surface%edge(e, k)%reversed))
       call bounds(surface, next, lower, upper)
       call project(surface%patch(next), x, lower, upper, other)
       if (any(other%side /= 0) .and. other%distance >= foot%distance - held*surface%size) then
@@ -203,7 +207,8 @@ contains
     hint%v = hit%v
   end subroutine search_surface
 
-  !> Takes the patch of the last query where it is as near as the best one and the foot lies inside it.
+  !> Takes the patch of the last query where it is as near as the best one and the foot lies
+  !> inside it.
   pure subroutine prefer_last(surface, x, hint, search_distance, depth, best, hit)
     !> The surface.
     type(surface_t), intent(in) :: surface

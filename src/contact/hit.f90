@@ -2,12 +2,14 @@
 !>
 !> Inside a patch, with a_ab = y_,a . y_,b, b_ab = y_,ab . n and A = a - d b:
 !>     dn/dx = - y_,c (a^-1 b A^-1)^cd y_,d^T,
-!> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y, n = +- r/|r| and
+!> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
+!> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
-!> On the outer border nothing can be touched: a surface ends there, and its continuation is no tool.
-!> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov and Schweizerhof, Comput. Methods
-!> Appl. Mech. Eng. 194 (2005) 4045-4088; for signs at edges Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11
-!> (2005) 243-253.
+!> On the outer border nothing can be touched: a surface ends there, and its continuation is no
+!> tool.
+!> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov
+!> and Schweizerhof, Comput. Methods Appl. Mech. Eng. 194 (2005) 4045-4088; for signs at edges
+!> Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243-253.
 module dd3_contact_hit
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, evaluate, normal_at, unit_normal
@@ -24,7 +26,8 @@ module dd3_contact_hit
   !> The foot lies on the outer border, the node beside it.
   integer, parameter :: place_border = 2
 
-  !> A node stands beside a border or an edge if it is farther off than this share of the surface's size.
+  !> A node stands beside a border or an edge if it is farther off than this share of the
+  !> surface's size.
   real(wp), parameter :: beside_border = 1.0e-6_wp, beside_crease = 1.0e-9_wp
   !> The centre of curvature is near where det A is below this share of det a.
   real(wp), parameter :: near_centre = 1.0e-8_wp
@@ -33,7 +36,8 @@ module dd3_contact_hit
   type :: hit_t
     !> Whether there is a point that the node can touch.
     logical :: found = .false.
-    !> Whether the node stands beside the surface, its closest point on the outer border: `found` is false then.
+    !> Whether the node stands beside the surface, its closest point on the outer border: `found`
+    !> is false then.
     logical :: border = .false.
     !> Patch of the closest point; 0 for none.
     integer :: patch = 0

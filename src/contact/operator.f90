@@ -1,21 +1,26 @@
-!> Contact of one node with a rigid tool: the operators of the augmented Lagrangian with Coulomb friction, and their
-!> exact linearisation, with the terms that come from the curvature of the tool.
+!> Contact of one node with a rigid tool: the operators of the augmented Lagrangian with Coulomb
+!> friction, and their exact linearisation, with the terms that come from the curvature of the
+!> tool.
 !>
-!> The contact force lambda (the sheet pushes the tool with it, the tool pushes the sheet with -lambda) and the motion
-!> give sigma_n = lambda.n + p d and sigma_t = T (lambda + p w), with n the outward normal of the tool, d the gap, w the
-!> slip vector, T = I - n n^T and p the penalty. The three states are
+!> The contact force lambda (the sheet pushes the tool with it, the tool pushes the sheet with
+!> -lambda) and the motion give sigma_n = lambda.n + p d and sigma_t = T (lambda + p w), with n
+!> the outward normal of the tool, d the gap, w the slip vector, T = I - n n^T and p the penalty.
+!> The three states are
 !>     gap    sigma_n > 0                                F = 0
 !>     stick  sigma_n <= 0, |sigma_t| <= -mu sigma_n     F = sigma_n n + sigma_t
-!>     slip   sigma_n <= 0, |sigma_t| >  -mu sigma_n     F = sigma_n (n - mu t),  t = sigma_t / |sigma_t|
-!> and dF = D du + E dlambda. A tool without friction lets every touching node slip. The normal may turn with the
-!> node: N = dn/dx, so that d(sigma_n)/du = N lambda + p n and d(sigma_t)/du = p T - (n.v) N - n (N v)^T, v = lambda + p w.
-!> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and Curnier, Comput. Methods
-!> Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer. Methods Eng. 39 (1996) 477-495.
+!>     slip   sigma_n <= 0, |sigma_t| >  -mu sigma_n     F = sigma_n (n - mu t)
+!> with t = sigma_t / |sigma_t|, and dF = D du + E dlambda. A tool without friction lets every
+!> touching node slip. The normal may turn with the node: N = dn/dx, so that d(sigma_n)/du =
+!> N lambda + p n and d(sigma_t)/du = p T - (n.v) N - n (N v)^T, v = lambda + p w.
+!> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and
+!> Curnier, Comput. Methods Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer.
+!> Methods Eng. 39 (1996) 477-495.
 module dd3_contact_operator
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: status_gap, status_stick, status_slip, contact_operator, contact_operator_of_status, contact_status
+  public :: status_gap, status_stick, status_slip, contact_status
+  public :: contact_operator, contact_operator_of_status
 
   !> The node does not touch.
   integer, parameter :: status_gap = 0
@@ -26,14 +31,15 @@ module dd3_contact_operator
 
   !> A tangential force below this share of its parts has no direction.
   real(wp), parameter :: no_direction = 1.0e-13_wp
-  !> Largest quotient of the friction force and |sigma_t| in the linearisation; it is at most 1 on and outside the cone, more only
-  !> where a slipping state is prescribed inside it.
+  !> Largest quotient of the friction force and |sigma_t| in the linearisation; it is at most 1 on
+  !> and outside the cone, more only where a slipping state is prescribed inside it.
   real(wp), parameter :: largest_quotient = 10.0_wp
 
 contains
 
   !> State, force and linearisation of a node in contact.
-  pure subroutine contact_operator(normal, distance, dnormal, lambda, slip, penalty, friction, force, d, e, status)
+  pure subroutine contact_operator(normal, distance, dnormal, lambda, slip, penalty, friction, &
+                                   force, d, e, status)
     !> Outward unit normal n of the tool at the closest point.
     real(wp), intent(in) :: normal(3)
     !> Gap d, positive outside the tool, mm.
@@ -58,11 +64,13 @@ contains
     integer, intent(out) :: status
 
     status = contact_status(normal, distance, lambda, slip, penalty, friction)
-    call contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, penalty, friction, force, d, e)
+    call contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, penalty, &
+                                    friction, force, d, e)
   end subroutine contact_operator
 
   !> State of a node; at exact touch it sticks, so that a load can build up.
-  pure integer function contact_status(normal, distance, lambda, slip, penalty, friction) result(status)
+  pure integer function contact_status(normal, distance, lambda, slip, penalty, &
+                                       friction) result(status)
     !> Outward unit normal of the tool at the closest point.
     real(wp), intent(in) :: normal(3)
     !> Gap, mm.
@@ -92,8 +100,8 @@ contains
   end function contact_status
 
   !> Force and linearisation of a node whose state is given.
-  pure subroutine contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, penalty, friction, &
-                                             force, d, e)
+  pure subroutine contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, &
+                                             penalty, friction, force, d, e)
     !> One of the `status_*` values.
     integer, intent(in) :: status
     !> Outward unit normal of the tool at the closest point.
@@ -117,7 +125,8 @@ contains
     !> Derivative of the force by lambda.
     real(wp), intent(out) :: e(3, 3)
 
-    real(wp) :: sigma_n, normal_gradient(3), tangential(3), v(3), along_normal, turned(3), dtangential(3, 3)
+    real(wp) :: sigma_n, normal_gradient(3), tangential(3), dtangential(3, 3)
+    real(wp) :: v(3), along_normal, turned(3)
     integer :: i, j
 
     force = 0.0_wp
@@ -132,7 +141,7 @@ contains
     turned = matmul(dnormal, v)
     do j = 1, 3
       do i = 1, 3
-        dtangential(i, j) = -penalty*normal(i)*normal(j) - along_normal*dnormal(i, j) - normal(i)*turned(j)
+        dtangential(i, j) = -normal(i)*(penalty*normal(j) + turned(j)) - along_normal*dnormal(i, j)
       end do
       dtangential(j, j) = dtangential(j, j) + penalty
     end do
@@ -143,14 +152,14 @@ contains
         e(j, j) = 1.0_wp
       end do
     else
-      call slip_operator(normal, dnormal, sigma_n, normal_gradient, tangential, dtangential, friction, &
-                         no_direction*(norm(lambda) + penalty*norm(slip)), force, d, e)
+      call slip_operator(normal, dnormal, sigma_n, normal_gradient, tangential, dtangential, &
+                         friction, no_direction*(norm(lambda) + penalty*norm(slip)), force, d, e)
     end if
   end subroutine contact_operator_of_status
 
   !> Force and linearisation of a slipping node.
-  pure subroutine slip_operator(normal, dnormal, sigma_n, normal_gradient, tangential, dtangential, friction, noise, &
-                                force, d, e)
+  pure subroutine slip_operator(normal, dnormal, sigma_n, normal_gradient, tangential, &
+                                dtangential, friction, noise, force, d, e)
     !> Outward unit normal of the tool.
     real(wp), intent(in) :: normal(3)
     !> Turning of the normal, 1/mm.

@@ -1,11 +1,14 @@
-!> Closest point of one patch: Newton's method on half the squared distance, kept inside the patch's bounds.
+!> Closest point of one patch: Newton's method on half the squared distance, kept inside the
+!> patch's bounds.
 !>
-!> phi(u,v) = |S(u,v) - x|^2 / 2, gradient g_a = (S - x).S_a, Hessian h_ab = S_a.S_b + (S - x).S_ab. Bounds at which -g
-!> points outwards are active. Where the Hessian is not positive definite its Gauss-Newton part is taken. Steps are cut at
-!> the bounds and halved until they descend (Armijo). If this fails it starts anew from a 33 x 33 grid, and if that fails too
-!> the best point of the grid is improved by golden sections along u and v in turn. A parallelogram is solved at once.
-!> Source: Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246 (projected Newton); Armijo, Pacific J. Math. 16 (1966) 1-3;
-!> Kiefer, Proc. Amer. Math. Soc. 4 (1953) 502-506 (golden section).
+!> phi(u,v) = |S(u,v) - x|^2 / 2, gradient g_a = (S - x).S_a, Hessian
+!> h_ab = S_a.S_b + (S - x).S_ab. Bounds at which -g points outwards are active. Where the Hessian
+!> is not positive definite its Gauss-Newton part is taken. Steps are cut at the bounds and halved
+!> until they descend (Armijo). If this fails it starts anew from a 33 x 33 grid, and if that
+!> fails too the best point of the grid is improved by golden sections along u and v in turn. A
+!> parallelogram is solved at once. Source: Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246
+!> (projected Newton); Armijo, Pacific J. Math. 16 (1966) 1-3; Kiefer, Proc. Amer. Math. Soc. 4
+!> (1953) 502-506 (golden section).
 module dd3_contact_project
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, evaluate_relative, n_sample
@@ -109,8 +112,8 @@ contains
     end do
   end subroutine project_globally
 
-  !> Foot on a parallelogram: a quadratic function of two bounded variables has its least value where it has it without
-  !> bounds, or on one of the bounds that this place violates.
+  !> Foot on a parallelogram: a quadratic function of two bounded variables has its least value
+  !> where it has it without bounds, or on one of the bounds that this place violates.
   pure subroutine project_flat(patch, x, lower, upper, foot)
     !> The patch.
     type(patch_t), intent(in) :: patch

@@ -1,7 +1,8 @@
 !> Reads the surface of a tool from its file of Bézier patches.
 !>
-!> For every patch a line `patch m n` with the degrees along u and v, `rational` behind them where every point has a
-!> weight; then (m+1)(n+1) lines `x y z` or `x y z w`, u fastest. All errors of a file are reported.
+!> For every patch a line `patch m n` with the degrees along u and v, `rational` behind them where
+!> every point has a weight; then (m+1)(n+1) lines `x y z` or `x y z w`, u fastest. All errors of
+!> a file are reported.
 module dd3_contact_reader
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, error_list_t, location_t
@@ -21,7 +22,8 @@ module dd3_contact_reader
   !> Largest coordinate, mm, and largest ratio of two weights.
   real(wp), parameter :: largest_coordinate = 1.0e7_wp, largest_weight = 1.0e6_wp
   !> What a patch begins with.
-  character(len=*), parameter :: header = "patch m n, or patch m n rational: a patch of degrees m and n"
+  character(len=*), parameter :: header = &
+    "patch m n, or patch m n rational: a patch of degrees m and n"
 
   !> A file being read.
   type :: reading_t
@@ -66,7 +68,8 @@ contains
 
     call read_lines(file, line, error)
     if (allocated(error)) then
-      call errors%push_input(location, "the tool surface '"//file//"' cannot be read: "//error%message, &
+      call errors%push_input(location, "the tool surface '"//file//"' cannot be read: " &
+                             //error%message, &
                              "a file of Bézier patches")
       return
     end if
@@ -89,7 +92,8 @@ contains
     call hand_over(reading, errors)
   end subroutine read_surface
 
-  !> Adds the errors of the file to those of the whole input, at the place where the input names the file.
+  !> Adds the errors of the file to those of the whole input, at the place where the input names
+  !> the file.
   subroutine hand_over(reading, errors)
     !> The file.
     type(reading_t), intent(in) :: reading
@@ -130,8 +134,8 @@ contains
     line%text = text
     call split_line(line, token, continues, reading%errors)
     if (continues) then
-      call reading%errors%push_input(place(line, index(text, "&"), 1), &
-                                     "a line of a tool surface does not go on in the next one")
+      call report(reading, place(line, index(text, "&"), 1), &
+                  "a line of a tool surface does not go on in the next one")
     end if
     if (token%count == 0) return
     here = place(line, 1, len_trim(text))
@@ -142,7 +146,8 @@ contains
       call read_point(reading, token, here)
     else if (.not. reading%skipping) then
       reading%skipping = .true.
-      call reading%errors%push_input(token%item(1)%at, "'"//token%item(1)%text//"' stands outside a patch", header)
+      call report(reading, token%item(1)%at, "'"//token%item(1)%text//"' stands outside a patch", &
+                  header)
     end if
   end subroutine read_line
 
@@ -161,22 +166,24 @@ contains
     reading%n_begun = reading%n_begun + 1
     reading%skipping = .true.
     if (token%count < 3) then
-      call reading%errors%push_input(here, "the degrees of the patch are missing", header)
+      call report(reading, here, "the degrees of the patch are missing", header)
       return
     end if
     do i = 1, 2
       call parse_integer(token%item(i + 1)%text, reading%degree(i), ok)
       if (ok) ok = reading%degree(i) >= 1 .and. reading%degree(i) <= largest_degree
       if (ok) cycle
-      call reading%errors%push_input(token%item(i + 1)%at, "'"//token%item(i + 1)%text//"' is no degree of a patch", &
-                                     "a whole number from 1 to "//to_text(largest_degree))
+      call report(reading, token%item(i + 1)%at, "'"//token%item(i + 1)%text &
+                    //"' is no degree of a patch", &
+                  "a whole number from 1 to "//to_text(largest_degree))
       return
     end do
     reading%rational = token%count > 3
     if (reading%rational) then
       i = merge(5, 4, same_name(token%item(4)%text, "rational"))
       if (i <= token%count) then
-        call reading%errors%push_input(token%item(i)%at, "'"//token%item(i)%text//"' is not understood here", header)
+        call report(reading, token%item(i)%at, "'"//token%item(i)%text &
+                      //"' is not understood here", header)
         return
       end if
     end if
@@ -207,9 +214,10 @@ contains
     if (reading%n_read > reading%n_point) then
       reading%sound = .false.
       if (reading%n_read == reading%n_point + 1) then
-        call reading%errors%push_input(here, "patch "//to_text(reading%n_begun)//" of degrees " &
-                                       //degrees(reading)//" has more points than "//to_text(reading%n_point), &
-                                       "the next patch, or the end of the file")
+        call report(reading, here, "patch "//to_text(reading%n_begun)//" of degrees " &
+                      //degrees(reading)//" has more points than " &
+                      //to_text(reading%n_point), &
+                    "the next patch, or the end of the file")
       end if
       return
     end if
@@ -218,15 +226,17 @@ contains
     if (token%count /= n) then
       reading%sound = .false.
       i = min(n + 1, token%count)
-      call reading%errors%push_input(merge_place(token%item(i)%at, here, token%count > n), &
-                                     "a point of this patch has "//to_text(n)//" numbers, here are " &
-                                     //to_text(token%count), expected)
+      call report(reading, merge_place(token%item(i)%at, here, token%count > n), &
+                  "a point of this patch has "//to_text(n) &
+                    //" numbers, here are " &
+                    //to_text(token%count), expected)
       return
     end if
     do i = 1, n
       call parse_real(token%item(i)%text, reading%point(i, reading%n_read), ok)
       if (.not. ok) then
-        call refuse(reading, token%item(i), "is not a number", "a coordinate in mm, as in "//expected)
+        call refuse(reading, token%item(i), "is not a number", "a coordinate in mm, as in " &
+                      //expected)
       else if (i < 4 .and. abs(reading%point(i, reading%n_read)) > largest_coordinate) then
         call refuse(reading, token%item(i), "is out of range", "at most 1e7 mm")
       else if (i == 4 .and. (reading%point(i, reading%n_read) < 1.0_wp/largest_weight .or. &
@@ -235,6 +245,20 @@ contains
       end if
     end do
   end subroutine read_point
+
+  !> Notes an error of the file.
+  subroutine report(reading, at, message, expected)
+    !> The file.
+    type(reading_t), intent(inout) :: reading
+    !> The place.
+    type(location_t), intent(in) :: at
+    !> What is wrong.
+    character(len=*), intent(in) :: message
+    !> What was expected there.
+    character(len=*), intent(in), optional :: expected
+
+    call reading%errors%push_input(at, message, expected)
+  end subroutine report
 
   !> Reports one word of a point.
   subroutine refuse(reading, token, message, expected)
@@ -248,7 +272,7 @@ contains
     character(len=*), intent(in) :: expected
 
     reading%sound = .false.
-    call reading%errors%push_input(token%at, "'"//token%text//"' "//message, expected)
+    call report(reading, token%at, "'"//token%text//"' "//message, expected)
   end subroutine refuse
 
   !> One of two places.
@@ -284,24 +308,26 @@ contains
     if (.not. reading%open) return
     reading%open = .false.
     if (reading%n_read < reading%n_point) then
-      call reading%errors%push_input(reading%begun, "patch "//to_text(reading%n_begun)//" ends after " &
-                                     //to_text(reading%n_read)//" of its points", &
-                                     to_text(reading%n_point)//" points for the degrees "//degrees(reading))
+      call report(reading, reading%begun, "patch "//to_text(reading%n_begun)//" ends after " &
+                    //to_text(reading%n_read)//" of its points", &
+                  to_text(reading%n_point)//" points for the degrees " &
+                    //degrees(reading))
       return
     end if
     if (.not. reading%sound) return
     shape_of = reading%degree + 1
     associate (point => reading%point)
       if (reading%rational) then
-        call new_patch(patch, reshape(point(1:3, :), [3, shape_of]), reshape(point(4, :), shape_of), &
+        call new_patch(patch, reshape(point(1:3, :), [3, shape_of]), &
+                       reshape(point(4, :), shape_of), &
                        line=reading%begun%line)
       else
         call new_patch(patch, reshape(point(1:3, :), [3, shape_of]), line=reading%begun%line)
       end if
     end associate
     if (is_degenerate(patch)) then
-      call reading%errors%push_input(reading%begun, "patch "//to_text(reading%n_begun)//" has no area", &
-                                     "control points that span a surface")
+      call report(reading, reading%begun, "patch "//to_text(reading%n_begun)//" has no area", &
+                  "control points that span a surface")
       return
     end if
     if (reading%n_patch == size(reading%patch)) then
@@ -349,9 +375,9 @@ contains
         next = surface%edge(e, k)%patch
         if (next >= k .or. .not. surface%edge(e, k)%opposite) cycle
         here%line = surface%patch(k)%line
-        call reading%errors%push_input(here, "the normals of patches "//to_text(next)//" and "//to_text(k)// &
-                                       " point to opposite sides of their common edge", &
-                                       "S_u x S_v pointing out of the tool everywhere: exchange u and v of one")
+        call report(reading, here, "the normals of patches "//to_text(next)//" and "//to_text(k)// &
+                    " point to opposite sides of their common edge", &
+                    "S_u x S_v pointing out of the tool on both")
       end do
     end do
   end subroutine check_orientation

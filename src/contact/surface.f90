@@ -8,11 +8,14 @@ module dd3_contact_surface
 
   !> Points at which two edges are compared.
   integer, parameter :: n_compared = 5
-  !> Two edges are the same where they are nearer to each other than this share of the surface's size.
+  !> Two edges are the same where they are nearer to each other than this share of the surface's
+  !> size.
   real(wp), parameter :: same_place = 1.0e-6_wp
-  !> A surface is smooth across an edge where the sine of the angle between its normals is below this.
+  !> A surface is smooth across an edge where the sine of the angle between its normals is below
+  !> this.
   real(wp), parameter :: smooth_sine = 1.0e-3_wp
-  !> Width of the band beyond a smooth edge, as a share of the shortest patch, in which a node keeps its patch.
+  !> Width of the band beyond a smooth edge, as a share of the shortest patch, in which a node
+  !> keeps its patch.
   real(wp), parameter :: band_width = 1.0e-5_wp
 
   !> What lies behind an edge of a patch. The edges are 1: u = 0, 2: u = 1, 3: v = 0, 4: v = 1.
