@@ -46,8 +46,9 @@ contains
       write (left, '(g0)') expected(j)
       write (right, '(g0)') actual(i)
       difference = "none: a NaN or infinity"
-      if (ieee_is_finite(expected(j)) .and. ieee_is_finite(actual(i))) &
+      if (ieee_is_finite(expected(j)) .and. ieee_is_finite(actual(i))) then
         write (difference, '(g0,a,g0,a)') actual(i) - expected(j), " (tolerance ", tolerance, ")"
+      end if
       call fail_at(operation, left, right, difference, i, actual_shape, message, location)
       return
     end do
@@ -86,8 +87,9 @@ contains
     real(dp), intent(in) :: expected, actual, tolerance
 
     near = .false.
-    if (ieee_is_finite(expected) .and. ieee_is_finite(actual)) &
+    if (ieee_is_finite(expected) .and. ieee_is_finite(actual)) then
       near = abs(actual - expected) <= tolerance
+    end if
   end function near
 
   !> Compares whole numbers, element by element.

@@ -23,7 +23,7 @@ module pf_failure
   end type failure_t
 
   !> The failures since they were last taken.
-  type(failure_t), allocatable, save :: failures(:)
+  type(failure_t), allocatable :: failures(:)
 
 contains
 

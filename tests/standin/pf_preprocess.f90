@@ -192,7 +192,8 @@ contains
     write (unit_out, '(a,i0,3a)') "# ", number, " """, trim(source), """"
     write (unit_out, '(4a)') "  call ", call_name, text(opening + 1:closing - 1), ", &"
     write (unit_out, '(a,i0,3a)') "# ", number, " """, trim(source), """"
-    write (unit_out, '(3a,i0,a)') "    location=SourceLocation('", trim(suite), ".pf', ", number, "))"
+    write (unit_out, '(3a,i0,a)') "    location=SourceLocation('", trim(suite), ".pf', ", &
+      number, "))"
     write (unit_out, '(a)') "  if (anyExceptions()) return"
     write (unit_out, '(a,i0,3a)') "# ", number + 1, " """, trim(source), """"
   end subroutine assert_line
@@ -230,10 +231,14 @@ contains
     if (which == 3 .and. .not. message) call refuse("@assertFail needs a message")
     if (plain /= assert_arguments(which)) call refuse( &
       "wrong number of arguments; the tolerance and the message are given by keyword")
-    if (tolerance .and. assert_name(which) /= "equal" .and. assert_name(which) /= "relativelyequal") &
-      call refuse("@assert"//trim(assert_name(which))//" takes no tolerance")
-    if (.not. tolerance .and. assert_name(which) == "relativelyequal") &
-      call refuse("@assertRelativelyEqual needs a tolerance")
+    select case (assert_name(which))
+    case ("relativelyequal")
+      if (.not. tolerance) call refuse("@assertRelativelyEqual needs a tolerance")
+    case ("equal")
+      continue
+    case default
+      if (tolerance) call refuse("@assert"//trim(assert_name(which))//" takes no tolerance")
+    end select
   end subroutine check_arguments
 
   !> Whether an argument is given by this keyword.
@@ -359,8 +364,9 @@ contains
 
     lower = text
     do place = 1, len(text)
-      if (lge(text(place:place), "A") .and. lle(text(place:place), "Z")) &
+      if (lge(text(place:place), "A") .and. lle(text(place:place), "Z")) then
         lower(place:place) = achar(iachar(text(place:place)) + 32)
+      end if
     end do
   end function lower
 
