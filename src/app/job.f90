@@ -6,7 +6,7 @@ module dd3_app_job
   use dd3_base_error, only : error_list_t, error_t
   use dd3_base_file, only : make_directory
   use dd3_base_log, only : log_t
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : to_text, slice
   use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
@@ -177,7 +177,7 @@ contains
     dot = index(case%file, ".", back=.true.)
     slash = index(case%file, "/", back=.true.)
     if (dot <= slash + 1) dot = len(case%file) + 1
-    directory = case%file(:dot - 1)//".out"
+    directory = slice(case%file, 1, dot - 1)//".out"
   end function results_directory
 
 end module dd3_app_job

@@ -1,5 +1,6 @@
 !> Errors of the set-up as values: they travel up, gain context on the way and are reported together.
 module dd3_base_error
+  use dd3_base_kinds, only : i8
   implicit none
   private
   public :: location_t, error_t, error_list_t, fatal_error, input_error, add_context
@@ -65,8 +66,10 @@ contains
     character(len=*), intent(in), optional :: expected
 
     character(len=12) :: number
+    integer(i8) :: width
 
     allocate (error)
+    width = int(max(1, location%width), i8)
     error%order = location%order
     error%column = location%column
     error%message = "error: "//message
@@ -82,7 +85,7 @@ contains
       error%message = error%message//new_line("a")//"  "//location%text
       if (location%column > 0) then
         error%message = error%message//new_line("a")//"  "//caret_indent(location) &
-                        //repeat("^", max(1, location%width))
+                        //repeat("^", width)
       end if
     end if
     if (present(expected)) error%message = error%message//new_line("a")//"  expected: "//expected

@@ -3,7 +3,7 @@ module dd3_base_text
   use dd3_base_kinds, only : wp, i8
   implicit none
   private
-  public :: text_t, to_text, lower_case, upper_case, same_name, nearest_name, join
+  public :: text_t, to_text, lower_case, upper_case, same_name, nearest_name, join, slice
 
   !> A string of any length, for lists of strings.
   type :: text_t
@@ -54,6 +54,10 @@ contains
     if (present(digits)) n = digits
     write (form, '(a,i0,a,i0,a)') "(g", n + 10, ".", n, ")"
     write (buffer, form) value
+    if (scan(buffer, "eE") > 0) then
+      write (form, '(a,i0,a,i0,a)') "(es", n + 10, ".", max(1, n - 1), ")"
+      write (buffer, form) value
+    end if
     text = trim(adjustl(buffer))
     mark = scan(text, "eE")
     if (index(text, ".") == 0) return
@@ -79,7 +83,7 @@ contains
   pure function lower_case(text) result(lower)
     !> The text.
     character(len=*), intent(in) :: text
-    character(len=len(text)) :: lower
+    character(len=:), allocatable :: lower
     integer :: i, c
 
     lower = text
@@ -93,7 +97,7 @@ contains
   pure function upper_case(text) result(upper)
     !> The text.
     character(len=*), intent(in) :: text
-    character(len=len(text)) :: upper
+    character(len=:), allocatable :: upper
     integer :: i, c
 
     upper = text
@@ -154,6 +158,17 @@ contains
     end do
     edit_distance = cost(len(b), 2)
   end function edit_distance
+
+  !> Part of a text.
+  pure function slice(text, first, last)
+    !> The text.
+    character(len=*), intent(in) :: text
+    !> Positions of the first and the last character of the part.
+    integer, intent(in) :: first, last
+    character(len=:), allocatable :: slice
+
+    slice = text(first:last)
+  end function slice
 
   !> The words with a separator between them.
   pure function join(words, separator) result(text)

@@ -1,7 +1,7 @@
 !> Reads the input text into blocks: comments, continued lines, included files, parameters.
 module dd3_input_deck
   use dd3_base_error, only : error_t, error_list_t, location_t
-  use dd3_base_text, only : text_t, lower_case, upper_case
+  use dd3_base_text, only : text_t, lower_case, upper_case, slice
   use dd3_input_block, only : block_t, entry_t, token_t, deck_t
   use dd3_input_substitution, only : substitution_t, new_substitution
   use dd3_input_text_file, only : read_lines, resolve_path, folder_of
@@ -148,7 +148,7 @@ contains
 
     comment = scan(line%text, "#!")
     if (comment == 0) comment = len(line%text) + 1
-    text = trim(adjustl(untabbed(line%text(:comment - 1))))
+    text = trim(adjustl(untabbed(slice(line%text, 1, comment - 1))))
     if (text == "") return
     entry%key = "text"
     entry%at = place(line, 1, len(line%text))
@@ -193,7 +193,7 @@ contains
       call add_broken_entry(self, token%item(1))
       return
     end if
-    if (token%item(1)%text(1:min(1, len(token%item(1)%text))) == "*" .and. &
+    if (index(token%item(1)%text, "*") == 1 .and. &
         .not. token%item(1)%quoted) then
       call open_block(self, token, line%file, errors)
     else

@@ -1,6 +1,7 @@
 !> The checked input as text, with every default filled in and marked: for the log and for
 !> `--check`.
 module dd3_input_echo
+  use dd3_base_kinds, only : i8
   use dd3_base_text, only : upper_case
   use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t
@@ -64,6 +65,7 @@ contains
     character(len=:), allocatable :: text
 
     character(len=:), allocatable :: remark
+    integer(i8) :: gap
 
     text = "  "//entry%key//" = "//words(entry)
     remark = ""
@@ -71,7 +73,8 @@ contains
     if (entry%defaulted .and. remark /= "") remark = remark//", default"
     if (entry%defaulted .and. remark == "") remark = "default"
     if (remark /= "") then
-      text = text//repeat(" ", max(1, remark_column - len(text)))//"# "//remark
+      gap = int(max(1, remark_column - len(text)), i8)
+      text = text//repeat(" ", gap)//"# "//remark
     end if
     text = text//newline
   end function echo_entry

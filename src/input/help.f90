@@ -1,5 +1,6 @@
 !> Help on blocks and keys, and the manual's reference, printed from the keyword tables.
 module dd3_input_help
+  use dd3_base_kinds, only : i8
   use dd3_base_text, only : upper_case, lower_case, same_name
   use dd3_base_parameter, only : parameter_t
   use dd3_input_table, only : block_row_t, block_table
@@ -129,7 +130,10 @@ contains
     integer, intent(in) :: width
     character(len=:), allocatable :: padded
 
-    padded = text//repeat(" ", max(1, width - len(text)))
+    integer(i8) :: gap
+
+    gap = int(max(1, width - len(text)), i8)
+    padded = text//repeat(" ", gap)
   end function padded
 
   !> The reference of all blocks and keys for the manual, in Markdown.

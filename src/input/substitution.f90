@@ -1,7 +1,7 @@
 !> Parameters of the input: `name = value` in `*PARAMETER`, used as `${name}` in later values.
 module dd3_input_substitution
   use dd3_base_error, only : error_list_t, location_t
-  use dd3_base_text, only : text_t, same_name, lower_case, nearest_name, join
+  use dd3_base_text, only : text_t, same_name, lower_case, nearest_name, join, slice
   use dd3_input_block, only : token_t
   use dd3_input_token, only : token_list_t, line_t, split_line, add_token
   implicit none
@@ -58,7 +58,7 @@ contains
         call errors%push_input(binding%at, "a parameter is set as name=value")
         cycle
       end if
-      binding%name = lower_case(trim(adjustl(overrides(i)%s(:equals - 1))))
+      binding%name = lower_case(trim(adjustl(slice(overrides(i)%s, 1, equals - 1))))
       line%file = binding%at%file
       line%text = overrides(i)%s(equals + 1:)
       call split_line(line, binding%value, continues, errors)
@@ -143,14 +143,15 @@ contains
         call errors%push_input(at, "a closing brace is missing", "${name}")
         return
       end if
-      i = position(self, token%text(first + k + 1:first + k + last - 2))
+      i = position(self, slice(token%text, first + k + 1, first + k + last - 2))
       if (i > 0) then
         if (.not. self%item(i)%defined) i = 0
       end if
       if (i == 0) then
         call errors%push_input(at, "unknown parameter '"// &
-            token%text(first + k + 1:first + k + last - 2)//"'", &
-                               alternatives(self, token%text(first + k + 1:first + k + last - 2)))
+            slice(token%text, first + k + 1, first + k + last - 2)//"'", &
+                               alternatives(self, slice(token%text, first + k + 1, &
+                               first + k + last - 2)))
         return
       end if
       if (last + 1 == len(token%text) .and. .not. token%quoted) then
@@ -160,7 +161,7 @@ contains
         end do
         return
       end if
-      text = text//token%text(first:first + k - 2)//plain(self%item(i)%value)
+      text = text//slice(token%text, first, first + k - 2)//plain(self%item(i)%value)
       first = first + k + last
     end do
     call add_token(list, text//token%text(first:), token%quoted, token%at)

@@ -1,6 +1,7 @@
 !> Cuts a line of input into words, each with its place.
 module dd3_input_token
   use dd3_base_error, only : location_t, error_list_t
+  use dd3_base_text, only : slice
   use dd3_input_block, only : token_t
   implicit none
   private
@@ -54,7 +55,7 @@ contains
     if (len(line%text) <= shown) return
     start = max(1, min(column - shown/3, len(line%text) - shown + 1))
     location%column = column - start + 1
-    location%text = line%text(start:start + shown - 1)
+    location%text = slice(line%text, start, start + shown - 1)
     location%width = min(width, shown - location%column + 1)
     if (start > 1) location%text(:3) = "..."
     if (start + shown - 1 < len(line%text)) location%text(shown - 2:) = "..."
@@ -96,7 +97,7 @@ contains
                                  "a second "//line%text(start:start)//" on the same line")
           return
         end if
-        call add_token(token, line%text(start + 1:last - 1), .true., place(line, start, &
+        call add_token(token, slice(line%text, start + 1, last - 1), .true., place(line, start, &
             last - start + 1))
       case ("=")
         last = start
@@ -108,7 +109,7 @@ contains
           last = last - 1
         end if
         if (last >= start) then
-          call add_token(token, line%text(start:last), .false., place(line, start, &
+          call add_token(token, slice(line%text, start, last), .false., place(line, start, &
               last - start + 1))
         end if
         if (continues) return
