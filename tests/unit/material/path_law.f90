@@ -1,0 +1,120 @@
+!> A made-up hardening law that follows the strain path and owns a back-stress, in the manner of
+!> Teodosiu and Hu: the flow direction N = V/|V| draws a polarity P after it, both the flow stress
+!> and the saturation of the back-stress depend on |P|^2. It shows that such a law fits.
+module path_law
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t
+  use dd3_material_backstress_relaxation, only : relax_back_stress
+  use dd3_material_description, only : description_t
+  use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
+  use dd3_material_hardening_law, only : hardening_t
+  use dd3_linalg_tensor, only : kelvin_deviator
+  implicit none
+  private
+  public :: path_law_t
+
+  !> Constants: initial flow stress, slope, weight of the polarity and its rate; rate of the
+  !> back-stress, its saturation and what the polarity adds to that.
+  real(wp), parameter :: y0 = 200.0_wp, h = 300.0_wp, f = 80.0_wp, c_p = 12.0_wp, &
+                         c_x = 30.0_wp, x0 = 40.0_wp, g = 30.0_wp
+
+  !> The law; its internal variables are P, then X.
+  type, extends(hardening_t) :: path_law_t
+  contains
+    procedure, nopass :: describe
+    procedure :: set
+    procedure :: flow_stress
+    procedure :: back_stress
+    procedure :: advance
+  end type path_law_t
+
+contains
+
+  !> Says its name.
+  subroutine describe(description)
+    type(description_t), intent(out) :: description
+
+    description%name = "path_law"
+    allocate (description%rows(0), description%example(0))
+  end subroutine describe
+
+  !> Sets what the law has.
+  subroutine set(self, values)
+    class(path_law_t), intent(inout) :: self
+    type(law_value_t), intent(in) :: values(:)
+
+    self%n_internal = 12 + 0*size(values)
+    self%owns_back_stress = .true.
+    self%follows_path = .true.
+  end subroutine set
+
+  !> The polarity at the end, |P|^2 and its derivatives.
+  pure subroutine polarity(old, increment, direction, p, slope, gradient)
+    real(wp), intent(in) :: old(6), increment
+    type(flow_direction_t), intent(in) :: direction
+    real(wp), intent(out) :: p(6), slope, gradient(6)
+    real(wp) :: n(6), length, decay, along(6)
+
+    length = norm2(direction%gradient)
+    p = old
+    slope = 0.0_wp
+    gradient = 0.0_wp
+    if (.not. length > 0.0_wp) return
+    n = direction%gradient/length
+    decay = exp(-c_p*increment)
+    p = n - (n - old)*decay
+    slope = 2*dot_product(p, c_p*decay*(n - old))
+    along = (p - dot_product(p, n)*n)/length
+    gradient = 2*(1 - decay)*matmul(direction%second, along)
+  end subroutine polarity
+
+  !> The flow stress.
+  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
+    class(path_law_t), intent(in) :: self
+    real(wp), intent(in) :: plastic, old(self%n_internal), increment
+    type(flow_direction_t), intent(in) :: direction
+    type(flow_response_t), intent(out) :: flow
+    real(wp) :: p(6), slope, gradient(6)
+
+    call polarity(old(1:6), increment, direction, p, slope, gradient)
+    flow%value = y0 + h*(plastic + increment) + f*dot_product(p, p)
+    flow%slope = h + f*slope
+    flow%gradient = f*gradient
+  end subroutine flow_stress
+
+  !> Its own back-stress.
+  pure subroutine back_stress(self, old, increment, direction, back)
+    class(path_law_t), intent(in) :: self
+    real(wp), intent(in) :: old(self%n_internal), increment
+    type(flow_direction_t), intent(in) :: direction
+    type(back_response_t), intent(out) :: back
+    real(wp) :: p(6), slope, gradient(6), normal(6)
+    integer :: j
+
+    call polarity(old(1:6), increment, direction, p, slope, gradient)
+    call relax_back_stress(c_x*(x0 + g*dot_product(p, p)), c_x, old(7:12), increment, direction, &
+                           back)
+    if (.not. direction%equivalent > 0.0_wp) return
+    normal = increment*c_x*g/(1 + c_x*increment)*kelvin_deviator(direction%stress) &
+             /direction%equivalent
+    back%slope = back%slope + slope*normal
+    do j = 1, 6
+      back%gradient(:, j) = back%gradient(:, j) + gradient(j)*normal
+    end do
+  end subroutine back_stress
+
+  !> Its internal variables at the end.
+  pure subroutine advance(self, old, increment, direction, new)
+    class(path_law_t), intent(in) :: self
+    real(wp), intent(in) :: old(self%n_internal), increment
+    type(flow_direction_t), intent(in) :: direction
+    real(wp), intent(out) :: new(self%n_internal)
+    type(back_response_t) :: back
+    real(wp) :: slope, gradient(6)
+
+    call polarity(old(1:6), increment, direction, new(1:6), slope, gradient)
+    call self%back_stress(old, increment, direction, back)
+    new(7:12) = back%value
+  end subroutine advance
+
+end module path_law
