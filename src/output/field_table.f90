@@ -26,8 +26,8 @@ module dd3_output_field_table
     integer :: location = at_nodes
     !> Numbers at each place.
     integer :: components = 1
-    !> Whether they are whole numbers.
-    logical :: whole = .false.
+    !> Whether they are whole numbers; whether they are never negative, so that extrapolation stops at 0.
+    logical :: whole = .false., positive = .false.
     !> Unit; empty where it has none.
     character(len=8) :: unit = ""
     !> Meaning, in a line.
@@ -71,6 +71,7 @@ contains
       row("thickness", at_nodes_and_cells, 1, "mm", &
           "distance between the bottom and the top node through the thickness", fill_thickness)]
     table(3)%whole = .true.
+    table(5:6)%positive = .true.
   end function field_table
 
   !> A row of the table.

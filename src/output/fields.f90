@@ -389,6 +389,7 @@ contains
         end do
       end do
     end do
+    if (self%field(i)%positive) nodal = max(nodal, 0.0_wp)
     i_cell = i_cell + 1
     call append(self%at_node(i), reshape(nodal, [size(nodal)]), ok)
     call append(self%at_cell(i_cell), reshape(cell, [size(cell)]), ok)

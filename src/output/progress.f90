@@ -177,15 +177,16 @@ contains
     !> The increment.
     type(progress_view_t), intent(in) :: view
     character(len=:), allocatable :: line
-    character(len=12) :: travel
+    character(len=12) :: travel, r
 
     if (self%control_name(view%phase) == "") then
       write (travel, '(f5.1, " %")') 100.0_wp*view%progress
     else
       write (travel, '(f8.3, " mm")') view%travel
     end if
+    write (r, '(f10.4)') view%r
     line = trim(self%phase_name(view%phase))//" "//trim(adjustl(travel))//", inc "// &
-           to_text(view%increment)//", r "//to_text(view%r, 3)//" ("//trim(view%limiter)//"), "// &
+           to_text(view%increment)//", r "//trim(adjustl(r))//" ("//trim(view%limiter)//"), "// &
            to_text(view%iterations)//" it"
     if (self%control_name(view%phase) /= "") line = line//", "//force_text(view%force)
     if (self%speed > 0.0_wp) then
