@@ -152,7 +152,10 @@ contains
     integer :: iteration
 
     step%converged = .false.
-    call evaluate(laws, internal, step%direction%stress, step%increment, step)
+    ! A copy, as the evaluation rewrites the step.
+    change = step%direction%stress
+    change_of_increment = step%increment
+    call evaluate(laws, internal, change, change_of_increment, step)
     do iteration = 1, iteration_limit
       step%iterations = step%iterations + 1
       call invert(laws, step, regular)
