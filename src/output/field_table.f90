@@ -26,7 +26,7 @@ module dd3_output_field_table
     integer :: location = at_nodes
     !> Numbers at each place.
     integer :: components = 1
-    !> Whether they are whole numbers; whether they are never negative, so that extrapolation stops at 0.
+    !> Whether they are whole numbers; whether they are never negative: extrapolation stops at 0.
     logical :: whole = .false., positive = .false.
     !> Unit; empty where it has none.
     character(len=8) :: unit = ""
