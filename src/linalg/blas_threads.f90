@@ -1,8 +1,10 @@
-!> Keeps the BLAS to one thread: the dense blocks of a sheet's factorisation are too small to share, and a thread pool
-!> that wakes for each of them costs a third of the time. OpenBLAS is asked where it is the library in use (looked up by
-!> name in the running program); with any other BLAS nothing happens.
+!> Keeps the BLAS to one thread: the dense blocks of a sheet's factorisation are too small to share,
+!> and a thread pool that wakes for each of them costs a third of the time. OpenBLAS is asked where
+!> it is the library in use (looked up by name in the running program); with any other BLAS nothing
+!> happens.
 module dd3_linalg_blas_threads
-  use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, c_associated, &
+  use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, &
+    c_null_char, c_associated, &
                                           c_f_procpointer
   implicit none
   private

@@ -1,8 +1,10 @@
-!> Conjugate gradients squared (Sonneveld 1989), preconditioned from the right, so that the residual is the true one.
+!> Conjugate gradients squared (Sonneveld 1989), preconditioned from the right, so that the residual
+!> is the true one.
 !>
-!> A near breakdown (rho or sigma vanish), divergence, a stall, or a residual that the recurrence holds for small but the
-!> solution does not bear out end a cycle; the next one starts from the best solution known with a new shadow residual,
-!> from the second restart on with a random part. After five restarts the iteration gives up and says why.
+!> A near breakdown (rho or sigma vanish), divergence, a stall, or a residual that the recurrence
+!> holds for small but the solution does not bear out end a cycle; the next one starts from the best
+!> solution known with a new shadow residual, from the second restart on with a random part. After
+!> five restarts the iteration gives up and says why.
 module dd3_linalg_cgs
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp, i8
@@ -23,7 +25,8 @@ module dd3_linalg_cgs
   !> Restarts allowed.
   integer, parameter :: restart_limit = 5
   !> How a cycle ended.
-  integer, parameter :: ended_converged = 0, ended_rho = 1, ended_sigma = 2, ended_diverged = 3, ended_stalled = 4, &
+  integer, parameter :: ended_converged = 0, ended_rho = 1, ended_sigma = 2, ended_diverged = 3, &
+    ended_stalled = 4, &
                         ended_drifted = 5, ended_spent = 6
   !> The same in words.
   character(len=48), parameter :: ended_text(6) = [character(len=48) :: &
@@ -68,8 +71,10 @@ contains
 
     self%tolerance = tolerance
     self%max_iterations = max_iterations
-    if (allocated(self%r)) deallocate (self%r, self%shadow, self%p, self%q, self%u, self%v, self%hat, self%x, self%best)
-    allocate (self%r(n), self%shadow(n), self%p(n), self%q(n), self%u(n), self%v(n), self%hat(n), self%x(n), self%best(n))
+    if (allocated(self%r)) deallocate (self%r, self%shadow, self%p, self%q, self%u, self%v, &
+      self%hat, self%x, self%best)
+    allocate (self%r(n), self%shadow(n), self%p(n), self%q(n), self%u(n), self%v(n), self%hat(n), &
+      self%x(n), self%best(n))
   end subroutine cgs_setup
 
   !> Solves A x = b for a right-hand side of length one.
@@ -104,7 +109,8 @@ contains
         call true_residual(matrix, b, x, self%r, self%residual)
       end if
       if (ended == ended_converged .and. self%residual > slack*self%tolerance) ended = ended_drifted
-      if (ended == ended_converged .or. ended == ended_spent .or. self%restarts == restart_limit) exit
+      if (ended == ended_converged .or. ended == ended_spent &
+        .or. self%restarts == restart_limit) exit
       self%restarts = self%restarts + 1
     end do
     self%converged = self%residual <= slack*self%tolerance
@@ -135,7 +141,8 @@ contains
     self%residual = 1.0_wp
   end subroutine start
 
-  !> One cycle from `x` with residual `r` and the shadow residual given; leaves its best solution in `best`.
+  !> One cycle from `x` with residual `r` and the shadow residual given; leaves its best solution in
+  !> `best`.
   subroutine run_cycle(self, matrix, preconditioner, ended)
     !> The iteration.
     class(cgs_t), intent(inout) :: self

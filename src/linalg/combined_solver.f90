@@ -1,8 +1,9 @@
-!> Iterative solver, direct solver, or the first with the second to fall back on; all work on a renumbered and scaled copy
-!> of the system, and judge a solution by its true residual.
+!> Iterative solver, direct solver, or the first with the second to fall back on; all work on a
+!> renumbered and scaled copy of the system, and judge a solution by its true residual.
 !>
-!> Where the iteration fails several times in a row on a pattern, the direct solver is taken at once for a number of
-!> factorisations; then the iteration gets another chance, and after each further failure a longer rest.
+!> Where the iteration fails several times in a row on a pattern, the direct solver is taken at once
+!> for a number of factorisations; then the iteration gets another chance, and after each further
+!> failure a longer rest.
 module dd3_linalg_combined_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_clock, only : wall_time
@@ -45,13 +46,16 @@ module dd3_linalg_combined_solver
     logical :: direct_set_up = .false.
     !> Which of the two can solve with the present matrix.
     logical :: iterative_ready = .false., direct_ready = .false.
-    !> Failures of the iteration in a row, factorisations left of its rest, and length of the next one.
+    !> Failures of the iteration in a row, factorisations left of its rest, and length of the next
+    !> one.
     integer :: failures = 0, rest = 0, next_rest = first_rest
-    !> Whether the iteration has failed with the present matrix, and why the direct solver stands in for it.
+    !> Whether the iteration has failed with the present matrix, and why the direct solver stands in
+    !> for it.
     logical :: failed = .false.
     !> See `failed`.
     character(len=160) :: reason = ""
-    !> Right-hand side, solution, the direct solution and its residual in the copy's numbering, `(3n)`.
+    !> Right-hand side, solution, the direct solution and its residual in the copy's numbering,
+    !> `(3n)`.
     real(wp), allocatable :: b(:), x(:), y(:), r(:)
     !> Time of the factorisations of the present matrix, s.
     real(wp) :: setup_seconds = 0.0_wp
@@ -115,7 +119,8 @@ contains
     self%next_rest = first_rest
   end subroutine combined_setup
 
-  !> Factorises: the preconditioner, or the direct factors where the iteration is not used, rests, or cannot start.
+  !> Factorises: the preconditioner, or the direct factors where the iteration is not used, rests,
+  !> or cannot start.
   subroutine combined_factor(self, matrix, verdict)
     !> The solver.
     class(combined_solver_t), intent(inout) :: self
@@ -236,7 +241,8 @@ contains
     end if
   end subroutine solve_iteratively
 
-  !> Solves with the direct factors, which are made now if need be; keeps the better of two solutions.
+  !> Solves with the direct factors, which are made now if need be; keeps the better of two
+  !> solutions.
   subroutine solve_directly(self, report)
     !> The solver.
     type(combined_solver_t), intent(inout) :: self
@@ -267,7 +273,8 @@ contains
       end if
     end if
     report%converged = report%residual <= max(direct_limit, self%options%tolerance)
-    if (.not. report%converged) report%reason = "the direct solution does not satisfy the system: nearly singular"
+    if (.not. report%converged) &
+      report%reason = "the direct solution does not satisfy the system: nearly singular"
   end subroutine solve_directly
 
   !> Gives back what UMFPACK holds.

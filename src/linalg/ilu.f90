@@ -1,16 +1,18 @@
 !> Incomplete LU factorisation by level of fill, ILU(k), on 3x3 blocks.
 !>
-!> Symbolic phase, once per pattern (Watts 1981; Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. 2003,
-!> alg. 10.6 and eq. 10.18): a member of the matrix has level 0, fill at (i,j) through row k the level
-!> lev(i,k) + lev(k,j) + 1; the smallest counts, and what is above k is left out. The numeric phase goes row by row (IKJ),
-!> the diagonal blocks are kept inverted. A diagonal block near to singular is replaced by a shifted one.
+!> Symbolic phase, once per pattern (Watts 1981; Saad, Iterative Methods for Sparse Linear Systems,
+!> 2nd ed. 2003, alg. 10.6 and eq. 10.18): a member of the matrix has level 0, fill at (i,j) through
+!> row k the level lev(i,k) + lev(k,j) + 1; the smallest counts, and what is above k is left out.
+!> The numeric phase goes row by row (IKJ), the diagonal blocks are kept inverted. A diagonal block
+!> near to singular is replaced by a shifted one.
 !>
-!> A narrow strip numbered section by section has so little fill that the complete factorisation costs hardly more than an
-!> incomplete one: if asked to, the set-up compares the two and raises the level where that pays.
+!> A narrow strip numbered section by section has so little fill that the complete factorisation
+!> costs hardly more than an incomplete one: if asked to, the set-up compares the two and raises the
+!> level where that pays.
 !>
-!> Layout, chosen for speed: a block row is held as three plain rows, so that subtracting a multiple of an earlier row
-!> runs along contiguous numbers; the symbolic phase lists for each pair of rows the stretches that both have in common.
-!> The triangular solutions read blocks, column by column.
+!> Layout, chosen for speed: a block row is held as three plain rows, so that subtracting a multiple
+!> of an earlier row runs along contiguous numbers; the symbolic phase lists for each pair of rows
+!> the stretches that both have in common. The triangular solutions read blocks, column by column.
 module dd3_linalg_ilu
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
@@ -38,11 +40,14 @@ module dd3_linalg_ilu
     integer, allocatable :: diagonal(:)
     !> Position in the factors of each block of the matrix.
     integer, allocatable :: target(:)
-    !> Where the stretches begin that belong to each block of L, one more than there are blocks in the factors.
+    !> Where the stretches begin that belong to each block of L, one more than there are blocks in
+    !> the factors.
     integer, allocatable :: stretch_start(:)
-    !> The stretches, `(3, :)`: first block in the row of U, first block in the row worked on, number of blocks.
+    !> The stretches, `(3, :)`: first block in the row of U, first block in the row worked on,
+    !> number of blocks.
     integer, allocatable :: stretch(:, :)
-    !> The row worked on and the finished rows of U, as plain rows: row i takes `9*(row_start(i)-1)+1 ...`.
+    !> The row worked on and the finished rows of U, as plain rows: row i takes
+    !> `9*(row_start(i)-1)+1 ...`.
     real(wp), allocatable :: row(:)
     !> The factors as blocks, the diagonal ones inverted, `(3, 3, :)`.
     real(wp), allocatable :: block(:, :, :)
@@ -56,7 +61,8 @@ module dd3_linalg_ilu
 
   !> Members of L beyond this end the factorisation: it has lost all meaning.
   real(wp), parameter :: growth_limit = 1.0e30_wp
-  !> A diagonal block that comes this near to a singular one is shifted (the matrix's rows are of size one).
+  !> A diagonal block that comes this near to a singular one is shifted (the matrix's rows are of
+  !> size one).
   real(wp), parameter :: pivot_limit = 1.0e-12_wp
   !> Size of the first shift.
   real(wp), parameter :: pivot_shift = 1.0e-3_wp
@@ -90,8 +96,8 @@ contains
     integer :: n_block
 
     self%n = matrix%n
-    call level_of_fill(matrix%n, matrix%row_start, matrix%column, self%level, self%row_start, self%column, &
-                       self%diagonal)
+    call level_of_fill(matrix%n, matrix%row_start, matrix%column, self%level, &
+                       self%row_start, self%column, self%diagonal)
     self%description = "ILU("//to_text(self%level)//")"
     if (self%may_raise) call raise_level(self, matrix)
     n_block = size(self%column)
@@ -101,7 +107,8 @@ contains
     call find_stretches(self)
   end subroutine ilu_setup
 
-  !> Takes the pattern of the complete factorisation where it costs no more than the incomplete one and its iterations.
+  !> Takes the pattern of the complete factorisation where it costs no more than the incomplete one
+  !> and its iterations.
   subroutine raise_level(self, matrix)
     !> The preconditioner.
     class(ilu_t), intent(inout) :: self
@@ -110,8 +117,8 @@ contains
     integer, allocatable :: row_start(:), column(:), diagonal(:)
     integer(i8) :: limit
 
-    call level_of_fill(matrix%n, matrix%row_start, matrix%column, matrix%n, row_start, column, diagonal, &
-                       fill_limit*size(matrix%column))
+    call level_of_fill(matrix%n, matrix%row_start, matrix%column, matrix%n, &
+                       row_start, column, diagonal, fill_limit*size(matrix%column))
     if (.not. allocated(column)) return
     limit = elimination_cost(self%row_start, self%column, self%diagonal) &
             + 2_i8*reckoned_iterations*int(size(self%column) + size(matrix%column), i8)
@@ -126,29 +133,33 @@ contains
   pure integer(i8) function elimination_cost(row_start, column, diagonal)
     !> See `ilu_t`.
     integer, intent(in) :: row_start(:), column(:), diagonal(:)
-    integer :: i, k
+    integer :: i, k, length
 
     elimination_cost = 0
     do i = 1, size(diagonal)
       do k = row_start(i), diagonal(i) - 1
-        elimination_cost = elimination_cost + int(row_start(column(k) + 1) - diagonal(column(k)), i8)
+        length = row_start(column(k) + 1) - diagonal(column(k))
+        elimination_cost = elimination_cost + int(length, i8)
       end do
     end do
   end function elimination_cost
 
   !> Pattern of the factors by level of fill.
-  subroutine level_of_fill(n, row_start, column, level, fill_start, fill_column, fill_diagonal, most)
+  subroutine level_of_fill(n, row_start, column, level, fill_start, fill_column, fill_diagonal, &
+                           most)
     !> Number of rows.
     integer, intent(in) :: n
     !> Where the rows of the matrix begin, and their columns, ascending; the diagonal is among them.
     integer, intent(in) :: row_start(:), column(:)
     !> Highest level kept.
     integer, intent(in) :: level
-    !> Where the rows of the factors begin, `(n + 1)`, their columns, and the diagonal's positions, `(n)`.
+    !> Where the rows of the factors begin, `(n + 1)`, their columns, and the diagonal's positions,
+    !> `(n)`.
     integer, allocatable, intent(out) :: fill_start(:), fill_column(:), fill_diagonal(:)
     !> Most members allowed; beyond them the lists are not allocated on return.
     integer, intent(in), optional :: most
-    !> The row being built, as a chain of columns in ascending order that begins at 0 and ends at n + 1.
+    !> The row being built, as a chain of columns in ascending order that begins at 0 and ends at n
+    !> + 1.
     integer, allocatable :: chain(:), chain_level(:)
     !> Levels of the finished rows.
     integer, allocatable :: fill_level(:)
@@ -254,7 +265,8 @@ contains
     end do
   end subroutine find_targets
 
-  !> Lists for each block (i,k) of L the stretches of neighbouring blocks that row k of U and row i have in common.
+  !> Lists for each block (i,k) of L the stretches of neighbouring blocks that row k of U and row i
+  !> have in common.
   subroutine find_stretches(self)
     !> The preconditioner.
     class(ilu_t), intent(inout) :: self
@@ -332,13 +344,18 @@ contains
       to = matrix%row_start(i + 1) - 1
       call load_row(first, last, to - from + 1, self%target(from:to), matrix%value(:, :, from:to), &
                     self%row(9*first - 8:9*last))
-      call eliminate_row(self%n, i, self%row_start, self%column, self%diagonal, size(self%stretch, 2), &
-                         self%stretch_start, self%stretch, self%row, self%block, good)
-      if (good) call finish_row(last - first + 1, self%diagonal(i) - first + 1, self%row(9*first - 8:9*last), &
-                                self%block(:, :, first:last), self%shifted, good)
+      call eliminate_row(self%n, i, self%row_start, self%column, self%diagonal, &
+                         size(self%stretch, 2), self%stretch_start, self%stretch, &
+                         self%row, self%block, good)
+      if (good) then
+        call finish_row(last - first + 1, self%diagonal(i) - first + 1, &
+                        self%row(9*first - 8:9*last), self%block(:, :, first:last), &
+                        self%shifted, good)
+      end if
       if (.not. good) then
         verdict%outcome = verdict_retry
-        verdict%reason = "the incomplete factorisation grows without bound in block row "//to_text(i)
+        verdict%reason = "the incomplete factorisation grows without bound in block row " &
+          //to_text(i)
         return
       end if
     end do
@@ -366,12 +383,16 @@ contains
     end do
   end subroutine load_row
 
-  !> Kernel of the numeric phase: takes the multiples of all earlier rows off row i, and keeps the multipliers.
-  pure subroutine eliminate_row(n, i, row_start, column, diagonal, n_stretch, stretch_start, stretch, row, block, good)
+  !> Kernel of the numeric phase: takes the multiples of all earlier rows off row i, and keeps the
+  !> multipliers.
+  pure subroutine eliminate_row(n, i, row_start, column, diagonal, n_stretch, stretch_start, &
+                                stretch, row, block, good)
     !> Number of rows, and the row worked on.
     integer, intent(in) :: n, i
     !> See `ilu_t`.
-    integer, intent(in) :: row_start(n + 1), column(*), diagonal(n), n_stretch, stretch_start(*), stretch(3, n_stretch)
+    integer, intent(in) :: row_start(n + 1), column(*), diagonal(n)
+    !> See `ilu_t`.
+    integer, intent(in) :: n_stretch, stretch_start(*), stretch(3, n_stretch)
     !> See `ilu_t`.
     real(wp), intent(inout) :: row(*), block(3, 3, *)
     !> Whether the multipliers stay within bounds.
@@ -495,7 +516,8 @@ contains
     !> Solution, `(3n)`.
     real(wp), intent(out) :: z(:)
 
-    call solve_triangles(self%n, size(self%column), self%row_start, self%column, self%diagonal, self%block, r, z)
+    call solve_triangles(self%n, size(self%column), self%row_start, self%column, self%diagonal, &
+                         self%block, r, z)
   end subroutine ilu_apply
 
   !> Kernel of the triangular solutions.

@@ -1,11 +1,12 @@
-!> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns, and its pattern from
-!> the elements' connectivity. The product keeps one partial sum per column of the blocks, so that no
-!> addition has to wait for the one before it.
+!> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns, and its pattern
+!> from the elements' connectivity. The product keeps one partial sum per column of the blocks, so
+!> that no addition has to wait for the one before it.
 module dd3_linalg_matrix
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, multiply
+  public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
+    multiply
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -31,8 +32,9 @@ module dd3_linalg_matrix
 
 contains
 
-  !> Builds the pattern of a mesh: the nodes of one element are coupled. Extra block rows and columns
-  !> come after the nodes'; each is coupled with a list of nodes and with itself. All values are zero.
+  !> Builds the pattern of a mesh: the nodes of one element are coupled. Extra block rows and
+  !> columns come after the nodes'; each is coupled with a list of nodes and with itself. All values
+  !> are zero.
   subroutine new_pattern(self, n_node, connectivity, extra_start, extra_node)
     !> The matrix made.
     type(block_matrix_t), intent(out) :: self
@@ -125,7 +127,8 @@ contains
 
   end subroutine new_pattern
 
-  !> Builds a matrix of a given pattern; a diagonal block that is missing is added. All values are zero.
+  !> Builds a matrix of a given pattern; a diagonal block that is missing is added. All values are
+  !> zero.
   subroutine new_pattern_from_rows(self, row_start, column)
     !> The matrix made.
     type(block_matrix_t), intent(out) :: self
@@ -223,7 +226,8 @@ contains
     type(block_matrix_t), intent(in) :: self
     !> Nodes of each element, `(n_element_node, n_element)`.
     integer, intent(in) :: connectivity(:, :)
-    !> Position of each block, `(n_element_node, n_element_node, n_element)`; 0 where none is stored.
+    !> Position of each block, `(n_element_node, n_element_node, n_element)`; 0 where none is
+    !> stored.
     integer, allocatable, intent(out) :: position(:, :, :)
     integer :: a, b, e, m
 

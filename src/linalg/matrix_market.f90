@@ -1,5 +1,6 @@
-!> Linear systems as text files, in the coordinate and array forms of Matrix Market (Boisvert, Pozo and Remington 1996):
-!> a run's own tangents can be looked at with other programs, and read back by the solvers' benchmark.
+!> Linear systems as text files, in the coordinate and array forms of Matrix Market (Boisvert, Pozo
+!> and Remington 1996): a run's own tangents can be looked at with other programs, and read back by
+!> the solvers' benchmark.
 module dd3_linalg_matrix_market
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error
@@ -9,7 +10,8 @@ module dd3_linalg_matrix_market
   public :: write_matrix_market, read_matrix_market
 
   !> First lines of the two files.
-  character(len=*), parameter :: coordinate_header = "%%MatrixMarket matrix coordinate real general", &
+  character(len=*), &
+    parameter :: coordinate_header = "%%MatrixMarket matrix coordinate real general", &
                                  array_header = "%%MatrixMarket matrix array real general"
 
 contains
@@ -28,20 +30,23 @@ contains
 
     open (newunit=unit, file=file, status="replace", action="write", iostat=status)
     if (status == 0) write (unit, '(a)', iostat=status) coordinate_header
-    if (status == 0) write (unit, '(i0,2(1x,i0))', iostat=status) 3*matrix%n, 3*matrix%n, size(matrix%value)
+    if (status == 0) write (unit, '(i0,2(1x,i0))', iostat=status) 3*matrix%n, 3*matrix%n, &
+      size(matrix%value)
     rows: do i = 1, matrix%n
       do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
         do r = 1, 3
           do c = 1, 3
             if (status /= 0) exit rows
-            write (unit, '(i0,1x,i0,es25.16e3)', iostat=status) 3*(i - 1) + r, 3*(matrix%column(k) - 1) + c, &
+            write (unit, '(i0,1x,i0,es25.16e3)', iostat=status) 3*(i - 1) + r, &
+              3*(matrix%column(k) - 1) + c, &
               matrix%value(r, c, k)
           end do
         end do
       end do
     end do rows
     if (status == 0) close (unit, iostat=status)
-    if (status == 0) open (newunit=unit, file=file//".rhs", status="replace", action="write", iostat=status)
+    if (status == 0) open (newunit=unit, file=file//".rhs", status="replace", action="write", &
+      iostat=status)
     if (status == 0) write (unit, '(a)', iostat=status) array_header
     if (status == 0) write (unit, '(i0,a)', iostat=status) size(b), " 1"
     if (status == 0) write (unit, '(es24.16e3)', iostat=status) b
@@ -49,7 +54,8 @@ contains
     if (status /= 0) call fatal_error(error, "cannot write the linear system to "//file)
   end subroutine write_matrix_market
 
-  !> Reads what `write_matrix_market` wrote, or any square matrix of this form whose size is a multiple of three.
+  !> Reads what `write_matrix_market` wrote, or any square matrix of this form whose size is a
+  !> multiple of three.
   subroutine read_matrix_market(matrix, b, file, error)
     !> The matrix made.
     type(block_matrix_t), intent(out) :: matrix
@@ -109,7 +115,8 @@ contains
       end do
     end if
     close (unit)
-    if (status /= 0) call fatal_error(error, file//" does not hold a square matrix of 3x3 blocks in coordinate form")
+    if (status /= 0) call fatal_error(error, file &
+      //" does not hold a square matrix of 3x3 blocks in coordinate form")
   end subroutine read_entries
 
   !> Reads a vector in array form.
@@ -136,7 +143,8 @@ contains
     if (status == 0 .and. rows /= n) status = 1
     if (status == 0) read (unit, *, iostat=status) b
     close (unit)
-    if (status /= 0) call fatal_error(error, file//" does not hold a vector of the matrix's size in array form")
+    if (status /= 0) call fatal_error(error, file &
+      //" does not hold a vector of the matrix's size in array form")
   end subroutine read_vector
 
   !> First line after the comments, the one with the sizes.
@@ -166,7 +174,8 @@ contains
     integer, allocatable :: start(:), order(:), marker(:), row_start(:), packed(:)
     integer :: k, i, count
 
-    ! Sorted by column first, then stably by row: the columns of each row come out in ascending order.
+    ! Sorted by column first, then stably by row: the columns of each row come out in ascending
+    ! order.
     call stable_order(n, column, [(k, k=1, size(row))], order, start)
     call stable_order(n, row, order, packed, start)
     deallocate (order)

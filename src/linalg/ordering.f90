@@ -1,5 +1,6 @@
-!> Numberings of the block rows for the incomplete factorisation: none, approximate minimum degree (Amestoy, Davis and
-!> Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start node after George and Liu 1979).
+!> Numberings of the block rows for the incomplete factorisation: none, approximate minimum degree
+!> (Amestoy, Davis and Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start
+!> node after George and Liu 1979).
 module dd3_linalg_ordering
   use, intrinsic :: iso_c_binding, only : c_int, c_ptr, c_null_ptr
   use dd3_base_error, only : error_t, fatal_error
@@ -11,12 +12,14 @@ module dd3_linalg_ordering
 
   !> The orderings there are.
   character(len=4), parameter :: ordering_names(3) = [character(len=4) :: "none", "amd", "rcm"]
-  !> Rows coupled with this many times the average number of others, such as those of pressed tools, are numbered last.
+  !> Rows coupled with this many times the average number of others, such as those of pressed tools,
+  !> are numbered last.
   integer, parameter :: dense_factor = 3
 
   interface
     !> Approximate minimum degree ordering of a pattern, 0-based.
-    integer(c_int) function amd_order(n, start, row, permutation, control, info) bind(c, name="amd_order")
+    integer(c_int) function amd_order(n, start, row, permutation, control, info) bind(c, &
+      name="amd_order")
       import :: c_int, c_ptr
       !> Number of rows.
       integer(c_int), value :: n
@@ -51,7 +54,8 @@ contains
     case ("rcm")
       call reverse_cuthill_mckee(matrix, order)
     case default
-      call fatal_error(error, "unknown ordering "//trim(name)//"; known: "//join(ordering_names, ", "))
+      call fatal_error(error, "unknown ordering "//trim(name)//"; known: "//join(ordering_names, &
+        ", "))
     end select
   end subroutine find_ordering
 
@@ -67,7 +71,8 @@ contains
     integer(c_int) :: status
 
     allocate (permutation(matrix%n))
-    status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), int(matrix%column - 1, c_int), &
+    status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), int(matrix%column &
+      - 1, c_int), &
                        permutation, c_null_ptr, c_null_ptr)
     if (status < 0) then
       call fatal_error(error, "AMD could not order the matrix")
@@ -101,7 +106,8 @@ contains
     order(:last) = order(last:1:-1)
   end subroutine reverse_cuthill_mckee
 
-  !> A node at the end of the part that holds a given node: the last one found, until that goes no deeper.
+  !> A node at the end of the part that holds a given node: the last one found, until that goes no
+  !> deeper.
   integer function end_node(matrix, degree, taken, given)
     !> A matrix of the pattern.
     type(block_matrix_t), intent(in) :: matrix

@@ -1,4 +1,5 @@
-!> What every preconditioner provides: a set-up once per pattern, a build per matrix, and its application.
+!> What every preconditioner provides: a set-up once per pattern, a build per matrix, and its
+!> application.
 module dd3_linalg_preconditioner
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t

@@ -33,7 +33,8 @@ contains
       call new_ilu(ilu, level, may_raise)
       call move_alloc(ilu, preconditioner)
     case default
-      call fatal_error(error, "unknown preconditioner "//trim(name)//"; known: "//join(preconditioner_names, ", "))
+      call fatal_error(error, "unknown preconditioner "//trim(name)//"; known: " &
+        //join(preconditioner_names, ", "))
     end select
   end subroutine new_preconditioner
 

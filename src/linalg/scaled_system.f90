@@ -1,5 +1,6 @@
 !> The solvers' own copy of a linear system: renumbered, and each row divided by the sum of its
-!> magnitudes, so that equilibrium rows, contact rows and rows of fixed displacements weigh the same.
+!> magnitudes, so that equilibrium rows, contact rows and rows of fixed displacements weigh the
+!> same.
 module dd3_linalg_scaled_system
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
@@ -87,7 +88,8 @@ contains
     end do
   end subroutine sort_pairs
 
-  !> Copies and scales the values of a matrix of the pattern; a row of zeros or a member that is not finite ends it.
+  !> Copies and scales the values of a matrix of the pattern; a row of zeros or a member that is not
+  !> finite ends it.
   subroutine scaled_system_fill(self, matrix, verdict)
     !> The system.
     class(scaled_system_t), intent(inout) :: self
@@ -98,13 +100,15 @@ contains
     integer :: worst
 
     associate (copy => self%matrix)
-      call scale_rows(copy%n, size(copy%column), copy%row_start, self%source, matrix%value, copy%value, self%scale, worst)
+      call scale_rows(copy%n, size(copy%column), copy%row_start, self%source, matrix%value, &
+        copy%value, self%scale, worst)
     end associate
     verdict%outcome = verdict_converged
     if (worst == 0) return
     verdict%outcome = verdict_retry
     verdict%node = self%order(worst)
-    verdict%reason = "row of zeros or a member that is not finite in block row "//to_text(verdict%node)//" of the matrix"
+    verdict%reason = "row of zeros or a member that is not finite in block row " &
+      //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 
   !> Kernel of the scaling; stops at the first bad row.

@@ -1,5 +1,5 @@
-!> What every solver of linear systems provides: a set-up once per pattern, a factorisation per matrix, solutions per
-!> right-hand side, and a report that says what was really done.
+!> What every solver of linear systems provides: a set-up once per pattern, a factorisation per
+!> matrix, solutions per right-hand side, and a report that says what was really done.
 module dd3_linalg_solver
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
@@ -14,8 +14,9 @@ module dd3_linalg_solver
     character(len=24) :: method = "auto"
     !> Name of the preconditioner of cgs and auto.
     character(len=24) :: preconditioner = "ilu"
-    !> Level of fill of the incomplete factorisation; any level from the number of rows on is a complete one. `auto` may
-    !> take a complete one where it costs no more than the iterations it saves.
+    !> Level of fill of the incomplete factorisation; any level from the number of rows on is a
+    !> complete one. `auto` may take a complete one where it costs no more than the iterations it
+    !> saves.
     integer :: ilu_level = 2
     !> Residual wanted, relative to the right-hand side, rows scaled.
     real(wp) :: tolerance = 1.0e-10_wp

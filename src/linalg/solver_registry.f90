@@ -25,9 +25,12 @@ contains
     type(combined_solver_t), allocatable :: combined
 
     if (.not. any(ordering_names == options%ordering)) then
-      call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: "//join(ordering_names, ", "))
-    else if (options%ilu_level < 0 .or. options%iterations < 1 .or. .not. options%tolerance > 0) then
-      call fatal_error(error, "level of fill, iterations and tolerance of the linear solver must be positive")
+      call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: " &
+        //join(ordering_names, ", "))
+    else if (options%ilu_level < 0 .or. options%iterations < 1 &
+      .or. .not. options%tolerance > 0) then
+      call fatal_error(error, &
+        "level of fill, iterations and tolerance of the linear solver must be positive")
     end if
     if (allocated(error)) return
     allocate (combined)
@@ -39,7 +42,8 @@ contains
     case ("auto")
       call new_combined_solver(combined, options, iterative=.true., direct=.true., error=error)
     case default
-      call fatal_error(error, "unknown solver "//trim(options%method)//"; known: "//join(solver_names, ", "))
+      call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &
+        //join(solver_names, ", "))
     end select
     if (.not. allocated(error)) call move_alloc(combined, solver)
   end subroutine new_linear_solver

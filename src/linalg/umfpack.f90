@@ -1,5 +1,6 @@
-!> The direct solver: sparse LU with pivoting by the unsymmetric multifrontal method (Davis 2004, UMFPACK 5). The
-!> symbolic phase is made once per pattern; solutions are refined with the matrix itself.
+!> The direct solver: sparse LU with pivoting by the unsymmetric multifrontal method (Davis 2004,
+!> UMFPACK 5). The symbolic phase is made once per pattern; solutions are refined with the matrix
+!> itself.
 module dd3_linalg_umfpack
   use, intrinsic :: iso_c_binding, only : c_int, c_double, c_ptr, c_null_ptr, c_associated
   use dd3_base_kinds, only : wp
@@ -15,7 +16,8 @@ module dd3_linalg_umfpack
   integer, parameter :: control_size = 20, info_size = 90
   !> What to solve: A x = b.
   integer(c_int), parameter :: plain_system = 0
-  !> Place of the estimated reciprocal condition number in the statistics, and its smallest value allowed.
+  !> Place of the estimated reciprocal condition number in the statistics, and its smallest value
+  !> allowed.
   integer, parameter :: place_of_condition = 68
   !> See above.
   real(c_double), parameter :: smallest_condition = 1.0e-16_c_double
@@ -52,7 +54,8 @@ module dd3_linalg_umfpack
     end subroutine umfpack_di_defaults
 
     !> Symbolic factorisation.
-    integer(c_int) function umfpack_di_symbolic(n_row, n_column, start, row, value, symbolic, control, info) &
+    integer(c_int) function umfpack_di_symbolic(n_row, n_column, start, row, value, symbolic, &
+      control, info) &
       bind(c, name="umfpack_di_symbolic")
       import :: c_int, c_double, c_ptr
       !> Number of rows and columns.
@@ -70,7 +73,8 @@ module dd3_linalg_umfpack
     end function umfpack_di_symbolic
 
     !> Numeric factorisation.
-    integer(c_int) function umfpack_di_numeric(start, row, value, symbolic, numeric, control, info) &
+    integer(c_int) function umfpack_di_numeric(start, row, value, symbolic, numeric, control, &
+      info) &
       bind(c, name="umfpack_di_numeric")
       import :: c_int, c_double, c_ptr
       !> Where the columns begin, and their rows.
@@ -88,7 +92,8 @@ module dd3_linalg_umfpack
     end function umfpack_di_numeric
 
     !> Solution, with iterative refinement.
-    integer(c_int) function umfpack_di_solve(system, start, row, value, x, b, numeric, control, info) &
+    integer(c_int) function umfpack_di_solve(system, start, row, value, x, b, numeric, control, &
+      info) &
       bind(c, name="umfpack_di_solve")
       import :: c_int, c_double, c_ptr
       !> What to solve.
@@ -146,7 +151,8 @@ contains
       blocks(matrix%column(k)) = rank(k) + 1
     end do
     if (allocated(self%start)) deallocate (self%start, self%row, self%value, self%position)
-    allocate (self%start(self%n + 1), self%row(9*size(rank)), self%value(9*size(rank)), self%position(3, size(rank)))
+    allocate (self%start(self%n + 1), self%row(9*size(rank)), self%value(9*size(rank)), &
+      self%position(3, size(rank)))
     self%value = 0.0_wp
     self%start(1) = 0
     do j = 1, self%n
@@ -163,7 +169,8 @@ contains
     end do
   end subroutine direct_setup
 
-  !> Factorises a matrix of the pattern. The symbolic phase, which looks at the values too, is made with the first one.
+  !> Factorises a matrix of the pattern. The symbolic phase, which looks at the values too, is made
+  !> with the first one.
   subroutine direct_factor(self, matrix, verdict)
     !> The factors.
     class(direct_factors_t), intent(inout) :: self
@@ -179,11 +186,13 @@ contains
     self%numeric = c_null_ptr
     status = status_ok
     if (.not. c_associated(self%symbolic)) then
-      status = umfpack_di_symbolic(int(self%n, c_int), int(self%n, c_int), self%start, self%row, self%value, &
+      status = umfpack_di_symbolic(int(self%n, c_int), int(self%n, c_int), self%start, self%row, &
+        self%value, &
                                    self%symbolic, self%control, info)
     end if
     if (status == status_ok) then
-      status = umfpack_di_numeric(self%start, self%row, self%value, self%symbolic, self%numeric, self%control, info)
+      status = umfpack_di_numeric(self%start, self%row, self%value, self%symbolic, self%numeric, &
+        self%control, info)
     end if
     if (status == status_ok) then
       if (.not. info(place_of_condition) > smallest_condition) status = status_singular
@@ -235,7 +244,8 @@ contains
     good = .false.
     x = 0.0_wp
     if (.not. c_associated(self%numeric)) return
-    good = umfpack_di_solve(plain_system, self%start, self%row, self%value, x, b, self%numeric, self%control, info) &
+    good = umfpack_di_solve(plain_system, self%start, self%row, self%value, x, b, self%numeric, &
+      self%control, info) &
            == status_ok
   end subroutine direct_solve
 

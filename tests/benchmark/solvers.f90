@@ -1,9 +1,11 @@
-!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices written by a run.
+!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices
+!> written by a run.
 !>
-!> Without arguments: strips of several sizes. With a file name: the system in that file (matrix, and `.rhs` beside it).
-!> Columns: level of fill (- for the direct solver), numbering, blocks in the factors against those in the matrix,
-!> iterations, restarts, symbolic set-up, factorisation and solution in ms (best of several), relative residual, and
-!> the largest difference from the direct solution relative to its largest member.
+!> Without arguments: strips of several sizes. With a file name: the system in that file (matrix,
+!> and `.rhs` beside it). Columns: level of fill (- for the direct solver), numbering, blocks in the
+!> factors against those in the matrix, iterations, restarts, symbolic set-up, factorisation and
+!> solution in ms (best of several), relative residual, and the largest difference from the direct
+!> solution relative to its largest member.
 program benchmark_solvers
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t
@@ -122,7 +124,8 @@ contains
     if (options%method == "umfpack") then
       print '(a,f34.3,2f10.3,es11.1)', "  umfpack", 1.0e3_wp*[setup, factor, solve], report%residual
     else
-      print '(i7,3x,a4,f7.2,i6,i4,3f10.3,2es11.1,1x,a)', min(options%ilu_level, 999), options%ordering(:4), &
+      print '(i7,3x,a4,f7.2,i6,i4,3f10.3,2es11.1,1x,a)', min(options%ilu_level, 999), &
+        options%ordering(:4), &
         fill_of(options, matrix), &
         report%iterations, report%restarts, 1.0e3_wp*[setup, factor, solve], report%residual, &
         maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%reason)//trim(report%reason)
@@ -141,13 +144,15 @@ contains
 
     call find_ordering(trim(options%ordering), matrix, order, error)
     call system%setup(matrix, order)
-    call level_of_fill(matrix%n, system%matrix%row_start, system%matrix%column, options%ilu_level, fill_start, &
+    call level_of_fill(matrix%n, system%matrix%row_start, system%matrix%column, &
+      options%ilu_level, fill_start, &
                        fill_column, fill_diagonal)
     fill_of = real(size(fill_column), wp)/real(size(matrix%column), wp)
   end function fill_of
 
-  !> Elastic stiffness of a strip of 175 x 35 x 0.78 mm, clamped at one end, its top nodes at the other end held by stiff
-  !> contact rows as a sheet between tools is; nodes numbered through the thickness, then across, then along.
+  !> Elastic stiffness of a strip of 175 x 35 x 0.78 mm, clamped at one end, its top nodes at the
+  !> other end held by stiff contact rows as a sheet between tools is; nodes numbered through the
+  !> thickness, then across, then along.
   subroutine make_strip(divisions, matrix, b)
     !> Number of elements along length, width and thickness.
     integer, intent(in) :: divisions(3)
@@ -230,7 +235,8 @@ contains
     end do
   end subroutine hold
 
-  !> Stiffness of an elastic brick, shear strains at the Gauss points and volume strain at the middle.
+  !> Stiffness of an elastic brick, shear strains at the Gauss points and volume strain at the
+  !> middle.
   subroutine brick_stiffness(edge, stiffness)
     !> Lengths of its edges, mm.
     real(wp), intent(in) :: edge(3)
@@ -238,8 +244,10 @@ contains
     real(wp), intent(out) :: stiffness(3, 3, 8, 8)
     !> Bulk and shear modulus of steel, MPa.
     real(wp), parameter :: bulk = 175000.0_wp, shear = 80769.0_wp
-    real(wp), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
-                                                        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], wp), [3, 8])
+    real(wp), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, &
+      -1, &
+                                                        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], &
+                                                        wp), [3, 8])
     real(wp) :: g(3, 8), mean(3, 8), point(3), weight
     integer :: p, a, b, i, j
 
@@ -264,7 +272,8 @@ contains
             do i = 1, 3
               stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*(bulk*mean(i, a)*mean(j, b) &
                                       + shear*(g(j, a)*g(i, b) - 2.0_wp/3.0_wp*g(i, a)*g(j, b)))
-              if (i == j) stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*shear*dot_product(g(:, a), g(:, b))
+              if (i == j) stiffness(i, j, a, b) = stiffness(i, j, a, b) &
+                + weight*shear*dot_product(g(:, a), g(:, b))
             end do
           end do
         end do
