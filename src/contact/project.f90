@@ -14,7 +14,7 @@ module dd3_contact_project
   use dd3_contact_bezier, only : patch_t, evaluate_relative, n_sample
   implicit none
   private
-  public :: foot_t, project, project_globally
+  public :: foot_t, project, project_globally, project_by_sections
 
   !> Newton iterations, and halvings of one step.
   integer, parameter :: most_iterations = 30, most_halvings = 20
@@ -66,8 +66,27 @@ contains
     if (ok) return
     call sample_finely(patch, relative, lower, upper, foot%at)
     call descend(patch, relative, lower, upper, foot, ok)
-    if (.not. ok) call golden_sections(patch, relative, lower, upper, foot)
+    if (.not. ok) call project_by_sections(patch, x, lower, upper, foot)
   end subroutine project
+
+  !> Foot without derivatives: the best point of the fine grid, improved by golden sections.
+  pure subroutine project_by_sections(patch, x, lower, upper, foot)
+    !> The patch.
+    type(patch_t), intent(in) :: patch
+    !> The node, mm.
+    real(wp), intent(in) :: x(3)
+    !> Bounds of the parameters.
+    real(wp), intent(in) :: lower(2), upper(2)
+    !> The foot.
+    type(foot_t), intent(inout) :: foot
+
+    real(wp) :: relative(3)
+
+    relative = x - patch%centre
+    call sample_finely(patch, relative, lower, upper, foot%at)
+    call evaluate_foot(patch, relative, foot)
+    call golden_sections(patch, relative, lower, upper, foot)
+  end subroutine project_by_sections
 
   !> Foot nearest of all on a patch.
   pure subroutine project_globally(patch, x, lower, upper, foot)
