@@ -13,6 +13,11 @@ if(NOT SuiteSparse_FOUND)
   dd3_missing("SuiteSparse (its parts UMFPACK and AMD)" "libsuitesparse-dev")
 endif()
 
+find_package(OpenMP QUIET COMPONENTS Fortran)
+if(NOT OpenMP_Fortran_FOUND)
+  dd3_missing("OpenMP of the Fortran compiler" "gfortran")
+endif()
+
 set(HDF5_PREFER_PARALLEL OFF)
 find_package(HDF5 QUIET COMPONENTS C Fortran HL)
 if(NOT HDF5_FOUND)

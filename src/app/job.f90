@@ -76,7 +76,7 @@ contains
     if (.not. allocated(error)) then
       call introduce(log, case, model)
       call watch_interrupts()
-      call run_model(model, case%solver, directory, log, summary, error)
+      call run_model(model, case%solver, options%threads, directory, log, summary, error)
       if (.not. allocated(error)) exit_code = exit_end
       call conclude(log, summary)
     end if
@@ -109,7 +109,7 @@ contains
     if (len(model%title) > 0) call log%say(model%title)
     call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
         time(3:4))
-    call log%say(to_text(model%n_element)//" "//model%element%title//", "//to_text(model%n_node)// &
+    call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("//trim(model%element%title)//"), "//to_text(model%n_node)// &
         " nodes, "// &
                  to_text(model%n_contact)//" of them candidates for contact with "// &
                  to_text(model%n_tool)//" tools")

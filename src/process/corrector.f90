@@ -68,7 +68,7 @@ contains
     system%problem%tool_motion = 0.0_wp
     do j = 1, phase%newton%iterations
       verdict%iterations = j
-      call evaluate(system, model, phase, old, new, verdict)
+      call evaluate(system, model, phase, old, new, j, verdict)
       if (verdict%outcome /= verdict_converged) return
       call judge(system, model, phase, new, j, correction, verdict)
       if (verdict%outcome == verdict_converged) then
@@ -76,13 +76,13 @@ contains
         return
       end if
       call system%profile%start()
-      call assemble_stiffness(system, model, old, new)
+      if (j > 1) call assemble_stiffness(system, model, old, new)
       call system%profile%add(section_assembly)
       call solve_reduced(system, model, phase, info, verdict)
       verdict%iterations = j
+      verdict%norm = correction%criterion(j)
       if (verdict%outcome /= verdict_converged) return
       call advance(system, model, phase, new, correction, verdict)
-      verdict%iterations = j
       if (verdict%outcome /= verdict_converged) return
     end do
     verdict%outcome = verdict_retry
@@ -106,8 +106,9 @@ contains
     correction%lambda = 0.0_wp
   end subroutine start
 
-  !> Stresses, internal forces and contact of the trial state, and the residuals from them.
-  subroutine evaluate(system, model, phase, old, new, verdict)
+  !> Stresses, internal forces and contact of the trial state, and the residuals from them; with the stiffness in the
+  !> first iteration, which is never the last.
+  subroutine evaluate(system, model, phase, old, new, j, verdict)
     !> The system.
     type(system_t), intent(inout) :: system
     !> The model.
@@ -118,15 +119,16 @@ contains
     type(state_t), intent(in) :: old
     !> The trial state.
     type(state_t), intent(inout) :: new
+    !> The iteration, from 1.
+    integer, intent(in) :: j
     !> Whether the material could be integrated.
     type(verdict_t), intent(inout) :: verdict
 
-    integer :: c, node, tool, iterations
+    integer :: c, node, tool
 
-    iterations = verdict%iterations
     call system%profile%start()
-    call update_material(system, model, old, new, verdict)
-    verdict%iterations = iterations
+    call update_material(system, model, old, new, j == 1, verdict)
+    verdict%iterations = j
     call system%profile%add(section_material)
     if (verdict%outcome /= verdict_converged) return
     call evaluate_contact(system%contact, model, phase, old, new)

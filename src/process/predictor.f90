@@ -167,12 +167,12 @@ contains
 
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e))
-        call element_gradients(model%element, state%x(:, nodes), system%element, verdict)
+        call element_gradients(model%element, state%x(:, nodes), system%element(1), verdict)
         call element_rate(model%element, self%displacement(:, nodes), state%orientation(:, :, :, e), &
-                          system%element)
+                          system%element(1))
       end associate
-      self%strain(:, :, e) = system%element%rate
-      self%rotation(:, e) = system%element%spin
+      self%strain(:, :, e) = system%element(1)%rate
+      self%rotation(:, e) = system%element(1)%spin
     end do
   end subroutine point_increments
 

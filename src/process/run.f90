@@ -57,11 +57,13 @@ module dd3_process_run
 contains
 
   !> Runs a model to the end of its last phase, or says why it stopped; the records are whole either way.
-  subroutine run_model(model, solver, directory, log, summary, error)
+  subroutine run_model(model, solver, threads, directory, log, summary, error)
     !> The model.
     type(model_t), intent(in) :: model
     !> The linear solver, as the case wants it.
     type(solver_t), intent(in) :: solver
+    !> Number of threads.
+    integer, intent(in) :: threads
     !> The directory of the results; it exists.
     character(len=*), intent(in) :: directory
     !> Where the run speaks.
@@ -78,7 +80,7 @@ contains
     began = wall_time()
     call new_initial_state(run%committed, model)
     call new_initial_state(run%trial, model)
-    call new_system(run%stepper%system, model, solver_options(solver), error)
+    call new_system(run%stepper%system, model, solver_options(solver), threads, error)
     if (allocated(error)) return
     call new_stepper(run%stepper, model)
     call open_records(run, model, directory, error)

@@ -1,11 +1,16 @@
 !> Internal forces and stiffness of the sheet: the loop over the elements and their integration points.
+!>
+!> Elements of one colour share no node, so that threads may add up their forces side by side; the colours come one
+!> after the other, which makes every sum the same for any number of threads.
 module dd3_system_internal
+  !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_force, only : element_force
   use dd3_element_increment, only : element_strain
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_stiffness, only : element_stiffness
+  use dd3_element_work, only : element_work_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_system, only : system_t
@@ -15,9 +20,10 @@ module dd3_system_internal
 
 contains
 
-  !> Integrates the material from the old to the new configuration and adds up the internal forces.
-  subroutine update_material(self, model, old, new, verdict)
-    !> Gets the consistent tangents.
+  !> Integrates the material from the old to the new configuration and adds up the internal forces, and the stiffness
+  !> where it is wanted too.
+  subroutine update_material(self, model, old, new, with_stiffness, verdict)
+    !> Gets the consistent tangents, and the stiffness.
     type(system_t), intent(inout) :: self
     !> The model.
     type(model_t), intent(in) :: model
@@ -25,37 +31,78 @@ contains
     type(state_t), intent(in) :: old
     !> The trial state with its positions set; gets stresses, internal variables, axes and internal forces.
     type(state_t), intent(inout) :: new
+    !> Whether the stiffness is assembled as well.
+    logical, intent(in) :: with_stiffness
     !> Whether every element kept its shape and every point found its stress.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: e, p, a
+    type(verdict_t) :: mine
+    integer :: colour, k, e, thread
 
+    verdict%outcome = verdict_converged
     new%internal_force = 0.0_wp
-    do e = 1, model%n_element
-      associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
-        call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), self%element, verdict)
-        if (verdict%outcome == verdict_converged) then
-          call element_strain(model%element, old%orientation(:, :, :, e), self%element)
-          do p = 1, model%element%n_point
-            call material%update(old%stress(:, p, e), old%internal(:, p, e), self%element%strain(:, p), &
-                                 new%stress(:, p, e), new%internal(:, p, e), self%tangent(:, :, p, e), &
-                                 new%plastic(p, e), verdict)
-            if (verdict%outcome /= verdict_converged) exit
-          end do
+    if (with_stiffness) self%stiffness%value = 0.0_wp
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(mine, colour, k, e, thread)
+    thread = 1
+    !$ thread = omp_get_thread_num() + 1
+    do colour = 1, size(self%colour_start) - 1
+      !$omp do schedule(static)
+      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
+        e = self%coloured_element(k)
+        call update_element(model, old, new, e, self%element(thread), self%tangent(:, :, :, e), mine)
+        if (mine%outcome == verdict_converged) then
+          if (with_stiffness) call add_stiffness(self, model, e, self%element(thread))
+        else
+          !$omp critical (failed_element)
+          if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
+          !$omp end critical (failed_element)
         end if
-        if (verdict%outcome /= verdict_converged) then
-          verdict%element = e
-          return
-        end if
-        new%orientation(:, :, :, e) = self%element%rotation
-        self%element%stress(:, :) = new%stress(:, :, e)
-        call element_force(model%element, self%element)
-        do a = 1, size(nodes)
-          new%internal_force(:, nodes(a)) = new%internal_force(:, nodes(a)) + self%element%force(:, a)
-        end do
-      end associate
+      end do
+      !$omp end do
     end do
+    !$omp end parallel
   end subroutine update_material
+
+  !> One element of `update_material`.
+  subroutine update_element(model, old, new, e, work, tangent, verdict)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+    !> The element.
+    integer, intent(in) :: e
+    !> Workspace; left with all that the stiffness needs but the tangents.
+    type(element_work_t), intent(inout) :: work
+    !> Consistent tangents, `(6, 6, n_point)`, MPa.
+    real(wp), intent(inout) :: tangent(:, :, :)
+    !> How it ended.
+    type(verdict_t), intent(out) :: verdict
+
+    integer :: p, a
+
+    associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
+      call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
+      verdict%element = e
+      if (verdict%outcome /= verdict_converged) return
+      call element_strain(model%element, old%orientation(:, :, :, e), work)
+      do p = 1, model%element%n_point
+        call material%update(old%stress(:, p, e), old%internal(:material%n_internal, p, e), work%strain(:, p), &
+                             new%stress(:, p, e), new%internal(:material%n_internal, p, e), tangent(:, :, p), &
+                             new%plastic(p, e), verdict)
+        verdict%element = e
+        verdict%point = p
+        if (verdict%outcome /= verdict_converged) return
+      end do
+      new%orientation(:, :, :, e) = work%rotation
+      work%stress(:, :) = new%stress(:, :, e)
+      call element_force(model%element, work)
+      do a = 1, size(nodes)
+        new%internal_force(:, nodes(a)) = new%internal_force(:, nodes(a)) + work%force(:, a)
+      end do
+    end associate
+  end subroutine update_element
 
   !> Assembles the exact stiffness of the new configuration from the tangents of the last update.
   subroutine assemble_stiffness(self, model, old, new)
@@ -69,19 +116,26 @@ contains
     type(state_t), intent(in) :: new
 
     type(verdict_t) :: verdict
-    integer :: e
+    integer :: colour, k, e, thread
 
     self%stiffness%value = 0.0_wp
-    do e = 1, model%n_element
-      associate (nodes => model%connectivity(:, e))
-        call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), self%element, verdict)
-      end associate
-      call element_strain(model%element, old%orientation(:, :, :, e), self%element)
-      self%element%stress(:, :) = new%stress(:, :, e)
-      self%element%tangent(:, :, :) = self%tangent(:, :, :, e)
-      call element_stiffness(model%element, self%element)
-      call scatter(self, e)
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(verdict, colour, k, e, thread)
+    thread = 1
+    !$ thread = omp_get_thread_num() + 1
+    do colour = 1, size(self%colour_start) - 1
+      !$omp do schedule(static)
+      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
+        e = self%coloured_element(k)
+        associate (nodes => model%connectivity(:, e), work => self%element(thread))
+          call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
+          call element_strain(model%element, old%orientation(:, :, :, e), work)
+          work%stress(:, :) = new%stress(:, :, e)
+        end associate
+        call add_stiffness(self, model, e, self%element(thread))
+      end do
+      !$omp end do
     end do
+    !$omp end parallel
   end subroutine assemble_stiffness
 
   !> Assembles the stiffness at the committed configuration with the tangents already in place: the predictor's.
@@ -94,35 +148,50 @@ contains
     type(state_t), intent(in) :: old
 
     type(verdict_t) :: verdict
-    integer :: e
+    integer :: colour, k, e, thread
 
     self%stiffness%value = 0.0_wp
-    do e = 1, model%n_element
-      call element_gradients(model%element, old%x(:, model%connectivity(:, e)), self%element, verdict)
-      self%element%strain = 0.0_wp
-      self%element%rotation(:, :, :) = old%orientation(:, :, :, e)
-      self%element%stress(:, :) = old%stress(:, :, e)
-      self%element%tangent(:, :, :) = self%tangent(:, :, :, e)
-      call element_stiffness(model%element, self%element)
-      call scatter(self, e)
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(verdict, colour, k, e, thread)
+    thread = 1
+    !$ thread = omp_get_thread_num() + 1
+    do colour = 1, size(self%colour_start) - 1
+      !$omp do schedule(static)
+      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
+        e = self%coloured_element(k)
+        associate (nodes => model%connectivity(:, e), work => self%element(thread))
+          call element_gradients(model%element, old%x(:, nodes), work, verdict)
+          work%strain = 0.0_wp
+          work%rotation(:, :, :) = old%orientation(:, :, :, e)
+          work%stress(:, :) = old%stress(:, :, e)
+        end associate
+        call add_stiffness(self, model, e, self%element(thread))
+      end do
+      !$omp end do
     end do
+    !$omp end parallel
   end subroutine assemble_predictor_stiffness
 
-  !> Adds an element's blocks to the stiffness.
-  subroutine scatter(self, e)
+  !> Computes an element's stiffness from what its workspace holds and adds its blocks.
+  subroutine add_stiffness(self, model, e, work)
     !> The system.
     type(system_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
     !> The element.
     integer, intent(in) :: e
+    !> Its workspace with kinematics, strain, axes and stress.
+    type(element_work_t), intent(inout) :: work
 
     integer :: a, b, k
 
+    work%tangent(:, :, :) = self%tangent(:, :, :, e)
+    call element_stiffness(model%element, work)
     do a = 1, size(self%position, 1)
       do b = 1, size(self%position, 2)
         k = self%position(a, b, e)
-        self%stiffness%value(:, :, k) = self%stiffness%value(:, :, k) + self%element%stiffness(:, :, b, a)
+        self%stiffness%value(:, :, k) = self%stiffness%value(:, :, k) + work%stiffness(:, :, b, a)
       end do
     end do
-  end subroutine scatter
+  end subroutine add_stiffness
 
 end module dd3_system_internal

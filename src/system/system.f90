@@ -14,6 +14,9 @@ module dd3_system_system
   private
   public :: system_t, new_system
 
+  !> Elements for each thread below which the threads wait for one another longer than they work.
+  integer, parameter :: least_elements = 128
+
   !> Everything the assembly and the solution work on.
   type :: system_t
     !> Stiffness of the sheet, and the reduced matrix on the same pattern.
@@ -22,8 +25,16 @@ module dd3_system_system
     integer, allocatable :: position(:, :, :)
     !> Tangent of the material at the points, MPa, Kelvin, material frame, `(6, 6, n_point, n_element)`.
     real(wp), allocatable :: tangent(:, :, :, :)
-    !> Workspace of the element kernels.
-    type(element_work_t) :: element
+    !> Workspaces of the element kernels, one for each thread.
+    type(element_work_t), allocatable :: element(:)
+    !> Number of threads, and whether the sheet has enough elements for more than one to pay.
+    integer :: threads = 1
+    !> See above.
+    logical :: parallel = .false.
+    !> Elements sorted by colour; elements of one colour share no node, `(n_element)`.
+    integer, allocatable :: coloured_element(:)
+    !> Where each colour begins among them, `(n_colour + 1)`.
+    integer, allocatable :: colour_start(:)
     !> Contact operators of the candidates.
     type(contact_work_t) :: contact
     !> Right-hand sides and solution.
@@ -37,17 +48,20 @@ module dd3_system_system
 contains
 
   !> Builds the patterns, allocates the work arrays and sets up the solver.
-  subroutine new_system(self, model, options, error)
+  subroutine new_system(self, model, options, threads, error)
     !> The system made.
     type(system_t), intent(out) :: self
     !> The model.
     type(model_t), intent(in) :: model
     !> Which solver, and its settings.
     type(solver_options_t), intent(in) :: options
+    !> Number of threads.
+    integer, intent(in) :: threads
     !> Set where the solver is not known.
     type(error_t), allocatable, intent(out) :: error
 
     integer, allocatable :: first(:), coupled(:)
+    integer :: i
 
     call coupled_nodes(model, first, coupled)
     call new_pattern(self%stiffness, model%n_node, model%connectivity, first, coupled)
@@ -55,12 +69,48 @@ contains
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
     allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
-    call new_element_work(self%element, model%element)
+    self%threads = threads
+    self%parallel = threads > 1 .and. model%n_element >= least_elements*threads
+    call colour_elements(model, self%coloured_element, self%colour_start)
+    allocate (self%element(threads))
+    do i = 1, threads
+      call new_element_work(self%element(i), model%element)
+    end do
     call new_contact_work(self%contact, model%n_contact)
     call new_linear_problem(self%problem, model, self%stiffness%n)
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
+
+  !> Colours the elements, greedily in their order, so that elements of one colour share no node.
+  subroutine colour_elements(model, coloured, first)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The elements sorted by colour.
+    integer, allocatable, intent(out) :: coloured(:)
+    !> Where each colour begins among them.
+    integer, allocatable, intent(out) :: first(:)
+
+    logical, allocatable :: left(:), taken(:)
+    integer :: e, n
+
+    allocate (coloured(model%n_element), left(model%n_element), taken(model%n_node))
+    left = .true.
+    first = [1]
+    n = 0
+    do while (any(left))
+      taken = .false.
+      do e = 1, model%n_element
+        if (.not. left(e)) cycle
+        if (any(taken(model%connectivity(:, e)))) cycle
+        taken(model%connectivity(:, e)) = .true.
+        left(e) = .false.
+        n = n + 1
+        coloured(n) = e
+      end do
+      first = [first, n + 1]
+    end do
+  end subroutine colour_elements
 
   !> Nodes each pressed tool's row couples with: its candidates and their neighbours.
   subroutine coupled_nodes(model, first, coupled)
