@@ -5,10 +5,10 @@ program benchmark_material
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
   use dd3_material_description, only : description_t, law_choice_t
-  use dd3_base_parameter, only : law_value_t
   use dd3_material_material, only : material_t, new_material
   implicit none
 
@@ -98,7 +98,8 @@ contains
     !> Nanoseconds; mean number of iterations.
     real(wp), intent(out) :: time, iterations
     real(wp) :: stress(6, states), internal(material%n_internal, states), strain(6, states)
-    real(wp) :: zero(6), zeros(material%n_internal), end_stress(6), end_internal(material%n_internal)
+    real(wp) :: zero(6), zeros(material%n_internal), end_stress(6)
+    real(wp) :: end_internal(material%n_internal)
     real(wp) :: tangent(6, 6), start
     type(verdict_t) :: verdict
     logical :: plastic
