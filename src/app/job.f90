@@ -109,10 +109,9 @@ contains
     if (len(model%title) > 0) call log%say(model%title)
     call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
         time(3:4))
-    call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("//trim(model%element%title)//"), "//to_text(model%n_node)// &
-        " nodes, "// &
-                 to_text(model%n_contact)//" of them candidates for contact with "// &
-                 to_text(model%n_tool)//" tools")
+    call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("// &
+        trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
+        to_text(model%n_contact)//" candidates for contact with "//to_text(model%n_tool)//" tools")
     call log%note(echo_case(case))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
