@@ -59,7 +59,8 @@ contains
     call consider(limit, gap_limit(model, phase, state, system%contact, prediction))
     ends = limit_t((1.0_wp - state%progress)/prediction%progress, "phase", "")
     call consider(ends, until_limit(model, phase, state, prediction))
-    call consider(ends, limit_t((next_output - state%progress)/prediction%progress, "output", ""))
+    if (next_output <= 1.0_wp) &
+      call consider(ends, limit_t((next_output - state%progress)/prediction%progress, "output", ""))
     call consider(limit, ends)
   end function limit_increment
 
@@ -198,7 +199,7 @@ contains
     if (n == 0) return
     mean = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)/real(n, wp)
     do c = 1, model%n_contact
-      if (state%status(c) == status_gap) cycle
+      if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
       b = max(norm2(state%lambda(:, c)), phase%limits%force_floor%value*mean)
       ellipsoid = ellipsoid_norm(prediction%lambda(:, c), contact%normal(:, c), phase%limits%force%value)
       if (ellipsoid <= 0.0_wp) cycle
