@@ -40,7 +40,7 @@ contains
     type(error_list_t) :: errors
 
     call read_case(case, options%file, options%overrides, errors)
-    if (errors%count == 0) call new_model(model, case, errors)
+    call new_model(model, case, errors)
     if (errors%count > 0) then
       call report_errors(errors, options%file)
       exit_code = exit_input

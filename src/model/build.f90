@@ -25,7 +25,8 @@ module dd3_model_build
 
 contains
 
-  !> Builds the model; it may be used where no error was added.
+  !> Builds the model; it may be used where the list holds no error. Of a case with errors only the laws and the tools'
+  !> files are checked, so that what is wrong with them is reported with the rest.
   subroutine new_model(model, case, errors)
     !> The model made.
     type(model_t), intent(out) :: model
@@ -35,15 +36,14 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
-    integer :: found
 
-    found = errors%count
     call new_materials(model, case, errors)
-    call new_mesh(mesh, case, errors)
     call read_tools(model, case, errors)
-    if (errors%count > found) return
+    if (errors%count > 0) return
+    call new_mesh(mesh, case, errors)
+    if (errors%count > 0) return
     call take_mesh(model, case, mesh, errors)
-    if (errors%count > found) return
+    if (errors%count > 0) return
     call find_candidates(model, case, mesh)
     call take_supports(model, case, mesh)
     call new_phases(model, case, mesh, errors)
@@ -65,6 +65,7 @@ contains
     model%n_tool = size(case%tool)
     allocate (model%tool(model%n_tool))
     do t = 1, model%n_tool
+      if (.not. (case%tool(t)%source%valid .and. case%tool(t)%source%has("patches"))) cycle
       model%tool(t)%name = case%tool(t)%name
       model%tool(t)%friction = case%tool(t)%friction
       model%tool(t)%position = case%tool(t)%position

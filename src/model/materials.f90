@@ -33,6 +33,7 @@ contains
     allocate (model%material(n), model%material_name(n), model%axes(3, 3, n))
     model%n_internal = 1
     do m = 1, n
+      if (.not. case%material(m)%source%valid) cycle
       model%material_name(m) = case%material(m)%name
       model%axes(:, :, m) = case%material(m)%frame
       call make_material(model, m, case%material(m), errors)

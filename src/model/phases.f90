@@ -223,7 +223,8 @@ contains
       do j = 1, size(load)
         if (load(j)%set == from%load(i)%set) exit
       end do
-      if (j > size(load)) load = [load, set_load_t(from%load(i)%set)]
+      if (j > size(load)) call append_load(load)
+      load(j)%set = from%load(i)%set
       load(j)%force = from%load(i)%force
     end do
     phase%load_end = 0.0_wp
@@ -234,6 +235,18 @@ contains
       end do
     end do
   end subroutine take_loads
+
+  !> Makes room for one more load.
+  subroutine append_load(load)
+    !> The loads.
+    type(set_load_t), allocatable, intent(inout) :: load(:)
+
+    type(set_load_t), allocatable :: longer(:)
+
+    allocate (longer(size(load) + 1))
+    longer(:size(load)) = load
+    call move_alloc(longer, load)
+  end subroutine append_load
 
   !> The vector with length one.
   pure function unit(vector)
