@@ -33,7 +33,6 @@ contains
     allocate (model%material(n), model%material_name(n), model%axes(3, 3, n))
     model%n_internal = 1
     do m = 1, n
-      if (.not. case%material(m)%source%valid) cycle
       model%material_name(m) = case%material(m)%name
       model%axes(:, :, m) = case%material(m)%frame
       call make_material(model, m, case%material(m), errors)
@@ -58,13 +57,13 @@ contains
     integer :: found, i
 
     found = errors%count
-    call choose(law_yield, spec%yield, yield, errors)
-    call choose(law_hardening, spec%hardening, hardening, errors)
+    if (spec%source%has("yield")) call choose(law_yield, spec%yield, yield, errors)
+    if (spec%source%has("hardening")) call choose(law_hardening, spec%hardening, hardening, errors)
     allocate (backstress(size(spec%backstress)))
     do i = 1, size(backstress)
       call choose(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
-    if (errors%count > found) return
+    if (errors%count > found .or. .not. spec%source%valid) return
     call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, error)
     if (allocated(error)) call errors%push_input(spec%source%opened, error%message)
   end subroutine make_material
