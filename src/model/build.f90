@@ -22,6 +22,8 @@ module dd3_model_build
 
   !> How deep inside the sheet a tool may start, mm.
   real(wp), parameter :: start_depth = 1.0e-3_wp
+  !> How deep a start inside the sheet is looked for, in thicknesses.
+  real(wp), parameter :: reach = 10.0_wp
 
 contains
 
@@ -234,7 +236,7 @@ contains
         node = model%contact_node(c)
         hint = hint_t()
         call find_contact(model%tool(t)%surface, model%x0(:, node) - model%tool(t)%position, hint, &
-                          model%thickness, model%thickness, hit)
+                          reach*model%thickness, reach*model%thickness, hit)
         if (.not. hit%found .or. hit%distance >= deepest) cycle
         deepest = hit%distance
         worst = node

@@ -24,6 +24,10 @@ module dd3_model_phase
     real(wp), allocatable :: press_start(:, :), press_end(:, :)
     !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase begins.
     real(wp), allocatable :: tool_start(:, :)
+    !> Whether this phase leaves the nodal forces, and the force on each tool, as it finds them; `(n_tool)`.
+    logical :: keeps_load = .true.
+    !> See above.
+    logical, allocatable :: keeps_press(:)
     !> Unit vector of the pressed tools' line of motion, or of a moved tool's motion, `(3, n_tool)`.
     real(wp), allocatable :: direction(:, :)
     !> Whether contact with the tool is on, `(n_tool)`.

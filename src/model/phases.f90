@@ -63,7 +63,7 @@ contains
     allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), source=0.0_wp)
     allocate (phase%tool_start(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), phase%released(n_tool), source=.false.)
-    allocate (phase%active(n_tool), source=.true.)
+    allocate (phase%active(n_tool), phase%keeps_press(n_tool), source=.true.)
     allocate (phase%displacement(3, n_node), phase%load_start(3, n_node), phase%load_end(3, n_node), source=0.0_wp)
     phase%prescribed = model%fixed
   end subroutine new_phase
@@ -79,6 +79,7 @@ contains
     phase%move = 0.0_wp
     phase%displacement = 0.0_wp
     phase%released = .false.
+    phase%keeps_press = .true.
     phase%load_start = before%load_end
     phase%press_start = before%press_end
   end subroutine follow
@@ -183,6 +184,7 @@ contains
       return
     end if
     phase%pressed(tool) = .true.
+    phase%keeps_press(tool) = .false.
     phase%press_end(:, tool) = from%press(i)%vector
   end subroutine press
 
@@ -227,6 +229,7 @@ contains
       load(j)%set = from%load(i)%set
       load(j)%force = from%load(i)%force
     end do
+    phase%keeps_load = size(from%load) == 0
     phase%load_end = 0.0_wp
     do j = 1, size(load)
       node = mesh%nodes_of(load(j)%set)

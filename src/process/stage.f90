@@ -41,6 +41,8 @@ contains
     phase%load_start = state%external_force
     phase%press_start = state%tool_load
     where (spread(.not. phase%pressed, 1, 3)) phase%press_start = 0.0_wp
+    if (phase%keeps_load) phase%load_end = phase%load_start
+    where (spread(phase%pressed .and. phase%keeps_press, 1, 3)) phase%press_end = phase%press_start
     do c = 1, model%n_contact
       tool = state%contact_tool(c)
       if (tool == 0) cycle

@@ -151,7 +151,7 @@ contains
     self%e(:, :, c) = 0.0_wp
   end subroutine open_node
 
-  !> The tool a candidate belongs to: the nearest, with hysteresis.
+  !> The tool a candidate belongs to: the nearest, or the one it is deepest in, with hysteresis.
   subroutine nearest_tool(model, phase, x, tool_displacement, c, reach, tool, hint, nearest)
     !> The model.
     type(model_t), intent(in) :: model
@@ -184,7 +184,7 @@ contains
       call find_contact(model%tool(t)%surface, x - tool_displacement(:, t), hint(t), reach(t), &
                         model%contact_depth, hit)
       if (.not. hit%found) cycle
-      distance = abs(hit%distance)
+      distance = hit%distance
       if (t == previous) distance = distance - hysteresis
       if (distance >= best) cycle
       best = distance
