@@ -1,0 +1,174 @@
+!> What the tests of the system share: a model from an input file, states far from equilibrium with every kind of
+!> contact, and the residual of the mixed equations.
+module system_cases
+  use, intrinsic :: iso_fortran_env, only : error_unit
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_text, only : text_t
+  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_input_case, only : case_t
+  use dd3_input_reader, only : read_case
+  use dd3_linalg_solver, only : solver_options_t
+  use dd3_model_build, only : new_model
+  use dd3_model_initial, only : new_initial_state
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_copy, state_t
+  use dd3_system_contact, only : evaluate_contact
+  use dd3_system_internal, only : update_material
+  use dd3_system_system, only : new_system, system_t
+  implicit none
+  private
+  public :: load_model, load_system, random_values, deform, touch_all, mixed_residual
+
+contains
+
+  !> Reads a model that is known to be in order.
+  subroutine load_model(model, file)
+    !> The model.
+    type(model_t), intent(out) :: model
+    !> The input file.
+    character(len=*), intent(in) :: file
+
+    type(case_t) :: case
+    type(error_list_t) :: errors
+    type(text_t) :: none(0)
+    integer :: i
+
+    call read_case(case, file, none, errors)
+    if (errors%count == 0) call new_model(model, case, errors)
+    do i = 1, errors%count
+      write (error_unit, '(a)') errors%item(i)%message
+    end do
+    if (errors%count > 0) error stop "the input file of the test is not in order"
+  end subroutine load_model
+
+  !> Sets up a system with the direct solver.
+  subroutine load_system(system, model)
+    !> The system.
+    type(system_t), intent(out) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    type(solver_options_t) :: options
+    type(error_t), allocatable :: error
+
+    options%method = "umfpack"
+    call new_system(system, model, options, 1, error)
+    if (allocated(error)) error stop "the solver of the test is not known"
+  end subroutine load_system
+
+  !> Numbers between -1 and 1, the same in every run.
+  subroutine random_values(seed, values)
+    !> Start of the sequence; gets its end.
+    integer, intent(inout) :: seed
+    !> The numbers.
+    real(wp), intent(out) :: values(:, :)
+
+    integer :: i, j
+
+    do j = 1, size(values, 2)
+      do i = 1, size(values, 1)
+        seed = modulo(seed*3877 + 29573, 139968)
+        values(i, j) = 2.0_wp*real(seed, wp)/139968.0_wp - 1.0_wp
+      end do
+    end do
+  end subroutine random_values
+
+  !> A committed state with plastic history, and a trial state that goes on from it: pulled, bent, twisted.
+  subroutine deform(system, model, old, new)
+    !> The system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The committed state.
+    type(state_t), intent(out) :: old
+    !> The trial state.
+    type(state_t), intent(out) :: new
+
+    type(verdict_t) :: verdict
+    real(wp) :: noise(3, model%n_node)
+    integer :: step, seed
+
+    call new_initial_state(old, model)
+    call new_initial_state(new, model)
+    seed = 7
+    do step = 1, 3
+      if (step > 1) call state_copy(new, old)
+      call random_values(seed, noise)
+      new%x = old%x + 0.004_wp*noise
+      new%x(1, :) = new%x(1, :)*(1.0_wp + 0.004_wp*step)
+      new%x(3, :) = new%x(3, :) - 0.0005_wp*model%x0(1, :)**2
+      call update_material(system, model, old, new, .false., verdict)
+      if (verdict%outcome /= verdict_converged) error stop "the strip of the test cannot be deformed"
+    end do
+  end subroutine deform
+
+  !> Gives the candidates contact forces so that some stick, some slip and some leave their tools.
+  subroutine touch_all(system, model, phase, old, new)
+    !> The system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+
+    real(wp) :: along(3), pressure
+    integer :: c
+
+    new%hint%due = .true.
+    call evaluate_contact(system%contact, model, phase, old, new)
+    do c = 1, model%n_contact
+      along = [1.0_wp, 0.4_wp, 0.2_wp]
+      along = along - dot_product(along, system%contact%normal(:, c))*system%contact%normal(:, c)
+      pressure = merge(6000.0_wp + 3.0_wp*phase%penalty, 1000.0_wp, modulo(c/2, 2) == 0)
+      if (modulo(c, 5) == 0) pressure = -60.0_wp
+      new%lambda(:, c) = -(pressure + phase%penalty*system%contact%distance(c))*system%contact%normal(:, c) &
+                         + 300.0_wp*along
+    end do
+    call evaluate_contact(system%contact, model, phase, old, new)
+  end subroutine touch_all
+
+  !> Residuals of the mixed equations as the sheet, its contact forces and the pressed tools are moved.
+  subroutine mixed_residual(system, model, phase, old, new, residual, excess, tool_residual)
+    !> The system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+    !> F_int - F_ext + lambda, `(3, n_node)`.
+    real(wp), intent(out) :: residual(:, :)
+    !> F_equ - lambda, `(3, n_contact)`.
+    real(wp), intent(out) :: excess(:, :)
+    !> Out-of-balance forces of the tools along their lines, `(n_tool)`.
+    real(wp), intent(out) :: tool_residual(:)
+
+    type(verdict_t) :: verdict
+    integer :: c, t
+
+    call update_material(system, model, old, new, .false., verdict)
+    if (verdict%outcome /= verdict_converged) error stop "no stress for the state of the test"
+    call evaluate_contact(system%contact, model, phase, old, new)
+    residual = new%internal_force - new%external_force
+    excess = system%contact%force - new%lambda
+    tool_residual = 0.0_wp
+    do t = 1, model%n_tool
+      tool_residual(t) = dot_product(phase%direction(:, t), new%tool_load(:, t))
+    end do
+    do c = 1, model%n_contact
+      residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + new%lambda(:, c)
+      t = system%contact%tool(c)
+      if (t > 0) tool_residual(t) = tool_residual(t) + dot_product(phase%direction(:, t), system%contact%force(:, c))
+    end do
+  end subroutine mixed_residual
+
+end module system_cases
