@@ -37,6 +37,8 @@ def jobs():
                 yield f"{mesh}-{held}-{p}", "bending.dat", {"skew": skew, "held": held, "p": p}
     for p in PENALTIES:
         yield f"halved-{p}", "bending.dat", {"p": p, **HALVED}
+    for p in PENALTIES:
+        yield f"cutback-{p}", "bending.dat", {"p": p, "skew": "0", "cutback": "on"}
     yield "holder-11300", "bending.dat", {"holder": "-11300"}
     yield "fine", "fine.dat", {}
     yield "fine-1e4", "fine.dat", {"p": "1e4"}
@@ -141,10 +143,19 @@ def reasons(work):
     return table(["mesh", "edges", "p, N/mm", "last accepted, mm", "`reason` in status.csv"], rows)
 
 
+def cutback(work):
+    """Mesh (a) with free edges and cut-back."""
+    rows = []
+    for p in PENALTIES:
+        r = Run(work / f"cutback-{p}")
+        rows.append([p, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.retries}", f"{r.force[-1]:.0f}", f"{r.seconds:.1f}"])
+    return table(["p, N/mm", "reached, mm", "increments", "cut-backs", "punch force there, N", "processor time, s"], rows)
+
+
 def penalties(work):
     """Punch forces of mesh (b) at equal travel, for each p."""
     runs = {p: Run(work / f"b-corner-{p}") for p in PENALTIES}
-    rows = [[f"{t}"] + [f"{r.force_at(t):.1f}" for r in runs.values()] for t in range(5, 41, 5)]
+    rows = [[f"{t}"] + [f"{r.force_at(t):.1f}" if t <= r.travel[-1] else "-" for r in runs.values()] for t in range(5, 41, 5)]
     return table(["travel, mm"] + [f"p = {p}, N" for p in PENALTIES], rows)
 
 
@@ -199,7 +210,7 @@ def fine(work):
                   "processor time, s", "memory, MB"], rows)
 
 
-TABLES = {f.__name__: f for f in (stops, reasons, penalties, agreement, halved, holder, limiters, fine)}
+TABLES = {f.__name__: f for f in (stops, reasons, cutback, penalties, agreement, halved, holder, limiters, fine)}
 
 
 def write(document, tables):
