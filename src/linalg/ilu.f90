@@ -17,6 +17,7 @@ module dd3_linalg_ilu
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_linalg_elimination, only : subtract
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_preconditioner, only : preconditioner_t
   use dd3_linalg_tensor, only : inverse
@@ -397,7 +398,7 @@ contains
     real(wp), intent(inout) :: row(*), block(3, 3, *)
     !> Whether the multipliers stay within bounds.
     logical, intent(out) :: good
-    real(wp) :: l(3, 3), w(3, 3)
+    real(wp) :: l(3, 3), w(3, 3), size_of_row(3)
     integer :: position, k, s, at_i, at_k, width_i, width_k, c, from, to
 
     good = .true.
@@ -411,7 +412,9 @@ contains
       w(3, :) = row(c + 2*width_i + 1:c + 2*width_i + 3)
       l = product_of(w, block(:, :, diagonal(k)))
       block(:, :, position) = l
-      if (.not. sum(abs(l)) <= growth_limit) then
+      w = abs(l)
+      size_of_row = w(:, 1) + w(:, 2) + w(:, 3)
+      if (.not. size_of_row(1) + size_of_row(2) + size_of_row(3) <= growth_limit) then
         good = .false.
         return
       end if
@@ -437,25 +440,6 @@ contains
       c(:, j) = a(:, 1)*b(1, j) + a(:, 2)*b(2, j) + a(:, 3)*b(3, j)
     end do
   end function product_of
-
-  !> Innermost kernel: (w1, w2, w3) := (w1, w2, w3) - l (u1, u2, u3), along a stretch.
-  pure subroutine subtract(n, l, u1, u2, u3, w1, w2, w3)
-    !> Length of the stretch.
-    integer, intent(in) :: n
-    !> The multiplier.
-    real(wp), intent(in) :: l(3, 3)
-    !> Plain rows of U.
-    real(wp), intent(in) :: u1(n), u2(n), u3(n)
-    !> Plain rows worked on.
-    real(wp), intent(inout) :: w1(n), w2(n), w3(n)
-    integer :: c
-
-    do c = 1, n
-      w1(c) = w1(c) - (l(1, 1)*u1(c) + l(1, 2)*u2(c) + l(1, 3)*u3(c))
-      w2(c) = w2(c) - (l(2, 1)*u1(c) + l(2, 2)*u2(c) + l(2, 3)*u3(c))
-      w3(c) = w3(c) - (l(3, 1)*u1(c) + l(3, 2)*u2(c) + l(3, 3)*u3(c))
-    end do
-  end subroutine subtract
 
   !> Turns the plain rows of a finished row into blocks, the diagonal one inverted.
   pure subroutine finish_row(n_block, diagonal, row, block, shifted, good)

@@ -1,0 +1,30 @@
+!> Innermost kernel of the incomplete factorisation. It has a file of its own so that it is not merged
+!> into its caller: as arguments its arrays are known not to overlap, and the loop is free of tests.
+module dd3_linalg_elimination
+  use dd3_base_kinds, only : wp
+  implicit none
+  private
+  public :: subtract
+
+contains
+
+  !> Innermost kernel: (w1, w2, w3) := (w1, w2, w3) - l (u1, u2, u3), along a stretch.
+  pure subroutine subtract(n, l, u1, u2, u3, w1, w2, w3)
+    !> Length of the stretch.
+    integer, intent(in) :: n
+    !> The multiplier.
+    real(wp), intent(in) :: l(3, 3)
+    !> Plain rows of U.
+    real(wp), intent(in) :: u1(n), u2(n), u3(n)
+    !> Plain rows worked on.
+    real(wp), intent(inout) :: w1(n), w2(n), w3(n)
+    integer :: c
+
+    do c = 1, n
+      w1(c) = w1(c) - (l(1, 1)*u1(c) + l(1, 2)*u2(c) + l(1, 3)*u3(c))
+      w2(c) = w2(c) - (l(2, 1)*u1(c) + l(2, 2)*u2(c) + l(2, 3)*u3(c))
+      w3(c) = w3(c) - (l(3, 1)*u1(c) + l(3, 2)*u2(c) + l(3, 3)*u3(c))
+    end do
+  end subroutine subtract
+
+end module dd3_linalg_elimination
