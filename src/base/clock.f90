@@ -4,13 +4,15 @@ module dd3_base_clock
   implicit none
   private
   public :: wall_time, profile_t, section_names
-  public :: section_material, section_assembly, section_contact, section_factorisation, section_solve, section_output
+  public :: section_material, section_assembly, section_contact, section_factorisation, &
+      section_solve, section_output
 
   !> Sections of a run that are timed apart.
   integer, parameter :: section_material = 1, section_assembly = 2, section_contact = 3, &
                         section_factorisation = 4, section_solve = 5, section_output = 6
   !> Their names.
-  character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", "contact", &
+  character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", &
+      "contact", &
                                                       "factorisation", "solve", "output"]
 
   !> Seconds spent in each section.

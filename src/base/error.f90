@@ -1,4 +1,5 @@
-!> Errors of the set-up as values: they travel up, gain context on the way and are reported together.
+!> Errors of the set-up as values: they travel up, gain context on the way and are reported
+!> together.
 module dd3_base_error
   use dd3_base_kinds, only : i8
   implicit none
@@ -17,7 +18,8 @@ module dd3_base_error
     integer :: width = 1
     !> The line of text, or the part of it around the column.
     character(len=:), allocatable :: text
-    !> Position of the line in the whole text with its included files unfolded; errors are reported in this order.
+    !> Position of the line in the whole text with its included files unfolded; errors are reported
+    !> in this order.
     integer :: order = huge(0)
   end type location_t
 
@@ -157,7 +159,8 @@ contains
     call self%push(error)
   end subroutine error_list_push_input
 
-  !> Brings the errors into the order of the input's lines; those without a place come last, in the order found.
+  !> Brings the errors into the order of the input's lines; those without a place come last, in the
+  !> order found.
   subroutine error_list_sort(self)
     !> The list.
     class(error_list_t), intent(inout) :: self

@@ -1,10 +1,12 @@
-!> The row of a keyword table: the parser, the range check, the echo, `--help` and the manual derive from it.
+!> The row of a keyword table: the parser, the range check, the echo, `--help` and the manual derive
+!> from it.
 module dd3_base_parameter
   use dd3_base_kinds, only : wp
   implicit none
   private
   public :: parameter_t, law_value_t, row
-  public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, kind_law, kind_other, &
+  public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, &
+      kind_law, kind_other, &
             kind_integers
 
   !> One real number.
@@ -38,7 +40,8 @@ module dd3_base_parameter
     integer :: count = 1
     !> Unit of the value, empty where it has none.
     character(len=16) :: unit = ""
-    !> Default as it would be written; empty where the value must be given; `-` where leaving it out means "absent".
+    !> Default as it would be written; empty where the value must be given; `-` where leaving it out
+    !> means "absent".
     character(len=24) :: default = ""
     !> Smallest and largest value allowed.
     real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
@@ -50,11 +53,15 @@ module dd3_base_parameter
     logical :: repeatable = .false.
     !> Alternatives of a `kind_name`, separated by blanks; empty where any word will do.
     character(len=120) :: choices = ""
-    !> What stands where in the value of a `kind_other`; alternatives separated by `/`. The words `set`, `tool`, `material`,
-    !> `axis`, `number`, `count` and `range` stand for such values, `a|b` for one of two words, `...` repeats the word before
-    !> it, `[mm]` may be left out. For a `kind_name`, `set`, `tool` or `material` says what must bear the name.
+    !> What stands where in the value of a `kind_other`; alternatives separated by `/`. The words
+    !> `set`, `tool`, `material`,
+    !> `axis`, `number`, `count` and `range` stand for such values, `a|b` for one of two words,
+    !> `...` repeats the word before
+    !> it, `[mm]` may be left out. For a `kind_name`, `set`, `tool` or `material` says what must
+    !> bear the name.
     character(len=80) :: form = ""
-    !> Alternatives, or laws, that this version does not provide, separated by blanks; `*` for the whole key.
+    !> Alternatives, or laws, that this version does not provide, separated by blanks; `*` for the
+    !> whole key.
     character(len=120) :: later = ""
     !> One line of help.
     character(len=160) :: help = ""

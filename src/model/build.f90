@@ -1,5 +1,5 @@
-!> Builds the model from the checked case: every name becomes a number, and what only the model can tell is checked,
-!> all errors of the input together.
+!> Builds the model from the checked case: every name becomes a number, and what only the model can
+!> tell is checked, all errors of the input together.
 module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t
@@ -27,8 +27,9 @@ module dd3_model_build
 
 contains
 
-  !> Builds the model; it may be used where the list holds no error. Of a case with errors only the laws and the tools'
-  !> files are checked, so that what is wrong with them is reported with the rest.
+  !> Builds the model; it may be used where the list holds no error. Of a case with errors only the
+  !> laws and the tools' files are checked, so that what is wrong with them is reported with the
+  !> rest.
   subroutine new_model(model, case, errors)
     !> The model made.
     type(model_t), intent(out) :: model
@@ -71,7 +72,8 @@ contains
       model%tool(t)%name = case%tool(t)%name
       model%tool(t)%friction = case%tool(t)%friction
       model%tool(t)%position = case%tool(t)%position
-      call read_surface(model%tool(t)%surface, case%tool(t)%patches, case%tool(t)%source%at("patches"), errors)
+      call read_surface(model%tool(t)%surface, case%tool(t)%patches, &
+          case%tool(t)%source%at("patches"), errors)
     end do
   end subroutine read_tools
 
@@ -112,13 +114,15 @@ contains
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
-      call errors%push_input(case%blank(1)%source%opened, "element "//to_text(e)//" has no volume", &
+      call errors%push_input(case%blank(1)%source%opened, "element "//to_text(e) &
+          //" has no volume", &
                              "a blank whose node lines do not cross")
       return
     end do
   end subroutine take_mesh
 
-  !> Numbers the nodes that may touch a tool, and the block rows of the tools that are pressed in some phase.
+  !> Numbers the nodes that may touch a tool, and the block rows of the tools that are pressed in
+  !> some phase.
   subroutine find_candidates(model, case, mesh)
     !> The model.
     type(model_t), intent(inout) :: model
@@ -242,9 +246,11 @@ contains
         worst = node
       end do
       if (worst == 0) cycle
-      call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name//"' starts inside the sheet: "// &
-                             "node "//to_text(worst)//" is "//to_text(-deepest, 4)//" mm deep in it", &
-                             "a start no deeper than 0.001 mm (see position), and normals that point to the sheet")
+      call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name &
+          //"' starts inside the sheet: "// &
+                             "node "//to_text(worst)//" is "//to_text(-deepest, 4) &
+                             //" mm deep in it", &
+          "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
     end do
   end subroutine check_start
 

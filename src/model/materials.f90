@@ -1,10 +1,12 @@
-!> Materials from the case: the laws as written, checked against the registries, every problem shown where it stands.
+!> Materials from the case: the laws as written, checked against the registries, every problem shown
+!> where it stands.
 module dd3_model_materials
   use dd3_base_error, only : error_list_t, error_t, location_t
   use dd3_base_parameter, only : law_value_t, parameter_t
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
-  use dd3_material_check, only : check_law, known_laws, law_backstress, law_hardening, law_rows, law_yield
+  use dd3_material_check, only : check_law, known_laws, law_backstress, law_hardening, law_rows, &
+      law_yield
   use dd3_material_description, only : description_t, law_choice_t, problem_t
   use dd3_material_material, only : material_t, new_material
   use dd3_model_model, only : model_t
@@ -13,7 +15,8 @@ module dd3_model_materials
   public :: new_materials, law_sources
 
   !> What the kinds of laws are called in a message.
-  character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", "hardening law", &
+  character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", &
+      "hardening law", &
                                                   "back-stress law"]
 
 contains
@@ -64,7 +67,8 @@ contains
       call choose(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
     if (errors%count > found .or. .not. spec%source%valid) return
-    call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, error)
+    call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, &
+        error)
     if (allocated(error)) call errors%push_input(spec%source%opened, error%message)
   end subroutine make_material
 
@@ -94,12 +98,14 @@ contains
     if (errors%count > found) return
     call check_law(kind, choice%name, choice%values, problems)
     do i = 1, size(problems)
-      call errors%push_input(problem_place(spec, choice%values, problems(i)%index), trim(problems(i)%message), &
+      call errors%push_input(problem_place(spec, choice%values, problems(i)%index), &
+          trim(problems(i)%message), &
                              trim(problems(i)%expected))
     end do
   end subroutine choose
 
-  !> Where the value is written that a problem speaks of; the law's name where it speaks of the law as a whole.
+  !> Where the value is written that a problem speaks of; the law's name where it speaks of the law
+  !> as a whole.
   function problem_place(spec, values, index) result(place)
     !> The law as written.
     type(law_spec_t), intent(in) :: spec
@@ -146,7 +152,8 @@ contains
     type(description_t), intent(in) :: description
     character(len=:), allocatable :: text
 
-    text = new_line("a")//"  "//trim(description%name)//": "//trim(description%title)//"; "//trim(description%source)
+    text = new_line("a")//"  "//trim(description%name)//": "//trim(description%title)//"; " &
+        //trim(description%source)
   end function source_line
 
 end module dd3_model_materials

@@ -1,4 +1,5 @@
-!> What stays constant in a run: mesh, element table, materials, tools, contact candidates, supports and phases.
+!> What stays constant in a run: mesh, element table, materials, tools, contact candidates, supports
+!> and phases.
 module dd3_model_model
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -63,7 +64,8 @@ module dd3_model_model
     integer, allocatable :: candidate_of(:)
     !> Which tools a candidate may touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
-    !> Block row of each tool behind the nodes' in the reduced system; 0 where the tool is never pressed, `(n_tool)`.
+    !> Block row of each tool behind the nodes' in the reduced system; 0 where the tool is never
+    !> pressed, `(n_tool)`.
     integer, allocatable :: tool_block(:)
     !> Degrees of freedom held in every phase, `(3, n_node)`.
     logical, allocatable :: fixed(:, :)

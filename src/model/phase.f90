@@ -1,4 +1,5 @@
-!> One stage of the process with all names resolved: which tools move or press, which nodes are driven, when it ends.
+!> One stage of the process with all names resolved: which tools move or press, which nodes are
+!> driven, when it ends.
 module dd3_model_phase
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : limits_t, newton_t, until_t
@@ -22,9 +23,11 @@ module dd3_model_phase
     logical, allocatable :: pressed(:)
     !> The force on the pressed tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: press_start(:, :), press_end(:, :)
-    !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase begins.
+    !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase
+    !> begins.
     real(wp), allocatable :: tool_start(:, :)
-    !> Whether this phase leaves the nodal forces, and the force on each tool, as it finds them; `(n_tool)`.
+    !> Whether this phase leaves the nodal forces, and the force on each tool, as it finds them;
+    !> `(n_tool)`.
     logical :: keeps_load = .true.
     !> See above.
     logical, allocatable :: keeps_press(:)

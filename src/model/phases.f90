@@ -1,4 +1,5 @@
-!> The phases with all names resolved. What a phase does not name stays as it is: tools held, forces and loads kept.
+!> The phases with all names resolved. What a phase does not name stays as it is: tools held, forces
+!> and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
@@ -60,11 +61,13 @@ contains
     n_tool = model%n_tool
     n_node = model%n_node
     phase%name = ""
-    allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), source=0.0_wp)
+    allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), &
+        source=0.0_wp)
     allocate (phase%tool_start(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), phase%released(n_tool), source=.false.)
     allocate (phase%active(n_tool), phase%keeps_press(n_tool), source=.true.)
-    allocate (phase%displacement(3, n_node), phase%load_start(3, n_node), phase%load_end(3, n_node), source=0.0_wp)
+    allocate (phase%displacement(3, n_node), phase%load_start(3, n_node), phase%load_end(3, &
+        n_node), source=0.0_wp)
     phase%prescribed = model%fixed
   end subroutine new_phase
 
@@ -173,7 +176,8 @@ contains
       line = unit(from%press(i)%vector)
       if (phase%pressed(tool) .and. norm2(phase%press_start(:, tool)) > 0.0_wp) then
         if (dot_product(line, phase%direction(:, tool)) < 1.0_wp - 1.0e-9_wp) then
-          call errors%push_input(from%press(i)%at, "the force turns away from the tool's line of motion", &
+          call errors%push_input(from%press(i)%at, &
+              "the force turns away from the tool's line of motion", &
                                  "a force along the same line and sense as in the phase before")
         end if
       end if
@@ -207,7 +211,8 @@ contains
     end do
   end subroutine take_displacements
 
-  !> Takes loads: a set named again changes its force, the others keep theirs; the nodes of a set share it equally.
+  !> Takes loads: a set named again changes its force, the others keep theirs; the nodes of a set
+  !> share it equally.
   subroutine take_loads(from, mesh, load, phase)
     !> The phase of the case.
     type(case_phase_t), intent(in) :: from

@@ -1,5 +1,5 @@
-!> What changes in a run. Two copies exist: the committed state (configuration N-1, equilibrated) and the trial
-!> state (configuration N); acceptance and cut-back are one `state_copy` each.
+!> What changes in a run. Two copies exist: the committed state (configuration N-1, equilibrated)
+!> and the trial state (configuration N); acceptance and cut-back are one `state_copy` each.
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
@@ -25,7 +25,8 @@ module dd3_model_state
     real(wp), allocatable :: external_force(:, :)
     !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
     real(wp), allocatable :: stress(:, :, :)
-    !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the equivalent plastic strain.
+    !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the
+    !> equivalent plastic strain.
     real(wp), allocatable :: internal(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
@@ -61,7 +62,8 @@ contains
     allocate (self%orientation(3, 3, n_point, n_element), self%plastic(n_point, n_element))
     allocate (self%lambda(3, n_contact), self%status(n_contact), self%contact_tool(n_contact))
     allocate (self%hint(n_tool, n_contact))
-    allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), self%tool_force(3, n_tool))
+    allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), self%tool_force(3, &
+        n_tool))
     self%x = 0.0_wp
     self%internal_force = 0.0_wp
     self%external_force = 0.0_wp

@@ -1,6 +1,8 @@
-!> The corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations, contact, friction).
-!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19), the norm of the
-!> internal forces standing in for that of the contact forces where it is larger (and where there is no contact).
+!> The corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations,
+!> contact, friction).
+!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
+!> the norm of the internal forces standing in for that of the contact forces where it is larger
+!> (and where there is no contact).
 module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
@@ -23,6 +25,9 @@ module dd3_process_corrector
   real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
   !> The largest displacement an iteration may make, as a multiple of the sheet's thickness.
   real(wp), parameter :: largest_step = 20.0_wp
+  !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
+  !> holds round-off alone.
+  real(wp), parameter :: negligible_strain = 1.0e-9_wp
   !> Status patterns remembered to see a cycle.
   integer, parameter :: memory = 4
 
@@ -106,8 +111,8 @@ contains
     correction%lambda = 0.0_wp
   end subroutine start
 
-  !> Stresses, internal forces and contact of the trial state, and the residuals from them; with the stiffness in the
-  !> first iteration, which is never the last.
+  !> Stresses, internal forces and contact of the trial state, and the residuals from them; with the
+  !> stiffness in the first iteration, which is never the last.
   subroutine evaluate(system, model, phase, old, new, j, verdict)
     !> The system.
     type(system_t), intent(inout) :: system
@@ -152,7 +157,8 @@ contains
     call system%profile%add(section_contact)
   end subroutine evaluate
 
-  !> The criterion of convergence, eq. (19), and whether it is met with the status of the last iteration.
+  !> The criterion of convergence, eq. (19), and whether it is met with the status of the last
+  !> iteration.
   subroutine judge(system, model, phase, new, j, correction, verdict)
     !> The evaluated system.
     type(system_t), intent(in) :: system
@@ -179,11 +185,14 @@ contains
       if (.not. phase%pressed(tool)) cycle
       if (.not. any(system%contact%tool == tool .and. system%contact%status /= status_gap)) cycle
       sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
-      forces_met = forces_met .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &
+      forces_met = forces_met &
+          .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &
                    *max(norm2(new%tool_load(:, tool)), tiny(1.0_wp))
     end do
-    scale = max(norm2(new%lambda), norm2(new%internal_force), tiny(1.0_wp))
-    correction%criterion = [correction%criterion, (norm2(correction%lambda) + sqrt(sum_of_squares))/scale]
+    scale = max(norm2(new%lambda), norm2(new%internal_force), &
+                negligible_strain*model%material(1)%laws%elasticity%shear*model%thickness**2)
+    correction%criterion = [correction%criterion, (norm2(correction%lambda) &
+        + sqrt(sum_of_squares))/scale]
     settled = all(system%contact%status == correction%status(:, 1))
     correction%status(:, 2:) = correction%status(:, :memory - 1)
     correction%status(:, 1) = system%contact%status
@@ -193,7 +202,8 @@ contains
       verdict%outcome = verdict_converged
   end subroutine judge
 
-  !> Sum of squares of the residuals of equilibrium and contact at the free degrees of freedom, with the worst node.
+  !> Sum of squares of the residuals of equilibrium and contact at the free degrees of freedom, with
+  !> the worst node.
   subroutine residual_norm(system, model, phase, correction, sum_of_squares)
     !> The evaluated system.
     type(system_t), intent(in) :: system
@@ -248,24 +258,30 @@ contains
 
     largest = 0.0_wp
     do node = 1, model%n_node
-      largest = max(largest, maxval(abs(system%problem%solution(3*node - 2:3*node))))
+      if (maxval(abs(system%problem%solution(3*node - 2:3*node))) <= largest) cycle
+      largest = maxval(abs(system%problem%solution(3*node - 2:3*node)))
+      verdict%node = node
     end do
     if (.not. largest <= largest_step*model%thickness) then
       verdict%outcome = verdict_retry
       verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
       return
     end if
+    verdict%node = 0
     new%x = new%x + reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
-    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, correction%lambda)
+    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
+        correction%lambda)
     new%lambda = new%lambda + correction%lambda
     do tool = 1, model%n_tool
       block = model%tool_block(tool)
       if (block == 0) cycle
-      new%tool_displacement(:, tool) = new%tool_displacement(:, tool) + system%problem%solution(3*block - 2:3*block)
+      new%tool_displacement(:, tool) = new%tool_displacement(:, tool) &
+          + system%problem%solution(3*block - 2:3*block)
     end do
   end subroutine advance
 
-  !> Why the iterations did not converge: the nodes whose status would not settle, or the worst residual.
+  !> Why the iterations did not converge: the nodes whose status would not settle, or the worst
+  !> residual.
   function failure_text(model, phase, correction) result(text)
     !> The model.
     type(model_t), intent(in) :: model
@@ -293,7 +309,8 @@ contains
     if (changing > 0) then
       text = "contact status changes at "//to_text(changing)//" nodes: "//text
     else
-      text = "residual "//to_text(correction%worst_residual, 3)//" N at node "//to_text(correction%worst_node) &
+      text = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
+          //to_text(correction%worst_node) &
              //" after "//to_text(phase%newton%iterations)//" iterations"
     end if
   end function failure_text

@@ -1,4 +1,5 @@
-!> One increment: predict, limit, correct; on failure, where allowed, once more from the committed state with a smaller r.
+!> One increment: predict, limit, correct; on failure, where allowed, once more from the committed
+!> state with a smaller r.
 module dd3_process_increment
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
@@ -12,7 +13,8 @@ module dd3_process_increment
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: stepper_t, new_stepper, prepare_increment, try_increment, shrink_increment, accept_increment
+  public :: stepper_t, new_stepper, prepare_increment, try_increment, shrink_increment, &
+      accept_increment
 
   !> Growth of the bound on r after a cut-back, at every success.
   real(wp), parameter :: growth_factor = 1.5_wp
@@ -67,7 +69,8 @@ contains
     self%limit = limit_t()
     call predict(self%prediction, self%system, model, phase, committed, self%info, verdict)
     if (verdict%outcome /= verdict_converged) return
-    self%limit = limit_increment(model, phase, committed, self%system, self%prediction, self%growth, next_output)
+    self%limit = limit_increment(model, phase, committed, self%system, self%prediction, &
+        self%growth, next_output)
   end subroutine prepare_increment
 
   !> One attempt: the predicted state with the present r, corrected.

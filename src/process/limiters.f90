@@ -28,9 +28,10 @@ module dd3_process_limiters
 
 contains
 
-  !> The factor r of this increment, with the limiter that won: eq. (18), and r never past the end of the phase or
-  !> the next output.
-  function limit_increment(model, phase, state, system, prediction, growth, next_output) result(limit)
+  !> The factor r of this increment, with the limiter that won: eq. (18), and r never past the end
+  !> of the phase or the next output.
+  function limit_increment(model, phase, state, system, prediction, growth, &
+      next_output) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
     !> The running phase.
@@ -54,7 +55,8 @@ contains
     call consider(limit, rotation_limit(phase, prediction))
     call consider(limit, stress_limit(model, phase, state, system, prediction))
     call consider(limit, force_limit(model, phase, state, system%contact, prediction))
-    if (limit%r < phase%limits%r_min%value) limit = limit_t(phase%limits%r_min%value, "r_min", limit%at)
+    if (limit%r < phase%limits%r_min%value) &
+      limit = limit_t(phase%limits%r_min%value, "r_min", limit%at)
     call consider(limit, limit_t(growth, "cutback", ""))
     call consider(limit, gap_limit(model, phase, state, system%contact, prediction))
     ends = limit_t((1.0_wp - state%progress)/prediction%progress, "phase", "")
@@ -132,8 +134,8 @@ contains
     limit%r = phase%limits%rotation%value*pi/180.0_wp/prediction%rotation(place(1), place(2))
   end function rotation_limit
 
-  !> Stress increments normal and tangential to the yield surface, eq. (11), with the modulus of cos(theta): a negative
-  !> one, in unloading, would enlarge the bound.
+  !> Stress increments normal and tangential to the yield surface, eq. (11), with the modulus of
+  !> cos(theta): a negative one, in unloading, would enlarge the bound.
   function stress_limit(model, phase, state, system, prediction) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
@@ -153,7 +155,8 @@ contains
     if (.not. (phase%limits%stress_tangential%active .or. phase%limits%stress_normal%active)) return
     inverse_a = 0.0_wp
     inverse_b = 0.0_wp
-    if (phase%limits%stress_tangential%active) inverse_a = 1.0_wp/phase%limits%stress_tangential%value
+    if (phase%limits%stress_tangential%active) &
+      inverse_a = 1.0_wp/phase%limits%stress_tangential%value
     if (phase%limits%stress_normal%active) inverse_b = 1.0_wp/phase%limits%stress_normal%value
     limit%name = "stress"
     do e = 1, model%n_element
@@ -163,9 +166,11 @@ contains
           size_of_change = norm2(change)
           if (size_of_change <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
           direction = material%plastic_direction(state%stress(:, p, e), state%internal(:, p, e))
-          normal = min(1.0_wp, abs(dot_product(direction, change))/(norm2(direction)*size_of_change))
+          normal = abs(dot_product(direction, change))/(norm2(direction)*size_of_change)
+          normal = min(1.0_wp, normal)
           along = sqrt(1.0_wp - normal**2)
-          r = material%flow_stress(state%internal(:, p, e))/(size_of_change*(normal*inverse_b + along*inverse_a))
+          r = material%flow_stress(state%internal(:, p, e)) &
+              /(size_of_change*(normal*inverse_b + along*inverse_a))
           if (r < limit%r) then
             limit%r = r
             limit%at = point_text(e, p)
@@ -175,8 +180,9 @@ contains
     end do
   end function stress_limit
 
-  !> Increment of the contact forces inside an ellipsoid, eqs (15)-(17). The size B of the force has a floor, a share of
-  !> the mean contact force: to the letter, eq. (16), a node that has just touched would stop the increment.
+  !> Increment of the contact forces inside an ellipsoid, eqs (15)-(17). The size B of the force has
+  !> a floor, a share of the mean contact force: to the letter, eq. (16), a node that has just
+  !> touched would stop the increment.
   function force_limit(model, phase, state, contact, prediction) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
@@ -201,19 +207,21 @@ contains
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
       b = max(norm2(state%lambda(:, c)), phase%limits%force_floor%value*mean)
-      ellipsoid = ellipsoid_norm(prediction%lambda(:, c), contact%normal(:, c), phase%limits%force%value)
+      ellipsoid = ellipsoid_norm(prediction%lambda(:, c), contact%normal(:, c), &
+          phase%limits%force%value)
       if (ellipsoid <= 0.0_wp) cycle
       r = b/ellipsoid
       if (r < limit%r) then
         limit%r = r
-        limit%at = "node "//to_text(model%contact_node(c))//" tool "//model%tool(contact%tool(c))%name &
+        limit%at = "node "//to_text(model%contact_node(c))//" tool " &
+            //model%tool(contact%tool(c))%name &
                    //" B="//to_text(b, 4)
       end if
     end do
   end function force_limit
 
-  !> Length of a force increment in the ellipsoid's measure, eq. (15); the first tangent is the projection of the x axis,
-  !> or of y where the normal is along x.
+  !> Length of a force increment in the ellipsoid's measure, eq. (15); the first tangent is the
+  !> projection of the x axis, or of y where the normal is along x.
   pure real(wp) function ellipsoid_norm(force, normal, axes)
     !> The force increment and the tool's normal.
     real(wp), intent(in) :: force(3), normal(3)
@@ -232,8 +240,8 @@ contains
     ellipsoid_norm = sqrt((along/axes(1))**2 + (along_first/axes(2))**2 + (across/axes(3))**2)
   end function ellipsoid_norm
 
-  !> First contact: a tool that touches nothing arrives at touch and no further. The predictor closes no gap, so that
-  !> without this bound it would see no resistance.
+  !> First contact: a tool that touches nothing arrives at touch and no further. The predictor
+  !> closes no gap, so that without this bound it would see no resistance.
   function gap_limit(model, phase, state, contact, prediction) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
@@ -257,7 +265,8 @@ contains
       if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
       if (.not. phase%active(tool)) cycle
       node = model%contact_node(c)
-      approach = dot_product(prediction%tool(:, tool) - prediction%displacement(:, node), contact%normal(:, c))
+      approach = dot_product(prediction%tool(:, tool) - prediction%displacement(:, node), &
+          contact%normal(:, c))
       if (approach <= 0.0_wp) cycle
       r = (max(contact%distance(c), 0.0_wp) + 0.5_wp*touch)/approach
       if (r < limit%r) then

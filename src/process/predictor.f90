@@ -1,7 +1,8 @@
-!> The predictor: the tangent explicit method. The trial increment of the controlling tool, or of the loads, is imposed
-!> on the tangent system of the committed configuration; everything found is proportional to it, and the increment taken
-!> is r times the trial one.
-!> Source: McMeeking and Rice 1975; Teodosiu and Cao 1988; Oliveira and Menezes 2004, eqs (7) and (8).
+!> The predictor: the tangent explicit method. The trial increment of the controlling tool, or of
+!> the loads, is imposed on the tangent system of the committed configuration; everything found is
+!> proportional to it, and the increment taken is r times the trial one.
+!> Source: McMeeking and Rice 1975; Teodosiu and Cao 1988; Oliveira and Menezes 2004, eqs (7) and
+!> (8).
 module dd3_process_predictor
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
@@ -38,7 +39,8 @@ module dd3_process_predictor
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Times the plastic points that unload are switched to elastic before the prediction is taken as it is.
+  !> Times the plastic points that unload are switched to elastic before the prediction is taken as
+  !> it is.
   integer, parameter :: most_switches = 2
 
 contains
@@ -98,7 +100,8 @@ contains
       call switch_unloading(self, model, state, switched)
       if (.not. switched) exit
     end do
-    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, self%lambda)
+    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
+        self%lambda)
     where (spread(system%contact%status == 0, 1, 3)) self%lambda = 0.0_wp
     call tool_increments(self, system, model, phase)
   end subroutine predict
@@ -123,7 +126,8 @@ contains
       problem%tool_motion = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
-          *dot_product(phase%press_end(:, tool) - phase%press_start(:, tool), phase%direction(:, tool))
+          *dot_product(phase%press_end(:, tool) - phase%press_start(:, tool), phase%direction(:, &
+          tool))
       end do
     end associate
   end subroutine impose_trial
@@ -168,7 +172,8 @@ contains
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e))
         call element_gradients(model%element, state%x(:, nodes), system%element(1), verdict)
-        call element_rate(model%element, self%displacement(:, nodes), state%orientation(:, :, :, e), &
+        call element_rate(model%element, self%displacement(:, nodes), state%orientation(:, :, :, &
+            e), &
                           system%element(1))
       end associate
       self%strain(:, :, e) = system%element(1)%rate
@@ -196,7 +201,8 @@ contains
         do p = 1, model%element%n_point
           if (.not. self%plastic(p, e)) cycle
           direction = material%plastic_direction(state%stress(:, p, e), state%internal(:, p, e))
-          if (dot_product(direction, matmul(material%laws%elasticity%stiffness, self%strain(:, p, e))) > 0.0_wp) cycle
+          if (dot_product(direction, matmul(material%laws%elasticity%stiffness, self%strain(:, p, &
+              e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
           switched = .true.
         end do

@@ -18,7 +18,8 @@ module dd3_process_run
   use dd3_output_interrupt, only : interrupted
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_status, only : status_record_t, status_row_t
-  use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, shrink_increment, stepper_t, &
+  use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
+      shrink_increment, stepper_t, &
                                     try_increment
   use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
   use dd3_system_system, only : new_system
@@ -56,7 +57,8 @@ module dd3_process_run
 
 contains
 
-  !> Runs a model to the end of its last phase, or says why it stopped; the records are whole either way.
+  !> Runs a model to the end of its last phase, or says why it stopped; the records are whole either
+  !> way.
   subroutine run_model(model, solver, threads, directory, log, summary, error)
     !> The model.
     type(model_t), intent(in) :: model
@@ -184,7 +186,8 @@ contains
       call write_increment(run, model, phase, next_output, log, error)
       if (allocated(error)) return
       if (interrupted()) then
-        call fatal_error(error, "interrupted by the user after increment "//to_text(run%committed%increment))
+        call fatal_error(error, "interrupted by the user after increment " &
+            //to_text(run%committed%increment))
         return
       end if
     end do
@@ -213,12 +216,14 @@ contains
     call prepare_increment(run%stepper, model, phase, run%committed, next_output, verdict)
     predicted = verdict%outcome == verdict_converged
     do
-      if (predicted) call try_increment(run%stepper, model, phase, run%committed, run%trial, verdict)
+      if (predicted) call try_increment(run%stepper, model, phase, run%committed, run%trial, &
+          verdict)
       row = status_row(run, model, phase, verdict)
       row%seconds = wall_time() - began
       began = wall_time()
       again = .false.
-      if (predicted .and. verdict%outcome /= verdict_converged) call shrink_increment(run%stepper, phase, again)
+      if (predicted .and. verdict%outcome /= verdict_converged) call shrink_increment(run%stepper, &
+          phase, again)
       if (verdict%outcome == verdict_converged) then
         row%outcome = "accepted"
       else
@@ -271,7 +276,8 @@ contains
         row%worst = "node "//to_text(stepper%correction%worst_node)//" residual "// &
                     to_text(stepper%correction%worst_residual, 3)//" N"
       end if
-      if (verdict%element > 0) row%worst = "element "//to_text(verdict%element)//" point "//to_text(verdict%point)
+      if (verdict%element > 0) row%worst = "element "//to_text(verdict%element)//" point " &
+          //to_text(verdict%point)
     end associate
     if (size(model%tool) == 0) row%gap = 0
   end function status_row
@@ -288,16 +294,20 @@ contains
     type(verdict_t), intent(in) :: verdict
     character(len=:), allocatable :: message
 
-    message = "increment "//to_text(run%committed%increment + 1)//" of phase '"//phase%name//"' (travel " &
+    message = "increment "//to_text(run%committed%increment + 1)//" of phase '"//phase%name &
+        //"' (travel " &
               //to_text(run%committed%travel)//" mm) did not converge"
-    if (run%stepper%attempt > 1) message = message//" in "//to_text(run%stepper%attempt)//" attempts"
+    if (run%stepper%attempt > 1) message = message//" in "//to_text(run%stepper%attempt) &
+        //" attempts"
     message = message//": "//trim(verdict%reason)
     if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
                                        //" point "//to_text(verdict%point)
     if (verdict%node > 0) message = message//", node "//to_text(verdict%node)//" at " &
-      //to_text(run%committed%x(1, verdict%node), 5)//" "//to_text(run%committed%x(2, verdict%node), 5) &
+      //to_text(run%committed%x(1, verdict%node), 5)//" "//to_text(run%committed%x(2, &
+      verdict%node), 5) &
       //" "//to_text(run%committed%x(3, verdict%node), 5)
-    if (verdict%node > 0 .and. verdict%node <= model%n_node) message = message//tool_text(run, model, verdict%node)
+    if (verdict%node > 0 .and. verdict%node <= model%n_node) message = message//tool_text(run, &
+        model, verdict%node)
   end function failure_message
 
   !> The tool a node touches, as a piece of a message.
@@ -354,7 +364,8 @@ contains
       view%limiter = run%stepper%limit%name
       view%iterations = size(run%stepper%correction%criterion)
       if (phase%control > 0) &
-        view%force = -dot_product(phase%direction(:, phase%control), state%tool_force(:, phase%control))
+        view%force = -dot_product(phase%direction(:, phase%control), state%tool_force(:, &
+        phase%control))
       call run%progress%update(log, view)
     end associate
     call run%stepper%system%profile%add(section_output)

@@ -21,8 +21,8 @@ module dd3_process_stage
 
 contains
 
-  !> Begins a phase: forces go on from where they are, released contacts become forces that fade over the phase, and
-  !> a pressed tool that touches nothing approaches to touch.
+  !> Begins a phase: forces go on from where they are, released contacts become forces that fade
+  !> over the phase, and a pressed tool that touches nothing approaches to touch.
   subroutine begin_phase(model, number, phase, state)
     !> The model.
     type(model_t), intent(in) :: model
@@ -82,12 +82,14 @@ contains
         if (.not. model%candidate(tool, c)) cycle
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, &
-                          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, reach, &
+                          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), &
+                          hint, reach, &
                           model%contact_depth, hit)
         if (hit%found) smallest = min(smallest, hit%distance)
       end do
       if (smallest <= closed .or. smallest > reach) return
-      state%tool_displacement(:, tool) = state%tool_displacement(:, tool) + smallest*phase%direction(:, tool)
+      state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
+          + smallest*phase%direction(:, tool)
     end do
   end subroutine approach
 
@@ -107,7 +109,8 @@ contains
     if (phase%length <= 0.0_wp) return
     travel = state%progress*phase%length
     if (model%output%fields_every > 0.0_wp) then
-      progress = (aint(travel/model%output%fields_every + sharp) + 1)*model%output%fields_every/phase%length
+      progress = (aint(travel/model%output%fields_every + sharp) &
+          + 1)*model%output%fields_every/phase%length
     else if (allocated(model%output%fields_at)) then
       do i = 1, size(model%output%fields_at)
         if (model%output%fields_at(i) <= travel + sharp*phase%length) cycle
@@ -129,7 +132,8 @@ contains
     if (phase%until%tool > 0) phase_is_over = phase_is_over .or. until_met(phase, state)
   end function phase_is_over
 
-  !> Whether the early end is met, within a thousandth of the force or a millionth of the displacement.
+  !> Whether the early end is met, within a thousandth of the force or a millionth of the
+  !> displacement.
   logical function until_met(phase, state)
     !> The running phase.
     type(phase_t), intent(in) :: phase
@@ -140,7 +144,8 @@ contains
 
     line = phase%direction(:, phase%until%tool)
     if (phase%until%kind == 1) then
-      value = dot_product(line, state%tool_displacement(:, phase%until%tool) - phase%tool_start(:, phase%until%tool))
+      value = dot_product(line, state%tool_displacement(:, phase%until%tool) - phase%tool_start(:, &
+          phase%until%tool))
       until_met = abs(value) >= phase%until%value*(1.0_wp - 1.0e-6_wp)
     else
       value = dot_product(line, state%tool_force(:, phase%until%tool))

@@ -1,9 +1,11 @@
-!> Contact of the candidate nodes: which tool each belongs to, its status, force and linearisation, in a trial state
-!> (corrector) or at the committed state with the status it was left in (predictor).
+!> Contact of the candidate nodes: which tool each belongs to, its status, force and linearisation,
+!> in a trial state (corrector) or at the committed state with the status it was left in
+!> (predictor).
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
-  use dd3_contact_operator, only : contact_operator, contact_operator_of_status, status_gap, status_stick
+  use dd3_contact_operator, only : contact_operator, contact_operator_of_status, status_gap, &
+      status_stick
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -47,11 +49,13 @@ contains
 
     allocate (self%status(n_contact), self%tool(n_contact), source=0)
     allocate (self%distance(n_contact), source=0.0_wp)
-    allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), source=0.0_wp)
+    allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
+        source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
-  !> Contact in a trial state: search, status, force and linearisation; writes status, tool and hints into the state.
+  !> Contact in a trial state: search, status, force and linearisation; writes status, tool and
+  !> hints into the state.
   subroutine evaluate_contact(self, model, phase, old, new)
     !> The contact work.
     type(contact_work_t), intent(inout) :: self
@@ -79,20 +83,23 @@ contains
       if (tool == 0) then
         call open_node(self, c)
       else
-        slip = new%x(:, node) - old%x(:, node) - new%tool_displacement(:, tool) + old%tool_displacement(:, tool)
+        slip = new%x(:, node) - old%x(:, node) - new%tool_displacement(:, tool) &
+            + old%tool_displacement(:, tool)
         self%distance(c) = hit%distance
         self%normal(:, c) = hit%normal
-        call contact_operator(hit%normal, hit%distance, hit%dnormal, self%lambda(:, c), slip, phase%penalty, &
-                              model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c), &
+        call contact_operator(hit%normal, hit%distance, hit%dnormal, self%lambda(:, c), slip, &
+            phase%penalty, &
+                              model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), &
+                              self%e(:, :, c), &
                               self%status(c))
       end if
       new%status(c) = self%status(c)
     end do
   end subroutine evaluate_contact
 
-  !> Contact of the predictor: the committed state with the status as it was stored (a slipping node lies on the cone,
-  !> round-off would make it stick). A tool that touches nothing takes the nodes within `touch` as sticking, without
-  !> pulling them.
+  !> Contact of the predictor: the committed state with the status as it was stored (a slipping node
+  !> lies on the cone, round-off would make it stick). A tool that touches nothing takes the nodes
+  !> within `touch` as sticking, without pulling them.
   subroutine predictor_contact(self, model, phase, state)
     !> The contact work.
     type(contact_work_t), intent(inout) :: self
@@ -118,7 +125,8 @@ contains
     do c = 1, model%n_contact
       hint = state%hint(:, c)
       self%tool(c) = state%contact_tool(c)
-      call nearest_tool(model, phase, state%x(:, model%contact_node(c)), state%tool_displacement, c, reach, &
+      call nearest_tool(model, phase, state%x(:, model%contact_node(c)), state%tool_displacement, &
+          c, reach, &
                         self%tool(c), hint, hit)
       tool = self%tool(c)
       self%lambda(:, c) = state%lambda(:, c)
@@ -130,7 +138,8 @@ contains
       self%distance(c) = hit%distance
       self%normal(:, c) = hit%normal
       if (.not. touching(tool) .and. hit%distance <= touch) self%status(c) = status_stick
-      call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, self%lambda(:, c), no_slip, &
+      call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
+          self%lambda(:, c), no_slip, &
                                       phase%penalty, model%tool(tool)%friction, self%force(:, c), &
                                       self%d(:, :, c), self%e(:, :, c))
     end do

@@ -1,7 +1,8 @@
-!> Internal forces and stiffness of the sheet: the loop over the elements and their integration points.
+!> Internal forces and stiffness of the sheet: the loop over the elements and their integration
+!> points.
 !>
-!> Elements of one colour share no node, so that threads may add up their forces side by side; the colours come one
-!> after the other, which makes every sum the same for any number of threads.
+!> Elements of one colour share no node, so that threads may add up their forces side by side; the
+!> colours come one after the other, which makes every sum the same for any number of threads.
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
@@ -20,8 +21,8 @@ module dd3_system_internal
 
 contains
 
-  !> Integrates the material from the old to the new configuration and adds up the internal forces, and the stiffness
-  !> where it is wanted too.
+  !> Integrates the material from the old to the new configuration and adds up the internal forces,
+  !> and the stiffness where it is wanted too.
   subroutine update_material(self, model, old, new, with_stiffness, verdict)
     !> Gets the consistent tangents, and the stiffness.
     type(system_t), intent(inout) :: self
@@ -29,7 +30,8 @@ contains
     type(model_t), intent(in) :: model
     !> The committed state.
     type(state_t), intent(in) :: old
-    !> The trial state with its positions set; gets stresses, internal variables, axes and internal forces.
+    !> The trial state with its positions set; gets stresses, internal variables, axes and internal
+    !> forces.
     type(state_t), intent(inout) :: new
     !> Whether the stiffness is assembled as well.
     logical, intent(in) :: with_stiffness
@@ -42,14 +44,16 @@ contains
     verdict%outcome = verdict_converged
     new%internal_force = 0.0_wp
     if (with_stiffness) self%stiffness%value = 0.0_wp
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(mine, colour, k, e, thread)
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
+    !$omp& private(mine, colour, k, e, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
       !$omp do schedule(static)
       do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
         e = self%coloured_element(k)
-        call update_element(model, old, new, e, self%element(thread), self%tangent(:, :, :, e), mine)
+        call update_element(model, old, new, e, self%element(thread), self%tangent(:, :, :, e), &
+            mine)
         if (mine%outcome == verdict_converged) then
           if (with_stiffness) call add_stiffness(self, model, e, self%element(thread))
         else
@@ -88,8 +92,10 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call element_strain(model%element, old%orientation(:, :, :, e), work)
       do p = 1, model%element%n_point
-        call material%update(old%stress(:, p, e), old%internal(:material%n_internal, p, e), work%strain(:, p), &
-                             new%stress(:, p, e), new%internal(:material%n_internal, p, e), tangent(:, :, p), &
+        call material%update(old%stress(:, p, e), old%internal(:material%n_internal, p, e), &
+            work%strain(:, p), &
+                             new%stress(:, p, e), new%internal(:material%n_internal, p, e), &
+                             tangent(:, :, p), &
                              new%plastic(p, e), verdict)
         verdict%element = e
         verdict%point = p
@@ -119,7 +125,8 @@ contains
     integer :: colour, k, e, thread
 
     self%stiffness%value = 0.0_wp
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(verdict, colour, k, e, thread)
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
+    !$omp& private(verdict, colour, k, e, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
@@ -138,7 +145,8 @@ contains
     !$omp end parallel
   end subroutine assemble_stiffness
 
-  !> Assembles the stiffness at the committed configuration with the tangents already in place: the predictor's.
+  !> Assembles the stiffness at the committed configuration with the tangents already in place: the
+  !> predictor's.
   subroutine assemble_predictor_stiffness(self, model, old)
     !> Gets the stiffness; its tangents are the continuum ones.
     type(system_t), intent(inout) :: self
@@ -151,7 +159,8 @@ contains
     integer :: colour, k, e, thread
 
     self%stiffness%value = 0.0_wp
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) private(verdict, colour, k, e, thread)
+    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
+    !$omp& private(verdict, colour, k, e, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1

@@ -1,12 +1,12 @@
-!> The reduced system: contact forces eliminated node by node from the mixed equations, supports, and a row of
-!> force balance for every pressed tool.
+!> The reduced system: contact forces eliminated node by node from the mixed equations, supports,
+!> and a row of force balance for every pressed tool.
 !>
-!> A candidate node A with residual r_A = F_int - F_ext + lambda and contact operator F_equ(u, lambda), linearised as
-!> dF_equ = D (du - dw) + E dlambda (dw: the tool's motion), gives
+!> A candidate node A with residual r_A = F_int - F_ext + lambda and contact operator F_equ(u,
+!> lambda), linearised as dF_equ = D (du - dw) + E dlambda (dw: the tool's motion), gives
 !>     dlambda_A = -r_A - K_A du,
 !>     [(I - E) K_A + D] du - D dw = -[(I - E) r_A + F_equ - lambda].
-!> Source: Menezes and Teodosiu, J. Mater. Process. Technol. 97 (2000) 100-106; Oliveira and Menezes, J. Mater.
-!> Process. Technol. (2004), eq. (6).
+!> Source: Menezes and Teodosiu, J. Mater. Process. Technol. 97 (2000) 100-106; Oliveira and
+!> Menezes, J. Mater. Process. Technol. (2004), eq. (6).
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
@@ -21,7 +21,8 @@ module dd3_system_reduced
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
-    !> Residual of the nodes' equilibrium, for candidates with their contact force: r_A, `(3, n_node)`, N.
+    !> Residual of the nodes' equilibrium, for candidates with their contact force: r_A, `(3,
+    !> n_node)`, N.
     real(wp), allocatable :: residual(:, :)
     !> F_equ - lambda of the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: excess(:, :)
@@ -88,7 +89,8 @@ contains
     call prescribe(phase, problem, reduced)
   end subroutine reduce
 
-  !> Replaces a touching node's row by its reduced row, and adds its share to the row of a pressed tool.
+  !> Replaces a touching node's row by its reduced row, and adds its share to the row of a pressed
+  !> tool.
   subroutine reduce_node(model, phase, contact, c, problem, reduced)
     !> The model and the running phase.
     type(model_t), intent(in) :: model
@@ -142,8 +144,8 @@ contains
     end if
   end subroutine reduce_node
 
-  !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium holds the unknown
-  !> reaction, and the contact force's component is made to vanish instead.
+  !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium
+  !> holds the unknown reaction, and the contact force's component is made to vanish instead.
   pure function node_residual(phase, contact, problem, node, c) result(residual)
     !> The running phase.
     type(phase_t), intent(in) :: phase

@@ -1,4 +1,5 @@
-!> The system of equations of a job: matrices on fixed patterns, work arrays, the linear solver and the profile.
+!> The system of equations of a job: matrices on fixed patterns, work arrays, the linear solver and
+!> the profile.
 module dd3_system_system
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : profile_t
@@ -21,9 +22,11 @@ module dd3_system_system
   type :: system_t
     !> Stiffness of the sheet, and the reduced matrix on the same pattern.
     type(block_matrix_t) :: stiffness, reduced
-    !> Where the blocks of an element go, `(n_element_node, n_element_node, n_element)`: row node, column node.
+    !> Where the blocks of an element go, `(n_element_node, n_element_node, n_element)`: row node,
+    !> column node.
     integer, allocatable :: position(:, :, :)
-    !> Tangent of the material at the points, MPa, Kelvin, material frame, `(6, 6, n_point, n_element)`.
+    !> Tangent of the material at the points, MPa, Kelvin, material frame, `(6, 6, n_point,
+    !> n_element)`.
     real(wp), allocatable :: tangent(:, :, :, :)
     !> Workspaces of the element kernels, one for each thread.
     type(element_work_t), allocatable :: element(:)
