@@ -27,7 +27,7 @@ module dd3_process_corrector
   real(wp), parameter :: largest_step = 20.0_wp
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
   !> holds round-off alone.
-  real(wp), parameter :: negligible_strain = 1.0e-9_wp
+  real(wp), parameter :: negligible_strain = 1.0e-7_wp
   !> Status patterns remembered to see a cycle.
   integer, parameter :: memory = 4
 
