@@ -31,6 +31,9 @@ module dd3_contact_operator
 
   !> A tangential force below this share of its parts has no direction.
   real(wp), parameter :: no_direction = 1.0e-13_wp
+  !> Gap and slip below this are round-off, mm: a node that rests on a tool without force sticks, else
+  !> a sheet that nothing but friction holds would drift.
+  real(wp), parameter :: round_off = 1.0e-12_wp
   !> Largest quotient of the friction force and |sigma_t| in the linearisation; it is at most 1 on
   !> and outside the cone, more only where a slipping state is prescribed inside it.
   real(wp), parameter :: largest_quotient = 10.0_wp
@@ -87,7 +90,7 @@ contains
     real(wp) :: sigma_n, tangential(3), v(3)
 
     sigma_n = dot_product(lambda, normal) + penalty*distance
-    if (sigma_n > 0.0_wp) then
+    if (sigma_n > penalty*round_off) then
       status = status_gap
     else if (friction <= 0.0_wp) then
       status = status_slip
@@ -95,7 +98,7 @@ contains
       v = lambda + penalty*slip
       tangential = v - dot_product(normal, v)*normal
       status = status_stick
-      if (norm(tangential) > -friction*sigma_n) status = status_slip
+      if (norm(tangential) > max(-friction*sigma_n, penalty*round_off)) status = status_slip
     end if
   end function contact_status
 
