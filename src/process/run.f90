@@ -84,6 +84,7 @@ contains
     call new_initial_state(run%trial, model)
     call new_system(run%stepper%system, model, solver_options(solver), threads, error)
     if (allocated(error)) return
+    call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     call new_stepper(run%stepper, model)
     call open_records(run, model, directory, error)
     if (.not. allocated(error)) then
@@ -226,6 +227,7 @@ contains
           phase, again)
       if (verdict%outcome == verdict_converged) then
         row%outcome = "accepted"
+        row%reason = run%stepper%info%reason
       else
         row%outcome = trim(merge("retry ", "failed", again))
         row%reason = verdict%reason
