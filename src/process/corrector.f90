@@ -12,7 +12,7 @@ module dd3_process_corrector
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_system_contact, only : contact_work_t, evaluate_contact
+  use dd3_system_contact, only : contact_work_t, evaluate_contact, touch
   use dd3_system_internal, only : update_material, assemble_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced, solve_info_t
@@ -152,10 +152,30 @@ contains
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
                                                   new%tool_load(:, tool) + new%tool_force(:, tool))
+        problem%tool_motion(:, tool) = motion_to_touch(contact, phase, new, tool)
       end do
     end associate
     call system%profile%add(section_contact)
   end subroutine evaluate
+
+  !> The way of a pressed tool that has lost the sheet back to touch; zero for the others.
+  pure function motion_to_touch(contact, phase, new, tool) result(motion)
+    !> Contact of the candidates.
+    type(contact_work_t), intent(in) :: contact
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(in) :: new
+    !> The tool.
+    integer, intent(in) :: tool
+    real(wp) :: motion(3)
+
+    motion = 0.0_wp
+    if (.not. phase%pressed(tool) .or. norm2(new%tool_load(:, tool)) <= 0.0_wp) return
+    if (.not. any(contact%tool == tool)) return
+    if (any(contact%tool == tool .and. contact%status /= status_gap)) return
+    motion = phase%direction(:, tool)*(minval(contact%distance, mask=contact%tool == tool) + touch)
+  end function motion_to_touch
 
   !> The criterion of convergence, eq. (19), and whether it is met with the status of the last
   !> iteration.
@@ -183,7 +203,10 @@ contains
     forces_met = .true.
     do tool = 1, model%n_tool
       if (.not. phase%pressed(tool)) cycle
-      if (.not. any(system%contact%tool == tool .and. system%contact%status /= status_gap)) cycle
+      if (.not. any(system%contact%tool == tool .and. system%contact%status /= status_gap)) then
+        forces_met = forces_met .and. norm2(new%tool_load(:, tool)) <= 0.0_wp
+        cycle
+      end if
       sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
       forces_met = forces_met &
           .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &

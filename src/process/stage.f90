@@ -39,8 +39,7 @@ contains
     state%phase = number
     state%progress = 0.0_wp
     phase%load_start = state%external_force
-    phase%press_start = state%tool_load
-    where (spread(.not. phase%pressed, 1, 3)) phase%press_start = 0.0_wp
+    call take_press_start(phase, state)
     if (phase%keeps_load) phase%load_end = phase%load_start
     where (spread(phase%pressed .and. phase%keeps_press, 1, 3)) phase%press_end = phase%press_start
     do c = 1, model%n_contact
@@ -58,6 +57,28 @@ contains
     end do
     phase%tool_start = state%tool_displacement
   end subroutine begin_phase
+
+  !> The force on a pressed tool goes on from its last value; on one that was held or moved until now,
+  !> from what it bears along its line.
+  subroutine take_press_start(phase, state)
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: state
+
+    integer :: tool
+
+    phase%press_start = 0.0_wp
+    do tool = 1, size(phase%pressed)
+      if (.not. phase%pressed(tool)) cycle
+      if (norm2(state%tool_load(:, tool)) > 0.0_wp) then
+        phase%press_start(:, tool) = state%tool_load(:, tool)
+      else
+        phase%press_start(:, tool) = phase%direction(:, tool) &
+          *max(0.0_wp, -dot_product(phase%direction(:, tool), state%tool_force(:, tool)))
+      end if
+    end do
+  end subroutine take_press_start
 
   !> Moves a pressed tool that touches nothing along its line until it touches.
   subroutine approach(model, phase, tool, state)

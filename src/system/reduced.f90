@@ -28,7 +28,7 @@ module dd3_system_reduced
     real(wp), allocatable :: excess(:, :)
     !> Prescribed displacement increments, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
-    !> Prescribed motion of the tools that are not pressed, `(3, n_tool)`, mm.
+    !> Prescribed motion of the tools that are not pressed, or touch nothing, `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_motion(:, :)
     !> Out-of-balance force of the pressed tools along their line, `(n_tool)`, N.
     real(wp), allocatable :: tool_residual(:)
@@ -205,7 +205,8 @@ contains
     end do
   end subroutine start_tool_rows
 
-  !> Keeps the pressed tools on their line of motion; one that touches nothing stays where it is.
+  !> Keeps the pressed tools on their line of motion; one that touches nothing makes
+  !> its prescribed motion.
   subroutine finish_tool_rows(model, phase, contact, problem, reduced)
     !> The model.
     type(model_t), intent(in) :: model
@@ -233,7 +234,7 @@ contains
       end do
       if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
       reduced%value(line, line, k) = 1.0_wp
-      problem%rhs(3*(block - 1) + line) = 0.0_wp
+      problem%rhs(3*(block - 1) + line) = problem%tool_motion(line, tool)
     end do
   end subroutine finish_tool_rows
 
