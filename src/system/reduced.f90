@@ -6,7 +6,7 @@
 !>     dlambda_A = -r_A - K_A du,
 !>     [(I - E) K_A + D] du - D dw = -[(I - E) r_A + F_equ - lambda].
 !> Source: Menezes and Teodosiu, J. Mater. Process. Technol. 97 (2000) 100-106; Oliveira and
-!> Menezes, J. Mater. Process. Technol. (2004), eq. (6).
+!> Menezes, Finite Elem. Anal. Des. 40 (2004) 1995-2010, eq. (6).
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
