@@ -167,8 +167,7 @@ contains
       row("hardening", kind_law, "", "", "hardening law and its parameters", &
           later="swift_voce ludwick hockett_sherby table teodosiu_hu"), &
       row("backstress", kind_law, "", "none", &
-      "back-stress law and its parameters; several add up", repeatable=.true., &
-          later="prager lemaitre_chaboche"), &
+      "back-stress law and its parameters; several add up", repeatable=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
       count=3), &
       row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3)]
