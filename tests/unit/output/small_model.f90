@@ -124,17 +124,21 @@ contains
     !> The lines; none where it cannot be read.
     type(line_t), allocatable, intent(out) :: line(:)
     character(len=2000) :: buffer
-    integer :: unit, status
+    integer :: unit, status, n, pass
 
-    allocate (line(0))
-    open (newunit=unit, file=path, status="old", action="read", iostat=status)
-    if (status /= 0) return
-    do
-      read (unit, '(a)', iostat=status) buffer
-      if (status /= 0) exit
-      line = [line, line_t(trim(buffer))]
+    ! Counted first, then kept: gfortran 12 at -O3 loses lengths where such an array grows by constructors.
+    do pass = 1, 2
+      n = 0
+      open (newunit=unit, file=path, status="old", action="read", iostat=status)
+      do while (status == 0)
+        read (unit, '(a)', iostat=status) buffer
+        if (status /= 0) exit
+        n = n + 1
+        if (pass == 2) line(n)%text = trim(buffer)
+      end do
+      if (pass == 1) allocate (line(n))
+      close (unit)
     end do
-    close (unit)
   end subroutine lines_of
 
 end module small_model
