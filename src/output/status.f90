@@ -13,7 +13,8 @@ module dd3_output_status
 
   !> The heading.
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
-    "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_at,worst,solver"
+    "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_at,worst,solver,"// &
+    "r_force,force_at"
 
   !> What is said of one attempted increment.
   type :: status_row_t
@@ -45,6 +46,10 @@ module dd3_output_status
     character(len=64) :: limiter_at = "", worst = ""
     !> The linear solver that ran.
     character(len=16) :: solver = ""
+    !> What the limit on the contact forces alone allows, and where; no place: it says nothing.
+    real(wp) :: r_force = 0.0_wp
+    !> See above.
+    character(len=64) :: force_at = ""
   end type status_row_t
 
   !> The status table of a run.
@@ -125,6 +130,12 @@ contains
       call table%add_text(row%limiter_at)
       call table%add_text(row%worst)
       call table%add_text(row%solver)
+      if (len_trim(row%force_at) > 0) then
+        call table%add_real(row%r_force)
+      else
+        call table%add_text("")
+      end if
+      call table%add_text(row%force_at)
       call table%end_row(error)
     end associate
   end subroutine status_add

@@ -28,6 +28,8 @@ module dd3_process_corrector
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
   !> holds round-off alone.
   real(wp), parameter :: negligible_strain = 1.0e-7_wp
+  !> How the list of nodes whose status did not settle begins.
+  character(len=*), parameter :: changing_status = "contact status changes at "
   !> Status patterns remembered to see a cycle.
   integer, parameter :: memory = 4
 
@@ -66,9 +68,37 @@ contains
     !> Converged, or retry with the reason.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: j
+    character(len=:), allocatable :: changes
 
     call start(correction, model)
+    call iterate(system, model, phase, old, new, info, correction, verdict)
+    if (verdict%outcome == verdict_converged .or. len_trim(verdict%reason) == 0) return
+    if (index(verdict%reason, changing_status) > 0) return
+    changes = status_changes(model, correction, len(verdict%reason) - len_trim(verdict%reason) - 2)
+    if (len(changes) > 0) verdict%reason = trim(verdict%reason)//"; "//changes
+  end subroutine correct
+
+  !> The iterations of the corrector.
+  subroutine iterate(system, model, phase, old, new, info, correction, verdict)
+    !> Matrices and solver.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+    !> What the linear solver did.
+    type(solve_info_t), intent(inout) :: info
+    !> The course of the iterations.
+    type(correction_t), intent(inout) :: correction
+    !> Converged, or retry with the reason.
+    type(verdict_t), intent(inout) :: verdict
+
+    integer :: j
+
     system%problem%displacement = 0.0_wp
     system%problem%tool_motion = 0.0_wp
     do j = 1, phase%newton%iterations
@@ -93,8 +123,14 @@ contains
     verdict%outcome = verdict_retry
     verdict%norm = correction%criterion(phase%newton%iterations)
     verdict%node = correction%worst_node
-    verdict%reason = failure_text(model, phase, correction)
-  end subroutine correct
+    verdict%reason = status_changes(model, correction, len(verdict%reason))
+    verdict%tool = lost_tool(system, model, phase, new)
+    if (verdict%tool > 0) verdict%reason = "nothing resists the pressed tool " &
+        //model%tool(verdict%tool)%name
+    if (len_trim(verdict%reason) == 0) verdict%reason = "residual " &
+        //to_text(correction%worst_residual, 3)//" N at node "//to_text(correction%worst_node) &
+        //" after "//to_text(phase%newton%iterations)//" iterations"
+  end subroutine iterate
 
   !> Makes the correction ready for a new increment.
   subroutine start(correction, model)
@@ -158,6 +194,24 @@ contains
     call system%profile%add(section_contact)
   end subroutine evaluate
 
+  !> A tool that is pressed and touches nothing; 0 where there is none.
+  pure integer function lost_tool(system, model, phase, new)
+    !> The evaluated system.
+    type(system_t), intent(in) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(in) :: new
+
+    do lost_tool = model%n_tool, 1, -1
+      if (.not. phase%pressed(lost_tool)) cycle
+      if (norm2(new%tool_load(:, lost_tool)) <= 0.0_wp) cycle
+      if (.not. any(system%contact%tool == lost_tool .and. system%contact%status /= status_gap)) return
+    end do
+  end function lost_tool
+
   !> The way of a pressed tool that has lost the sheet back to touch; zero for the others.
   pure function motion_to_touch(contact, phase, new, tool) result(motion)
     !> Contact of the candidates.
@@ -210,7 +264,8 @@ contains
       sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
       forces_met = forces_met &
           .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &
-                   *max(norm2(new%tool_load(:, tool)), tiny(1.0_wp))
+                   *max(norm2(new%tool_load(:, tool)), 1.0e-3_wp*norm2(phase%press_start(:, tool)), &
+                        1.0e-3_wp*norm2(phase%press_end(:, tool)))
     end do
     scale = max(norm2(new%lambda), norm2(new%internal_force), &
                 negligible_strain*model%material(1)%laws%elasticity%shear*model%thickness**2)
@@ -303,39 +358,38 @@ contains
     end do
   end subroutine advance
 
-  !> Why the iterations did not converge: the nodes whose status would not settle, or the worst
-  !> residual.
-  function failure_text(model, phase, correction) result(text)
+  !> The nodes whose status did not settle in the last iterations, as far as there is room; empty
+  !> where there are none.
+  function status_changes(model, correction, room) result(text)
     !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
     !> The course of the iterations.
     type(correction_t), intent(in) :: correction
+    !> The longest text.
+    integer, intent(in) :: room
     character(len=:), allocatable :: text
 
     character(len=5), parameter :: names(0:2) = ["gap  ", "stick", "slip "]
+    character(len=:), allocatable :: list, node
     integer :: c, i, changing
 
     changing = 0
-    text = ""
+    list = ""
     do c = 1, model%n_contact
-      if (all(correction%status(c, 2:3) == correction%status(c, 1))) cycle
+      if (correction%status(c, 2) < 0) cycle
+      if (all(correction%status(c, 2:3) == correction%status(c, 1) &
+          .or. correction%status(c, 2:3) < 0)) cycle
       changing = changing + 1
-      if (changing > 4) cycle
-      if (changing > 1) text = text//"; "
-      text = text//"node "//to_text(model%contact_node(c))
+      node = "node "//to_text(model%contact_node(c))
       do i = 3, 1, -1
-        if (correction%status(c, i) >= 0) text = text//" "//trim(names(correction%status(c, i)))
+        if (correction%status(c, i) >= 0) node = node//" "//trim(names(correction%status(c, i)))
       end do
+      if (changing > 1) node = "; "//node
+      if (changing > 4 .or. len(list) + len(node) > room - len(changing_status) - 12) cycle
+      list = list//node
     end do
-    if (changing > 0) then
-      text = "contact status changes at "//to_text(changing)//" nodes: "//text
-    else
-      text = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
-          //to_text(correction%worst_node) &
-             //" after "//to_text(phase%newton%iterations)//" iterations"
-    end if
-  end function failure_text
+    text = ""
+    if (changing > 0) text = changing_status//to_text(changing)//" nodes: "//list
+  end function status_changes
 
 end module dd3_process_corrector

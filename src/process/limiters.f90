@@ -24,6 +24,11 @@ module dd3_process_limiters
     character(len=16) :: name = ""
     !> The element and point, or the node and tool, that set it.
     character(len=64) :: at = ""
+    !> What the limit on the contact forces alone allows, and the node, tool and B that set it;
+    !> empty where it is off or nothing touches.
+    real(wp) :: r_force = huge(1.0_wp)
+    !> See above.
+    character(len=64) :: force_at = ""
   end type limit_t
 
 contains
@@ -48,13 +53,14 @@ contains
     real(wp), intent(in) :: next_output
     type(limit_t) :: limit
 
-    type(limit_t) :: ends
+    type(limit_t) :: ends, force
 
     limit = limit_t(phase%limits%r_max%value, "r_max", "")
     call consider(limit, strain_limit(model, phase, prediction, limit%r))
     call consider(limit, rotation_limit(phase, prediction))
     call consider(limit, stress_limit(model, phase, state, system, prediction))
-    call consider(limit, force_limit(model, phase, state, system%contact, prediction))
+    force = force_limit(model, phase, state, system%contact, prediction)
+    call consider(limit, force)
     if (limit%r < phase%limits%r_min%value) &
       limit = limit_t(phase%limits%r_min%value, "r_min", limit%at)
     call consider(limit, limit_t(growth, "cutback", ""))
@@ -64,6 +70,8 @@ contains
     if (next_output <= 1.0_wp) &
       call consider(ends, limit_t((next_output - state%progress)/prediction%progress, "output", ""))
     call consider(limit, ends)
+    limit%r_force = force%r
+    limit%force_at = force%at
   end function limit_increment
 
   !> Keeps the smaller bound.

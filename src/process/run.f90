@@ -267,6 +267,8 @@ contains
       row%r = stepper%limit%r
       row%limiter = stepper%limit%name
       row%limiter_at = stepper%limit%at
+      row%r_force = stepper%limit%r_force
+      row%force_at = stepper%limit%force_at
       row%iterations = verdict%iterations
       row%criterion = verdict%norm
       row%solver_iterations = stepper%info%iterations
