@@ -4,7 +4,7 @@ module dd3_base_parameter
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: parameter_t, law_value_t, row
+  public :: parameter_t, law_value_t, row, pair_name
   public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, &
       kind_law, kind_other, &
             kind_integers
@@ -29,6 +29,9 @@ module dd3_base_parameter
   integer, parameter :: kind_other = 9
   !> `count` whole numbers.
   integer, parameter :: kind_integers = 10
+
+  !> Name of the parameter of a law that takes pairs `p:Y` in any number.
+  character(len=*), parameter :: pair_name = "p:Y"
 
   !> A keyword, or a law's parameter.
   type :: parameter_t
@@ -71,8 +74,10 @@ module dd3_base_parameter
   type :: law_value_t
     !> Name as written in the input.
     character(len=24) :: name = ""
-    !> Its value.
+    !> Its value; of a pair, what stands behind the colon.
     real(wp) :: value = 0.0_wp
+    !> Of a pair, what stands before the colon.
+    real(wp) :: abscissa = 0.0_wp
   end type law_value_t
 
 contains

@@ -75,6 +75,8 @@ module dd3_input_case
     real(wp) :: value = 0.0_wp
     !> Whether it is a number.
     logical :: numeric = .false.
+    !> Of a point `p:Y`, what stands before the colon.
+    real(wp) :: abscissa = 0.0_wp
     !> Where the value was written.
     type(location_t) :: at
     !> Where the name was written.
@@ -87,6 +89,8 @@ module dd3_input_case
     character(len=:), allocatable :: name
     !> Where the name was written.
     type(location_t) :: at
+    !> Folder that paths are relative to, with a slash at the end, or empty.
+    character(len=:), allocatable :: folder
     !> Its parameters, in the order written.
     type(law_parameter_t), allocatable :: parameter(:)
   end type law_spec_t

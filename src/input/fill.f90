@@ -1,17 +1,19 @@
 !> Fills the case from the checked blocks.
 module dd3_input_fill
   use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : pair_name
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, deck_t, entry_t
-  use dd3_input_case, only : case_t, blank_t, node_set_t, law_spec_t, material_spec_t, &
-      tool_spec_t, contact_t, &
+  use dd3_input_case, only : case_t, blank_t, node_set_t, law_parameter_t, law_spec_t, &
+      material_spec_t, tool_spec_t, contact_t, &
                              boundary_t, limits_t, limit_t, newton_t, history_t, &
                              set_plane, set_box, set_nodes, set_near, fields_every, fields_at, &
                              fields_increments
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
-  use dd3_input_number, only : parse_real
+  use dd3_input_number, only : parse_pair, parse_real
   use dd3_input_table, only : axis_of
   use dd3_input_text_file, only : resolve_path
+  use dd3_input_value, only : is_point
   implicit none
   private
   public :: fill_case
@@ -251,14 +253,15 @@ contains
     material%poisson = block%number("poisson")
     material%yield%name = ""
     material%hardening%name = ""
-    if (block%has("yield")) call fill_law(material%yield, block%entry(block%find("yield")))
+    if (block%has("yield")) call fill_law(material%yield, block%entry(block%find("yield")), &
+        block%folder)
     if (block%has("hardening")) call fill_law(material%hardening, &
-        block%entry(block%find("hardening")))
+        block%entry(block%find("hardening")), block%folder)
     allocate (material%backstress(0))
     do i = 1, block%n_entry
       if (block%entry(i)%key /= "backstress" .or. .not. block%entry(i)%valid) cycle
       if (block%entry(i)%value(1)%text == "none" .and. size(block%entry(i)%value) == 1) cycle
-      call add_law(material%backstress, block%entry(i))
+      call add_law(material%backstress, block%entry(i), block%folder)
     end do
     if (block%has("rolling_direction") .and. block%has("normal_direction")) then
       material%frame = frame_of(block%numbers("rolling_direction"), &
@@ -267,41 +270,68 @@ contains
   end subroutine fill_material
 
   !> Appends a law.
-  subroutine add_law(law, entry)
+  subroutine add_law(law, entry, folder)
     !> The laws.
     type(law_spec_t), allocatable, intent(inout) :: law(:)
     !> The entry it is written in.
     type(entry_t), intent(in) :: entry
+    !> Folder of the file it is written in.
+    character(len=*), intent(in) :: folder
 
     type(law_spec_t), allocatable :: larger(:)
 
     allocate (larger(size(law) + 1))
     larger(:size(law)) = law
-    call fill_law(larger(size(larger)), entry)
+    call fill_law(larger(size(larger)), entry, folder)
     call move_alloc(larger, law)
   end subroutine add_law
 
-  !> Fills a law: its name, then triples key, equals sign, value.
-  subroutine fill_law(law, entry)
+  !> Fills a law: its name, then triples key, equals sign, value, or points.
+  subroutine fill_law(law, entry, folder)
     !> The law.
     type(law_spec_t), intent(inout) :: law
     !> The entry it is written in.
     type(entry_t), intent(in) :: entry
+    !> Folder of the file it is written in.
+    character(len=*), intent(in) :: folder
 
-    integer :: i, k
+    integer :: i, k, points
 
     law%name = entry%value(1)%text
     law%at = entry%value(1)%at
-    allocate (law%parameter((size(entry%value) - 1)/3))
+    law%folder = folder
+    points = count([(is_point(entry%value(k)), k=2, size(entry%value))])
+    allocate (law%parameter(points + (size(entry%value) - 1 - points)/3))
+    k = 2
     do i = 1, size(law%parameter)
-      k = 3*i - 1
-      law%parameter(i)%key = entry%value(k)%text
-      law%parameter(i)%key_at = entry%value(k)%at
-      law%parameter(i)%text = entry%value(k + 2)%text
-      law%parameter(i)%at = entry%value(k + 2)%at
-      call parse_real(law%parameter(i)%text, law%parameter(i)%value, law%parameter(i)%numeric)
+      call fill_law_parameter(law%parameter(i), entry, k)
     end do
   end subroutine fill_law
+
+  !> Fills a parameter of a law.
+  subroutine fill_law_parameter(parameter, entry, k)
+    !> The parameter.
+    type(law_parameter_t), intent(inout) :: parameter
+    !> The entry it is written in.
+    type(entry_t), intent(in) :: entry
+    !> Position of its first word; of the next parameter's afterwards.
+    integer, intent(inout) :: k
+
+    parameter%key_at = entry%value(k)%at
+    if (is_point(entry%value(k))) then
+      parameter%key = pair_name
+      parameter%text = entry%value(k)%text
+      parameter%at = entry%value(k)%at
+      call parse_pair(parameter%text, parameter%abscissa, parameter%value, parameter%numeric)
+      k = k + 1
+    else
+      parameter%key = entry%value(k)%text
+      parameter%text = entry%value(k + 2)%text
+      parameter%at = entry%value(k + 2)%at
+      call parse_real(parameter%text, parameter%value, parameter%numeric)
+      k = k + 3
+    end if
+  end subroutine fill_law_parameter
 
   !> Rolling, transverse and normal direction as columns: the normal is kept, the rolling direction
   !> made square to it.

@@ -3,7 +3,7 @@ module dd3_input_number
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: parse_real, parse_integer
+  public :: parse_real, parse_integer, parse_pair
 
   !> Largest decimal exponent accepted.
   integer, parameter :: largest_exponent = 300
@@ -88,5 +88,25 @@ contains
     ok = status == 0
     if (.not. ok) value = 0
   end subroutine parse_integer
+
+  !> Reads two numbers with a colon between them.
+  pure subroutine parse_pair(text, first, second, ok)
+    !> The word.
+    character(len=*), intent(in) :: text
+    !> The numbers; 0 where there is none.
+    real(wp), intent(out) :: first, second
+    !> Whether there are two.
+    logical, intent(out) :: ok
+
+    integer :: colon
+
+    first = 0.0_wp
+    second = 0.0_wp
+    colon = index(text, ":")
+    ok = colon > 1 .and. colon < len(text)
+    if (.not. ok) return
+    call parse_real(text(:colon - 1), first, ok)
+    if (ok) call parse_real(text(colon + 1:), second, ok)
+  end subroutine parse_pair
 
 end module dd3_input_number

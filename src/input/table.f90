@@ -163,9 +163,9 @@ contains
       row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
       lower_open=.true., upper_open=.true.), &
       row("yield", kind_law, "", "", "yield criterion and its parameters", &
-          later="hosford yld91 karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"), &
+          later="yld91 karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"), &
       row("hardening", kind_law, "", "", "hardening law and its parameters", &
-          later="swift_voce ludwick hockett_sherby table teodosiu_hu"), &
+          later="teodosiu_hu"), &
       row("backstress", kind_law, "", "none", &
       "back-stress law and its parameters; several add up", repeatable=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &

@@ -12,7 +12,7 @@ module dd3_input_value
   implicit none
   private
   public :: check_value, describe, split_words, word_length, not_available, is_on, form_for, &
-      range_text, check_range
+      range_text, check_range, is_point
 
   !> Longest word in a row's lists.
   integer, parameter :: word_length = 24
@@ -256,7 +256,7 @@ contains
     call errors%push_input(token%at, "unknown word '"//token%text//"'"//nearest, describe(row))
   end subroutine check_choice
 
-  !> Checks the outline of a law: a name, then `key = value` pairs.
+  !> Checks the outline of a law: a name, then `key = value` pairs, or points `p:Y`.
   subroutine check_law(entry, row, errors)
     !> The entry.
     type(entry_t), intent(inout) :: entry
@@ -278,6 +278,10 @@ contains
     end if
     i = 2
     do while (i <= size(entry%value))
+      if (is_point(entry%value(i))) then
+        i = i + 1
+        cycle
+      end if
       if (i + 2 > size(entry%value)) then
         call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
             "' is no key=value pair", describe(row))
@@ -291,6 +295,14 @@ contains
       i = i + 3
     end do
   end subroutine check_law
+
+  !> Whether a word is a point `p:Y`.
+  pure logical function is_point(token)
+    !> The word.
+    type(token_t), intent(in) :: token
+
+    is_point = index(token%text, ":") > 0 .and. .not. token%quoted
+  end function is_point
 
   !> Whether a word is an equals sign.
   pure logical function is_equals(token)

@@ -11,6 +11,7 @@ module dd3_material_check
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : describe_hardenings, find_hardening, later_hardenings
   use dd3_material_yield_criterion, only : yield_slot_t
+  use dd3_material_yield_convexity, only : check_convexity
   use dd3_material_yield_registry, only : describe_criteria, find_criterion, later_criteria
   implicit none
   private
@@ -154,7 +155,7 @@ contains
       end do
       if (j > size(rows)) then
         call unknown_parameter(rows, values(i)%name, i, problems)
-      else if (is_given(values(:i - 1), values(i)%name)) then
+      else if (.not. rows(j)%repeatable .and. is_given(values(:i - 1), values(i)%name)) then
         call add_problem(problems, i, trim(values(i)%name)//" is given twice", "once")
       else if (.not. in_range(rows(j), values(i)%value)) then
         call add_problem(problems, i, trim(values(i)%name)//" = "//to_text(values(i)%value)// &
@@ -231,6 +232,9 @@ contains
     case (law_yield)
       call find_criterion(name, criterion)
       call criterion%law%check(values, problems)
+      if (size(problems) > 0) return
+      call criterion%law%set(values)
+      call check_convexity(criterion%law, problems)
     case (law_hardening)
       call find_hardening(name, hardening)
       call hardening%law%check(values, problems)

@@ -2,7 +2,7 @@
 !> where it stands.
 module dd3_model_materials
   use dd3_base_error, only : error_list_t, error_t, location_t
-  use dd3_base_parameter, only : law_value_t, parameter_t
+  use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
   use dd3_material_check, only : check_law, known_laws, law_backstress, law_hardening, law_rows, &
@@ -86,6 +86,7 @@ contains
     character(len=24), allocatable :: names(:)
     type(parameter_t), allocatable :: rows(:)
     type(problem_t), allocatable :: problems(:)
+    integer, allocatable :: origin(:)
     integer :: position, found, i
 
     found = errors%count
@@ -94,34 +95,30 @@ contains
     if (position == 0) return
     choice%name = names(position)
     call law_rows(kind, names(position), rows)
-    call check_law_values(spec, rows, choice%values, errors)
+    call check_law_values(spec, rows, choice%values, errors, origin)
     if (errors%count > found) return
     call check_law(kind, choice%name, choice%values, problems)
     do i = 1, size(problems)
-      call errors%push_input(problem_place(spec, choice%values, problems(i)%index), &
+      call errors%push_input(problem_place(spec, origin, problems(i)%index), &
           trim(problems(i)%message), &
                              trim(problems(i)%expected))
     end do
   end subroutine choose
 
   !> Where the value is written that a problem speaks of; the law's name where it speaks of the law
-  !> as a whole.
-  function problem_place(spec, values, index) result(place)
+  !> as a whole, or of a default.
+  pure function problem_place(spec, origin, index) result(place)
     !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> Its values in the order of its rows.
-    type(law_value_t), intent(in) :: values(:)
+    !> Which parameter as written each of its values comes from.
+    integer, intent(in) :: origin(:)
     !> Position among the values, or 0.
     integer, intent(in) :: index
     type(location_t) :: place
 
-    integer :: i
-
     place = spec%at
     if (index == 0) return
-    do i = 1, size(spec%parameter)
-      if (spec%parameter(i)%key == values(index)%name) place = spec%parameter(i)%at
-    end do
+    if (origin(index) > 0) place = spec%parameter(origin(index))%at
   end function problem_place
 
   !> The laws of a material with their sources, as lines of text.

@@ -5,6 +5,10 @@ module dd3_material_hardening_registry
   use dd3_material_hardening_linear, only : linear_t
   use dd3_material_hardening_swift, only : swift_t
   use dd3_material_hardening_voce, only : voce_t
+  use dd3_material_hardening_swift_voce, only : swift_voce_t
+  use dd3_material_hardening_ludwick, only : ludwick_t
+  use dd3_material_hardening_hockett_sherby, only : hockett_sherby_t
+  use dd3_material_hardening_table, only : table_t
   use dd3_material_description, only : description_t
   use dd3_material_hardening_law, only : hardening_slot_t
   implicit none
@@ -13,7 +17,7 @@ module dd3_material_hardening_registry
 
   !> Laws that this version does not provide, separated by blanks.
   character(len=*), parameter :: later_hardenings = &
-    "swift_voce ludwick hockett_sherby table teodosiu_hu"
+    "teodosiu_hu"
 
 contains
 
@@ -22,11 +26,15 @@ contains
     !> The laws, without parameters.
     type(hardening_slot_t), allocatable, intent(out) :: entries(:)
 
-    allocate (entries(4))
+    allocate (entries(8))
     allocate (perfect_t :: entries(1)%law)
     allocate (linear_t :: entries(2)%law)
     allocate (swift_t :: entries(3)%law)
     allocate (voce_t :: entries(4)%law)
+    allocate (swift_voce_t :: entries(5)%law)
+    allocate (ludwick_t :: entries(6)%law)
+    allocate (hockett_sherby_t :: entries(7)%law)
+    allocate (table_t :: entries(8)%law)
   end subroutine fill_hardenings
 
   !> What each law says of itself, in the order of the registry.

@@ -1,0 +1,198 @@
+!> The flow stress as a table over the equivalent plastic strain, between whose points runs a cubic
+!> that is monotone where they are (F. N. Fritsch, R. E. Carlson, 1980, region 3). Beyond the last
+!> point the curve is straight, with the slope given or that of the curve at its end.
+module dd3_material_hardening_table
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
+  use dd3_base_text, only : to_text
+  use dd3_material_description, only : description_t, problem_t, add_problem, is_given, value_of
+  use dd3_material_flow, only : flow_direction_t, flow_response_t
+  use dd3_material_hardening_law, only : hardening_t
+  implicit none
+  private
+  public :: table_t
+
+  !> The law.
+  type, extends(hardening_t) :: table_t
+    private
+    !> Plastic strains, flow stresses (MPa) and slopes (MPa) of the points.
+    real(wp), allocatable :: strain(:), stress(:), slope(:)
+    !> Slope beyond the last point, MPa.
+    real(wp) :: end_slope = 0.0_wp
+  contains
+    procedure, nopass :: describe
+    procedure, nopass :: check
+    procedure :: set
+    procedure :: flow_stress
+  end type table_t
+
+contains
+
+  !> Says its name, source and parameters.
+  subroutine describe(description)
+    !> What the law says of itself.
+    type(description_t), intent(out) :: description
+
+    description%name = "table"
+    description%title = "points p:Y joined by a monotone cubic, straight beyond the last"
+    description%source = "F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238-246"
+    allocate (description%rows, source=[ &
+      row(pair_name, kind_real, "MPa", "-", &
+          "flow stress Y at the plastic strain p, two points or more: 0:160 0.05:280 ...", &
+          0.0_wp, lower_open=.true., repeatable=.true.), &
+      row("file", kind_text, "", "-", &
+          "file with p and Y in each line, in place of the points; # begins a comment"), &
+      row("slope", kind_real, "MPa", "-", &
+          "slope beyond the last point; left out: that of the curve there; 0: constant", 0.0_wp)])
+    allocate (description%example, source=[ &
+      law_value_t(pair_name, 160.0_wp, 0.0_wp), law_value_t(pair_name, 230.0_wp, 0.02_wp), &
+      law_value_t(pair_name, 300.0_wp, 0.08_wp), law_value_t(pair_name, 370.0_wp, 0.2_wp), &
+      law_value_t(pair_name, 430.0_wp, 0.4_wp), law_value_t(pair_name, 500.0_wp, 0.8_wp)])
+  end subroutine describe
+
+  !> Finds too few points, strains that do not rise from zero, flow stresses that fall.
+  subroutine check(values, problems)
+    !> The values given.
+    type(law_value_t), intent(in) :: values(:)
+    !> Receives what is wrong.
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+    integer :: i, last
+
+    last = 0
+    do i = 1, size(values)
+      if (values(i)%name /= pair_name) cycle
+      if (last == 0 .and. abs(values(i)%abscissa) > 0.0_wp) then
+        call add_problem(problems, i, "the first point has a plastic strain of "// &
+                         to_text(values(i)%abscissa), "0:Y, the initial flow stress")
+      else if (last > 0) then
+        if (.not. values(i)%abscissa > values(last)%abscissa) then
+          call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
+                           " is not larger than the one before", "plastic strains that rise")
+        end if
+        if (values(i)%value < values(last)%value) then
+          call add_problem(problems, i, "the flow stress falls to "//to_text(values(i)%value), &
+                           "flow stresses that do not fall")
+        end if
+      end if
+      last = i
+    end do
+    if (count(values%name == pair_name) < 2 .and. size(problems) == 0) then
+      call add_problem(problems, 0, "a table needs two points at least", "0:Y1 p2:Y2 ...")
+    end if
+  end subroutine check
+
+  !> Takes its points.
+  subroutine set(self, values)
+    !> The law.
+    class(table_t), intent(inout) :: self
+    !> Its parameters.
+    type(law_value_t), intent(in) :: values(:)
+    integer :: i
+
+    self%strain = pack(values%abscissa, values%name == pair_name)
+    self%stress = pack(values%value, values%name == pair_name)
+    self%slope = [(0.0_wp, i=1, size(self%strain))]
+    call choose_slopes(size(self%strain), self%strain, self%stress, self%slope)
+    self%end_slope = self%slope(size(self%slope))
+    if (is_given(values, "slope")) self%end_slope = value_of(values, "slope")
+  end subroutine set
+
+  !> Slopes at the points: the mean of the two secants, shortened where the cubic would not be
+  !> monotone.
+  pure subroutine choose_slopes(n, x, y, slope)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> The points.
+    real(wp), intent(in) :: x(n), y(n)
+    !> The slopes.
+    real(wp), intent(out) :: slope(n)
+    real(wp) :: secant(n - 1), length
+    integer :: i
+
+    secant = (y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))
+    slope(1) = secant(1)
+    slope(n) = secant(n - 1)
+    do i = 2, n - 1
+      slope(i) = 0.5_wp*(secant(i - 1) + secant(i))
+    end do
+    do i = 1, n - 1
+      if (secant(i) > 0.0_wp) then
+        length = norm2(slope(i:i + 1))/secant(i)
+        if (length > 3.0_wp) slope(i:i + 1) = slope(i:i + 1)*(3/length)
+      else
+        slope(i:i + 1) = 0.0_wp
+      end if
+    end do
+  end subroutine choose_slopes
+
+  !> The flow stress after a plastic increment.
+  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
+    !> The law.
+    class(table_t), intent(in) :: self
+    !> Equivalent plastic strain at the start.
+    real(wp), intent(in) :: plastic
+    !> No other internal variables.
+    real(wp), intent(in) :: old(self%n_internal)
+    !> Plastic increment.
+    real(wp), intent(in) :: increment
+    !> The criterion at the effective stress of the end.
+    type(flow_direction_t), intent(in) :: direction
+    !> Flow stress and its derivatives.
+    type(flow_response_t), intent(out) :: flow
+    real(wp) :: strain
+    integer :: n
+
+    associate (unused => old, no_direction => direction)
+    end associate
+    strain = plastic + increment
+    n = size(self%strain)
+    flow%gradient = 0.0_wp
+    if (strain >= self%strain(n)) then
+      flow%value = self%stress(n) + self%end_slope*(strain - self%strain(n))
+      flow%slope = self%end_slope
+    else
+      n = interval(self%strain, strain)
+      call cubic(strain, self%strain(n:n + 1), self%stress(n:n + 1), self%slope(n:n + 1), &
+                 flow%value, flow%slope)
+    end if
+  end subroutine flow_stress
+
+  !> The interval of a strain, by bisection; the first for one before the table.
+  pure integer function interval(x, strain)
+    !> Rising strains.
+    real(wp), intent(in) :: x(:)
+    !> The strain, below the last of them.
+    real(wp), intent(in) :: strain
+    integer :: above, middle
+
+    interval = 1
+    above = size(x)
+    do while (above - interval > 1)
+      middle = (interval + above)/2
+      if (x(middle) <= strain) then
+        interval = middle
+      else
+        above = middle
+      end if
+    end do
+  end function interval
+
+  !> Hermite's cubic between two points.
+  pure subroutine cubic(x, x_end, y_end, slope_end, value, slope)
+    !> Where it is wanted.
+    real(wp), intent(in) :: x
+    !> Abscissae, values and slopes of the two points.
+    real(wp), intent(in) :: x_end(2), y_end(2), slope_end(2)
+    !> Its value and slope.
+    real(wp), intent(out) :: value, slope
+    real(wp) :: h, t, rise, bend
+
+    h = x_end(2) - x_end(1)
+    t = (x - x_end(1))/h
+    rise = (y_end(2) - y_end(1))/h
+    bend = slope_end(1) + slope_end(2) - 2*rise
+    value = y_end(1) + h*t*(slope_end(1) + t*(rise - slope_end(1) + (t - 1)*bend))
+    slope = slope_end(1) + t*(2*(rise - slope_end(1)) + (3*t - 2)*bend)
+  end subroutine cubic
+
+end module dd3_material_hardening_table
