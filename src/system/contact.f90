@@ -15,6 +15,8 @@ module dd3_system_contact
 
   !> Distance up to which a tool that touches nothing counts as touching, mm.
   real(wp), parameter :: touch = 1.0e-4_wp
+  !> A contact force that makes no more than this of a gap is none, mm.
+  real(wp), parameter :: round_off = 1.0e-12_wp
   !> How far the predictor looks for a tool that touches nothing, mm.
   real(wp), parameter :: far = 1.0e3_wp
   !> A node stays with its tool unless another is nearer by this, mm.
@@ -99,7 +101,7 @@ contains
 
   !> Contact of the predictor: the committed state with the status as it was stored (a slipping node
   !> lies on the cone, round-off would make it stick). A tool that touches nothing takes the nodes
-  !> within `touch` as sticking, without pulling them.
+  !> within `touch` as sticking, without pulling them, unless it moves away from them.
   subroutine predictor_contact(self, model, phase, state)
     !> The contact work.
     type(contact_work_t), intent(inout) :: self
@@ -113,13 +115,14 @@ contains
     real(wp), parameter :: no_slip(3) = 0.0_wp
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    logical :: touching(model%n_tool)
+    logical :: touching(model%n_tool), leaving
     real(wp) :: reach(model%n_tool)
     integer :: c, tool
 
     touching = .false.
     do c = 1, model%n_contact
-      if (state%status(c) /= status_gap) touching(state%contact_tool(c)) = .true.
+      if (state%status(c) == status_gap) cycle
+      if (norm2(state%lambda(:, c)) > phase%penalty*round_off) touching(state%contact_tool(c)) = .true.
     end do
     reach = merge(phase%search_distance, far, touching)
     do c = 1, model%n_contact
@@ -137,7 +140,11 @@ contains
       end if
       self%distance(c) = hit%distance
       self%normal(:, c) = hit%normal
-      if (.not. touching(tool) .and. hit%distance <= touch) self%status(c) = status_stick
+      if (.not. touching(tool)) then
+        leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
+        self%status(c) = status_gap
+        if (hit%distance <= touch .and. .not. leaving) self%status(c) = status_stick
+      end if
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           self%lambda(:, c), no_slip, &
                                       phase%penalty, model%tool(tool)%friction, self%force(:, c), &
