@@ -27,7 +27,7 @@ module dd3_process_corrector
   real(wp), parameter :: largest_step = 20.0_wp
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
   !> holds round-off alone.
-  real(wp), parameter :: negligible_strain = 1.0e-7_wp
+  real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> How the list of nodes whose status did not settle begins.
   character(len=*), parameter :: changing_status = "contact status changes at "
   !> Status patterns remembered to see a cycle.
