@@ -76,7 +76,8 @@ class Run:
         self.increments = sum(row["outcome"] == "accepted" for row in self.status)
         self.retries = sum(row["outcome"] == "retry" for row in self.status)
         self.iterations = sum(int(row["iterations"]) for row in self.status) / max(1, self.increments)
-        self.reason = self.status[-1]["reason"]
+        # The list of nodes behind the number of status changes is left out.
+        self.reason = re.sub(r"( nodes): .*", r"\1", self.status[-1]["reason"])
 
     def force_at(self, travel):
         """Punch force at a travel, by linear interpolation."""
