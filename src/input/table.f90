@@ -74,9 +74,9 @@ contains
         "Further columns of history.csv: <name>_ux, _rx, _x and so "// &
                   "on.", history_keys())
     call describe(table(16), "output", "once", "What is written when.", output_keys())
-    call describe(table(17), "point", "named many later", &
-        "A run of a single material point, without a mesh.", &
-                  point_keys())
+    call describe(table(17), "point", "named many", &
+        "A run of a single material point, without a mesh, by control and target, or by "// &
+        "gradient.", point_keys())
   end function block_table
 
   !> Fills the row of a block.
@@ -163,7 +163,7 @@ contains
       row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
       lower_open=.true., upper_open=.true.), &
       row("yield", kind_law, "", "", "yield criterion and its parameters", &
-          later="yld91 karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"), &
+          later="karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"), &
       row("hardening", kind_law, "", "", "hardening law and its parameters", &
           later="teodosiu_hu"), &
       row("backstress", kind_law, "", "none", &
@@ -344,14 +344,15 @@ contains
       row("angle", kind_real, "degrees", "-", &
       "x lies at this angle from the rolling direction, in the plane of the sheet"), &
       row("control", kind_names, "", "-", &
-      "each component by logarithmic strain e or Cauchy stress s: e11 s22 s33 s12 s23 s13", &
+      "each component by logarithmic strain e or Cauchy stress s, as e11 s22 s33 s12 s23 s13", &
           count=6), &
-      row("target", kind_other, "", "-", "six values, reached linearly in n steps", &
-      repeatable=.true., &
-          form="number... steps = count"), &
+      row("target", kind_other, "-, MPa", "-", &
+      "strains (shears tensorial) and stresses at the end, reached linearly in n steps", &
+      repeatable=.true., form="number number number number number number steps = count"), &
       row("gradient", kind_other, "", "-", &
-      "deformation gradient F11 F12 F13 F21 ... F33, reached linearly in n steps", &
-          repeatable=.true., form="number... steps = count")]
+      "deformation gradient F11 F12 F13 F21 ... F33 from the start, reached linearly in n steps", &
+      repeatable=.true., form= &
+      "number number number number number number number number number steps = count")]
   end function point_keys
 
   !> Position of a block in the table; 0 if there is none.

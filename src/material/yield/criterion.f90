@@ -12,6 +12,8 @@ module dd3_material_yield_criterion
 
   !> A yield criterion.
   type, abstract :: yield_criterion_t
+    !> Whether any parameters within their bounds give a convex surface; known once they are set.
+    logical :: always_convex = .false.
   contains
     !> Says its name, source and parameters.
     procedure(describe_i), deferred, nopass :: describe

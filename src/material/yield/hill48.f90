@@ -154,6 +154,7 @@ contains
     type(law_value_t), intent(in) :: values(:)
     type(coefficients_t) :: c
 
+    self%always_convex = .true.
     c = coefficients(values)
     self%p = 0.0_wp
     self%p(1:3, 1) = [c%g + c%h, -c%h, -c%g]

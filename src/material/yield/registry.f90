@@ -3,6 +3,8 @@
 module dd3_material_yield_registry
   use dd3_material_yield_von_mises, only : von_mises_t
   use dd3_material_yield_hill48, only : hill48_t
+  use dd3_material_yield_hosford, only : hosford_t
+  use dd3_material_yield_yld91, only : yld91_t
   use dd3_material_description, only : description_t
   use dd3_material_yield_criterion, only : yield_slot_t
   implicit none
@@ -11,7 +13,7 @@ module dd3_material_yield_registry
 
   !> Laws that this version does not provide, separated by blanks.
   character(len=*), parameter :: later_criteria = &
-    "hosford yld91 karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"
+    "karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"
 
 contains
 
@@ -20,9 +22,11 @@ contains
     !> The laws, without parameters.
     type(yield_slot_t), allocatable, intent(out) :: entries(:)
 
-    allocate (entries(2))
+    allocate (entries(4))
     allocate (von_mises_t :: entries(1)%law)
     allocate (hill48_t :: entries(2)%law)
+    allocate (hosford_t :: entries(3)%law)
+    allocate (yld91_t :: entries(4)%law)
   end subroutine fill_criteria
 
   !> What each law says of itself, in the order of the registry.

@@ -6,6 +6,7 @@ module dd3_material_yield_von_mises
   use dd3_material_description, only : description_t
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
+  use dd3_material_yield_transformation, only : deviator_of
   implicit none
   private
   public :: von_mises_t
@@ -33,28 +34,17 @@ contains
     allocate (description%rows(0), description%example(0))
   end subroutine describe
 
-  !> Takes nothing.
+  !> Takes no parameters.
   subroutine set(self, values)
     !> The criterion.
     class(von_mises_t), intent(inout) :: self
     !> No values.
     type(law_value_t), intent(in) :: values(:)
 
-    associate (unchanged => self, unused => values)
+    associate (unused => values)
     end associate
+    self%always_convex = .true.
   end subroutine set
-
-  !> Deviator of a stress, from differences of its normal components.
-  pure function deviator_of(t) result(s)
-    !> Stress, MPa.
-    real(wp), intent(in) :: t(6)
-    real(wp) :: s(6)
-
-    s(1) = ((t(1) - t(2)) + (t(1) - t(3)))/3
-    s(2) = ((t(2) - t(3)) + (t(2) - t(1)))/3
-    s(3) = ((t(3) - t(1)) + (t(3) - t(2)))/3
-    s(4:6) = t(4:6)
-  end function deviator_of
 
   !> The equivalent stress.
   pure real(wp) function value(self, stress)

@@ -95,7 +95,8 @@ contains
                  [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
   end function mild_steel
 
-  !> The values, each changed at random by up to a fifth and still without problems.
+  !> The values, each changed at random by up to a fifth (of one, where it is zero) and still
+  !> without problems; exponents become even numbers, without which a law is not smooth.
   function perturbed(kind, description) result(values)
     integer, intent(in) :: kind
     type(description_t), intent(in) :: description
@@ -108,7 +109,13 @@ contains
       values = description%example
       do i = 1, size(values)
         call random_number(change)
-        values(i)%value = values(i)%value*(0.8_wp + 0.4_wp*change)
+        if (values(i)%name == "m") then
+          values(i)%value = 4.0_wp + 2*int(3*change)
+        else if (values(i)%value == 0.0_wp) then
+          values(i)%value = 0.4_wp*change - 0.2_wp
+        else
+          values(i)%value = values(i)%value*(0.8_wp + 0.4_wp*change)
+        end if
       end do
       call check_law(kind, description%name, values, problems)
       if (size(problems) == 0) exit

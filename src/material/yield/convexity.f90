@@ -1,0 +1,116 @@
+!> Whether a criterion with its parameters gives a closed and convex surface: over a fixed set of
+!> directions the equivalent stress must be positive and its second derivative must have no negative
+!> eigenvalue, which the pivots of its elimination show (Sylvester's law of inertia). Half of the
+!> directions lie in the sheet's plane, half anywhere among the deviators; they are points of the
+!> additive sequence of M. Roberts (2018) inside the unit ball. Of criteria that are convex by their
+!> form fewer directions are tried, to see whether the surface is closed.
+module dd3_material_yield_convexity
+  use dd3_base_kinds, only : wp
+  use dd3_material_description, only : problem_t, add_problem
+  use dd3_material_flow, only : flow_direction_t
+  use dd3_material_yield_criterion, only : yield_criterion_t
+  use dd3_material_yield_transformation, only : deviator_of
+  implicit none
+  private
+  public :: check_convexity
+
+  !> Points of the sequence in the plane, and among all deviators; those outside the ball count.
+  integer, parameter :: points(2) = [2000, 10000]
+  !> One in so many is tried of criteria that are convex by their form.
+  integer, parameter :: thinning = 20
+  !> Roots of x^4 = x + 1 and x^7 = x + 1, whose powers generate the sequences.
+  real(wp), parameter :: generator(2) = [1.2207440846057596_wp, 1.1127756842787055_wp]
+  !> Negative eigenvalues up to this part of the largest diagonal entry are round-off.
+  real(wp), parameter :: margin = 1.0e-6_wp
+
+contains
+
+  !> Adds a problem where the surface is open or not convex, with a stress that shows it.
+  subroutine check_convexity(criterion, problems)
+    !> The criterion, with its parameters.
+    class(yield_criterion_t), intent(in) :: criterion
+    !> Receives what is wrong.
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+    type(flow_direction_t) :: at
+    real(wp) :: stress(6)
+    integer :: family, n, step
+
+    step = merge(thinning, 1, criterion%always_convex)
+    do family = 1, 2
+      do n = 1, points(family), step
+        stress = direction(family, n)
+        if (dot_product(stress, stress) > 1.0_wp) cycle
+        call criterion%second_derivative(stress, at)
+        if (.not. at%equivalent > 0.0_wp) then
+          call add_problem(problems, 0, "the yield surface is open at the stress "// &
+                           components(stress), "a closed surface")
+          return
+        else if (criterion%always_convex) then
+          cycle
+        else if (.not. semidefinite(at%second)) then
+          call add_problem(problems, 0, "the yield surface is not convex at the stress "// &
+                           components(stress), "a convex surface")
+          return
+        end if
+      end do
+    end do
+  end subroutine check_convexity
+
+  !> A point of the sequence: a plane stress, or a deviator.
+  pure function direction(family, n) result(stress)
+    !> Plane stress 1, or any deviator 2.
+    integer, intent(in) :: family
+    !> Number of the point.
+    integer, intent(in) :: n
+    real(wp) :: stress(6), point(6)
+    integer :: k
+
+    do k = 1, 6
+      point(k) = 2*modulo(0.5_wp + real(n, wp)*generator(family)**(-k), 1.0_wp) - 1
+    end do
+    if (family == 1) then
+      stress = 0.0_wp
+      stress([1, 2, 6]) = point(1:3)
+    else
+      stress = deviator_of(point)
+    end if
+  end function direction
+
+  !> Whether a symmetric matrix has no negative eigenvalue but for round-off.
+  pure logical function semidefinite(matrix)
+    !> The matrix.
+    real(wp), intent(in) :: matrix(6, 6)
+    real(wp) :: a(6, 6), shift
+    integer :: j, k
+
+    a = matrix
+    shift = 0.0_wp
+    do k = 1, 6
+      shift = max(shift, margin*abs(a(k, k)))
+    end do
+    do k = 1, 6
+      a(k, k) = a(k, k) + shift
+    end do
+    semidefinite = .not. any(abs(a) > 0.0_wp)
+    if (semidefinite) return
+    do k = 1, 6
+      if (.not. a(k, k) > 0.0_wp) return
+      do j = k + 1, 6
+        a(k + 1:, j) = a(k + 1:, j) - (a(k, j)/a(k, k))*a(k + 1:, k)
+      end do
+    end do
+    semidefinite = .true.
+  end function semidefinite
+
+  !> Components of a stress, as the user knows them.
+  function components(stress) result(text)
+    !> The stress.
+    real(wp), intent(in) :: stress(6)
+    character(len=:), allocatable :: text
+    character(len=60) :: line
+
+    write (line, '(6(1x, f5.2))') stress(1:3), stress([6, 4, 5])/sqrt(2.0_wp)
+    text = "(11 22 33 12 23 13) ="//trim(line)
+  end function components
+
+end module dd3_material_yield_convexity
