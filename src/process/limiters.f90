@@ -64,7 +64,7 @@ contains
     if (limit%r < phase%limits%r_min%value) &
       limit = limit_t(phase%limits%r_min%value, "r_min", limit%at)
     call consider(limit, limit_t(growth, "cutback", ""))
-    call consider(limit, gap_limit(model, phase, state, system%contact, prediction))
+    call consider(limit, gap_limit(model, phase, system%contact, prediction))
     ends = limit_t((1.0_wp - state%progress)/prediction%progress, "phase", "")
     call consider(ends, until_limit(model, phase, state, prediction))
     if (next_output <= 1.0_wp) &
@@ -249,40 +249,43 @@ contains
   end function ellipsoid_norm
 
   !> First contact: a tool that touches nothing arrives at touch and no further. The predictor
-  !> closes no gap, so that without this bound it would see no resistance.
-  function gap_limit(model, phase, state, contact, prediction) result(limit)
+  !> closes no gap, so that without this bound it would see no resistance. A tool that touches
+  !> already runs over no node so deep that it would be lost on the wrong side.
+  function gap_limit(model, phase, contact, prediction) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
     !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: state
     !> The contact at the committed state.
     type(contact_work_t), intent(in) :: contact
     !> The trial increment.
     type(prediction_t), intent(in) :: prediction
     type(limit_t) :: limit
 
-    real(wp) :: approach, r
+    real(wp) :: approach, depth, r
+    logical :: touching(model%n_tool)
     integer :: c, node, tool
 
-    limit%name = "first contact"
+    touching = .false.
+    do c = 1, model%n_contact
+      if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
+    end do
     do c = 1, model%n_contact
       tool = contact%tool(c)
       if (tool == 0 .or. contact%status(c) /= status_gap) cycle
-      if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
       if (.not. phase%active(tool)) cycle
       node = model%contact_node(c)
       approach = dot_product(prediction%tool(:, tool) - prediction%displacement(:, node), &
           contact%normal(:, c))
       if (approach <= 0.0_wp) cycle
-      r = (max(contact%distance(c), 0.0_wp) + 0.5_wp*touch)/approach
+      depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
+      r = (max(contact%distance(c), 0.0_wp) + depth)/approach
       if (r < limit%r) then
+        limit%name = merge("gap          ", "first contact", touching(tool))
         limit%r = r
         limit%at = "node "//to_text(node)//" tool "//model%tool(tool)%name
       end if
     end do
-    if (size(state%status) == 0) limit%r = huge(1.0_wp)
   end function gap_limit
 
   !> An early end of the phase by a tool's displacement or force, extrapolated linearly.
@@ -314,6 +317,7 @@ contains
         if (state%contact_tool(c) == tool) rate = rate + dot_product(line, prediction%lambda(:, c))
       end do
       if (value < 0.0_wp) rate = -rate
+      if (abs(value) <= 0.0_wp) rate = abs(rate)
     end if
     value = abs(value)
     if (rate > 0.0_wp) limit%r = max(0.0_wp, phase%until%value - value)/rate
