@@ -1,5 +1,5 @@
-!> What the tests of the system share: a model from an input file, states far from equilibrium with every kind of
-!> contact, and the residual of the mixed equations.
+!> What the tests of the system share: a model from an input file, states far from equilibrium with
+!> every kind of contact, and the residual of the mixed equations.
 module system_cases
   use, intrinsic :: iso_fortran_env, only : error_unit
   use dd3_base_kinds, only : wp
@@ -75,7 +75,8 @@ contains
     end do
   end subroutine random_values
 
-  !> A committed state with plastic history, and a trial state that goes on from it: pulled, bent, twisted.
+  !> A committed state with plastic history, and a trial state that goes on from it: pulled, bent,
+  !> twisted.
   subroutine deform(system, model, old, new)
     !> The system.
     type(system_t), intent(inout) :: system
@@ -100,7 +101,7 @@ contains
       new%x(1, :) = new%x(1, :)*(1.0_wp + 0.004_wp*step)
       new%x(3, :) = new%x(3, :) - 0.0005_wp*model%x0(1, :)**2
       call update_material(system, model, old, new, .false., verdict)
-      if (verdict%outcome /= verdict_converged) error stop "the strip of the test cannot be deformed"
+      if (verdict%outcome /= verdict_converged) error stop "the strip cannot be deformed"
     end do
   end subroutine deform
 
@@ -127,13 +128,13 @@ contains
       along = along - dot_product(along, system%contact%normal(:, c))*system%contact%normal(:, c)
       pressure = merge(6000.0_wp + 3.0_wp*phase%penalty, 1000.0_wp, modulo(c/2, 2) == 0)
       if (modulo(c, 5) == 0) pressure = -60.0_wp
-      new%lambda(:, c) = -(pressure + phase%penalty*system%contact%distance(c))*system%contact%normal(:, c) &
-                         + 300.0_wp*along
+      pressure = pressure + phase%penalty*system%contact%distance(c)
+      new%lambda(:, c) = 300.0_wp*along - pressure*system%contact%normal(:, c)
     end do
     call evaluate_contact(system%contact, model, phase, old, new)
   end subroutine touch_all
 
-  !> Residuals of the mixed equations as the sheet, its contact forces and the pressed tools are moved.
+  !> Residuals of the mixed equations as the sheet, its contact forces and the tools are moved.
   subroutine mixed_residual(system, model, phase, old, new, residual, excess, tool_residual)
     !> The system.
     type(system_t), intent(inout) :: system
@@ -167,7 +168,9 @@ contains
     do c = 1, model%n_contact
       residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + new%lambda(:, c)
       t = system%contact%tool(c)
-      if (t > 0) tool_residual(t) = tool_residual(t) + dot_product(phase%direction(:, t), system%contact%force(:, c))
+      if (t == 0) cycle
+      tool_residual(t) = tool_residual(t) &
+                         + dot_product(phase%direction(:, t), system%contact%force(:, c))
     end do
   end subroutine mixed_residual
 
