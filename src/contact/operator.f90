@@ -14,7 +14,7 @@
 !> N lambda + p n and d(sigma_t)/du = p T - (n.v) N - n (N v)^T, v = lambda + p w.
 !> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and
 !> Curnier, Comput. Methods Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer.
-!> Methods Eng. 39 (1996) 477-495.
+!> Methods Eng. 39 (1996) 165-184.
 module dd3_contact_operator
   use dd3_base_kinds, only : wp
   implicit none

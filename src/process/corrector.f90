@@ -251,7 +251,7 @@ contains
 
     real(wp) :: sum_of_squares, scale
     integer :: tool
-    logical :: forces_met, settled
+    logical :: forces_met
 
     call residual_norm(system, model, phase, correction, sum_of_squares)
     forces_met = .true.
@@ -271,7 +271,6 @@ contains
                 negligible_strain*model%material(1)%laws%elasticity%shear*model%thickness**2)
     correction%criterion = [correction%criterion, (norm2(correction%lambda) &
         + sqrt(sum_of_squares))/scale]
-    settled = all(system%contact%status == correction%status(:, 1))
     correction%status(:, 2:) = correction%status(:, :memory - 1)
     correction%status(:, 1) = system%contact%status
     verdict%norm = correction%criterion(j)
