@@ -231,8 +231,7 @@ contains
     motion = phase%direction(:, tool)*(minval(contact%distance, mask=contact%tool == tool) + touch)
   end function motion_to_touch
 
-  !> The criterion of convergence, eq. (19), and whether it is met with the status of the last
-  !> iteration.
+  !> The criterion of convergence, eq. (19), and whether it is met.
   subroutine judge(system, model, phase, new, j, correction, verdict)
     !> The evaluated system.
     type(system_t), intent(in) :: system
