@@ -57,7 +57,7 @@ contains
     end do
   end subroutine point_moduli
 
-  !> Moduli in the material frame, Kelvin.
+  !> Moduli in the material frame, Kelvin; without strain, as in a predictor, they are the tangent.
   pure subroutine material_moduli(strain, stress, tangent, moduli)
     !> Logarithmic strain increment, Kelvin, material frame.
     real(wp), intent(in) :: strain(6)
@@ -71,6 +71,10 @@ contains
     real(wp) :: z(3, 6), zt(3, 6), b(3, 3), p(3, 3), s(3, 3), cz(6, 3), x(6, 3)
     integer :: i, j
 
+    if (all(abs(strain) <= 0.0_wp)) then
+      moduli = tangent
+      return
+    end if
     call commutator(strain, z)
     call commutator(stress, zt)
     do j = 1, 3

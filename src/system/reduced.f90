@@ -105,8 +105,8 @@ contains
     !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
-    real(wp) :: remaining(3, 3), d(3, 3), residual(3), row(3, 3)
-    integer :: node, tool, block, k, line
+    real(wp) :: remaining(3, 3), d(3, 3), residual(3), share(3)
+    integer :: node, tool, block, k, at, line
     logical :: pressed
 
     node = model%contact_node(c)
@@ -125,24 +125,70 @@ contains
       problem%rhs(3*(block - 1) + line) = problem%rhs(3*(block - 1) + line) &
         + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
     end if
+    share = -matmul(phase%direction(:, tool), contact%e(:, :, c))
+    do k = 1, 3
+      if (.not. phase%prescribed(k, node)) cycle
+      remaining(:, k) = 0.0_wp
+      share(k) = 0.0_wp
+    end do
+    ! The columns of both rows ascend, and all of the node's are among the tool's.
+    if (pressed) at = reduced%row_start(block)
     do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
-      if (reduced%column(k) > model%n_node) cycle
-      row = reduced%value(:, :, k)
-      where (spread(phase%prescribed(:, node), 2, 3)) row = 0.0_wp
-      reduced%value(:, :, k) = matmul(remaining, row)
-      if (pressed) call add_to_tool_row(reduced, block, line, reduced%column(k), &
-        -matmul(matmul(phase%direction(:, tool), contact%e(:, :, c)), row))
+      if (reduced%column(k) > model%n_node) exit
+      if (pressed) then
+        do while (reduced%column(at) < reduced%column(k))
+          at = at + 1
+        end do
+        call add_share(share, reduced%value(:, :, k), line, reduced%value(:, :, at))
+      end if
+      call multiply_left(remaining, reduced%value(:, :, k))
     end do
     k = reduced%diagonal(node)
     reduced%value(:, :, k) = reduced%value(:, :, k) + d
     if (pressed) then
       k = position_of(reduced, node, block)
       reduced%value(:, :, k) = -d
-      row(1, :) = matmul(phase%direction(:, tool), d)
-      call add_to_tool_row(reduced, block, line, node, row(1, :))
-      call add_to_tool_row(reduced, block, line, block, -row(1, :))
+      share = matmul(phase%direction(:, tool), d)
+      call add_to_tool_row(reduced, block, line, node, share)
+      call add_to_tool_row(reduced, block, line, block, -share)
     end if
   end subroutine reduce_node
+
+  !> block := factor times block.
+  pure subroutine multiply_left(factor, block)
+    !> The factor.
+    real(wp), intent(in) :: factor(3, 3)
+    !> The block.
+    real(wp), intent(inout) :: block(3, 3)
+
+    real(wp) :: a, b, c
+    integer :: j
+
+    do j = 1, 3
+      a = block(1, j)
+      b = block(2, j)
+      c = block(3, j)
+      block(:, j) = factor(:, 1)*a + factor(:, 2)*b + factor(:, 3)*c
+    end do
+  end subroutine multiply_left
+
+  !> Adds a share of a node's block to a line of a tool's block.
+  pure subroutine add_share(share, block, line, sum)
+    !> Shares of the block's rows.
+    real(wp), intent(in) :: share(3)
+    !> The node's block.
+    real(wp), intent(in) :: block(3, 3)
+    !> The line.
+    integer, intent(in) :: line
+    !> The tool's block.
+    real(wp), intent(inout) :: sum(3, 3)
+
+    integer :: j
+
+    do j = 1, 3
+      sum(line, j) = sum(line, j) + (share(1)*block(1, j) + share(2)*block(2, j) + share(3)*block(3, j))
+    end do
+  end subroutine add_share
 
   !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium
   !> holds the unknown reaction, and the contact force's component is made to vanish instead.
@@ -277,7 +323,7 @@ contains
     real(wp), intent(out) :: increment(:, :)
 
     real(wp) :: change(3)
-    integer :: c, node, k, b
+    integer :: c, node, k, first
 
     do c = 1, model%n_contact
       if (contact%status(c) == status_gap) then
@@ -287,9 +333,11 @@ contains
       node = model%contact_node(c)
       change = 0.0_wp
       do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
-        b = stiffness%column(k)
-        if (b > model%n_node) cycle
-        change = change + matmul(stiffness%value(:, :, k), problem%solution(3*b - 2:3*b))
+        if (stiffness%column(k) > model%n_node) exit
+        first = 3*stiffness%column(k) - 2
+        change = change + (stiffness%value(:, 1, k)*problem%solution(first) &
+                           + stiffness%value(:, 2, k)*problem%solution(first + 1) &
+                           + stiffness%value(:, 3, k)*problem%solution(first + 2))
       end do
       where (phase%prescribed(:, node)) change = 0.0_wp
       increment(:, c) = -node_residual(phase, contact, problem, node, c) - change
