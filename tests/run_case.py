@@ -9,8 +9,8 @@ A case is a folder with a case.json:
     arguments   further arguments of the program, a list
     exit_code   what the program must return, default 0
     reference   csv file with the columns of history.csv that are compared; default reference.csv where it exists
-    along       the column along which values are interpolated, default travel; where the reference has a column `phase`,
-                only the rows of that phase are looked at
+    along       the column along which values are interpolated, default travel; where the reference has a column `phase`
+                or `point`, only the rows of that phase or point are looked at
     tolerance   per column {"relative": r, "absolute": a}; "*" holds for those not named. A value is accepted where
                 |value - reference| <= a + r |reference|
     last        per column [value, tolerance]: the last row of history.csv
@@ -29,6 +29,7 @@ import shutil
 import subprocess
 import sys
 
+SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "status", "contains", "files",
          "variants", "labels", "timeout", "description"}
 
@@ -91,10 +92,10 @@ def compare_reference(case, folder, history, path):
     compared = 0
     wrong = []
     for row in reference:
-        rows = [r for r in history if "phase" not in row or r["phase"] == row["phase"]]
+        rows = [r for r in history if all(r[key] == row[key] for key in SELECTS if key in row)]
         at = number(row, along, name)
         for column in row:
-            if column in (along, "phase"):
+            if column == along or column in SELECTS:
                 continue
             tolerance = tolerances.get(column, tolerances.get("*"))
             if tolerance is None:

@@ -15,6 +15,7 @@ module dd3_app_job
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_output_interrupt, only : watch_interrupts
+  use dd3_process_points, only : run_points
   use dd3_process_run, only : run_model, run_summary_t
   implicit none
   private
@@ -76,9 +77,13 @@ contains
     if (.not. allocated(error)) then
       call introduce(log, case, model)
       call watch_interrupts()
-      call run_model(model, case%solver, options%threads, directory, log, summary, error)
+      if (size(model%point) > 0) then
+        call run_points(model, directory, log, summary%increments, error)
+      else
+        call run_model(model, case%solver, options%threads, directory, log, summary, error)
+        call conclude(log, summary)
+      end if
       if (.not. allocated(error)) exit_code = exit_end
-      call conclude(log, summary)
     end if
     if (allocated(error)) then
       call log%note("stopped: "//error%message)
@@ -109,9 +114,13 @@ contains
     if (len(model%title) > 0) call log%say(model%title)
     call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
         time(3:4))
-    call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("// &
+    if (size(model%point) > 0) then
+      call log%say("single points, without a mesh")
+    else
+      call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("// &
         trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
         to_text(model%n_contact)//" candidates for contact with "//to_text(model%n_tool)//" tools")
+    end if
     call log%note(echo_case(case))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))

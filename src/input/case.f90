@@ -15,12 +15,16 @@ module dd3_input_case
   public :: tool_name_t, tool_vector_t, displace_t, load_t, until_t, history_t, output_t
   public :: set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
+  public :: point_spec_t, point_goal_t, target_values, gradient_values
   public :: fields_ends, fields_every, fields_at, fields_increments
 
   !> How a node set is chosen.
   integer, parameter :: set_plane = 1, set_box = 2, set_nodes = 3, set_near = 4
   !> What ends a phase early.
   integer, parameter :: until_never = 0, until_displacement = 1, until_force = 2
+  !> Length of the values of a single point's goal: six strains and stresses, nine components of a
+  !> deformation gradient.
+  integer, parameter :: target_values = 6, gradient_values = 9
   !> When fields are written: first and last state only, every so many mm, at given travels, every
   !> so many increments.
   integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3
@@ -307,6 +311,35 @@ module dd3_input_case
     character(len=:), allocatable :: directory
   end type output_t
 
+  !> What a single point is led to.
+  type :: point_goal_t
+    !> Strains and stresses (MPa) 11 22 33 12 23 13, shear strains tensorial; or the deformation
+    !> gradient row by row.
+    real(wp), allocatable :: value(:)
+    !> Number of equal steps.
+    integer :: steps = 1
+    !> Where it was written.
+    type(location_t) :: at
+  end type point_goal_t
+
+  !> A run of a single material point.
+  type :: point_spec_t
+    !> Its name.
+    character(len=:), allocatable :: name
+    !> Position in `case%material`.
+    integer :: material = 0
+    !> Columns: rolling, transverse and normal direction at the start.
+    real(wp) :: frame(3, 3) = 0.0_wp
+    !> Whether the goals are deformation gradients.
+    logical :: by_gradient = .false.
+    !> Whether 11 22 33 12 23 13 is led by stress.
+    logical :: by_stress(6) = .false.
+    !> The goals in order.
+    type(point_goal_t), allocatable :: goal(:)
+    !> The block it was read from.
+    type(block_t) :: source
+  end type point_spec_t
+
   !> The whole job.
   type :: case_t
     !> Name of the input file as given.
@@ -333,6 +366,8 @@ module dd3_input_case
     type(solver_t) :: solver
     !> Phases in order.
     type(phase_t), allocatable :: phase(:)
+    !> Runs of single points in order.
+    type(point_spec_t), allocatable :: point(:)
     !> Columns of the history table.
     type(history_t), allocatable :: history(:)
     !> What is written when.

@@ -9,6 +9,7 @@ module dd3_input_fill
                              boundary_t, limits_t, limit_t, newton_t, history_t, &
                              set_plane, set_box, set_nodes, set_near, fields_every, fields_at, &
                              fields_increments
+  use dd3_input_fill_point, only : fill_point
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_number, only : parse_pair, parse_real
   use dd3_input_table, only : axis_of
@@ -66,6 +67,7 @@ contains
     allocate (case%tool(count_blocks(deck, "tool")))
     allocate (case%boundary(count_blocks(deck, "boundary")))
     allocate (case%phase(count_blocks(deck, "phase")))
+    allocate (case%point(count_blocks(deck, "point")))
     allocate (case%history(count_blocks(deck, "history")))
     case%solver%method = "auto"
     case%solver%ordering = "none"
@@ -88,7 +90,8 @@ contains
     end do
   end function count_blocks
 
-  !> Fills the blocks that bear names; the phases last, as they refer to the tools.
+  !> Fills the blocks that bear names; phases and points last, as they refer to tools and
+  !> materials.
   subroutine fill_named(case, deck)
     !> The case.
     type(case_t), intent(inout) :: case
@@ -124,10 +127,19 @@ contains
       end associate
     end do
     n(1) = 0
+    n(2) = 0
     do i = 1, deck%n_block
-      if (deck%block(i)%keyword /= "phase") cycle
-      n(1) = n(1) + 1
-      call fill_phase(case, n(1), deck%block(i))
+      if (deck%block(i)%keyword == "phase") then
+        n(1) = n(1) + 1
+        call fill_phase(case, n(1), deck%block(i))
+      else if (deck%block(i)%keyword == "point") then
+        n(2) = n(2) + 1
+        associate (point => case%point(n(2)), block => deck%block(i))
+          point%material = position(deck, "material", block%word("material"))
+          if (point%material > 0) point%frame = case%material(point%material)%frame
+          call fill_point(point, block)
+        end associate
+      end if
     end do
   end subroutine fill_named
 

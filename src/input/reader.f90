@@ -9,6 +9,7 @@ module dd3_input_reader
   use dd3_input_deck, only : read_deck
   use dd3_input_fill, only : fill_case
   use dd3_input_phase_check, only : check_phases
+  use dd3_input_point_check, only : check_points
   use dd3_input_reference, only : check_references
   use dd3_input_table, only : block_row_t, block_table
   implicit none
@@ -42,6 +43,7 @@ contains
     if (deck%n_block > 0) then
       call cross_check(case, errors)
       call check_phases(case, errors)
+      call check_points(case, errors)
     end if
     call errors%sort()
   end subroutine read_case

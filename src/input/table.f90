@@ -346,8 +346,8 @@ contains
       row("control", kind_names, "", "-", &
       "each component by logarithmic strain e or Cauchy stress s, as e11 s22 s33 s12 s23 s13", &
           count=6), &
-      row("target", kind_other, "-, MPa", "-", &
-      "strains (shears tensorial) and stresses at the end, reached linearly in n steps", &
+      row("target", kind_other, "", "-", &
+      "strains (shears tensorial) and stresses (MPa) at the end, reached linearly in n steps", &
       repeatable=.true., form="number number number number number number steps = count"), &
       row("gradient", kind_other, "", "-", &
       "deformation gradient F11 F12 F13 F21 ... F33 from the start, reached linearly in n steps", &

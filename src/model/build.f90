@@ -16,6 +16,7 @@ module dd3_model_build
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
+  use dd3_model_points, only : new_points
   implicit none
   private
   public :: new_model
@@ -40,9 +41,12 @@ contains
 
     type(mesh_t) :: mesh
 
+    call take_title(model, case)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
+    call new_points(model, case)
+    if (size(model%point) > 0) return
     call new_mesh(mesh, case, errors)
     if (errors%count > 0) return
     call take_mesh(model, case, mesh, errors)
@@ -53,6 +57,22 @@ contains
     call take_output(model, case, mesh)
     call check_start(model, case, errors)
   end subroutine new_model
+
+  !> Joins the lines of the title.
+  subroutine take_title(model, case)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> The case.
+    type(case_t), intent(in) :: case
+
+    integer :: i
+
+    model%title = ""
+    do i = 1, size(case%title)
+      if (i > 1) model%title = model%title//" "
+      model%title = model%title//trim(adjustl(case%title(i)%s))
+    end do
+  end subroutine take_title
 
   !> Reads the tools' surfaces.
   subroutine read_tools(model, case, errors)
@@ -91,13 +111,8 @@ contains
     type(element_work_t) :: work
     type(error_t), allocatable :: error
     type(verdict_t) :: verdict
-    integer :: e, i
+    integer :: e
 
-    model%title = ""
-    do i = 1, size(case%title)
-      if (i > 1) model%title = model%title//" "
-      model%title = model%title//trim(adjustl(case%title(i)%s))
-    end do
     call new_element(model%element, mesh%element, error)
     if (allocated(error)) then
       call errors%push_input(case%blank(1)%source%at("element"), error%message)

@@ -6,6 +6,7 @@ module dd3_model_model
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_point, only : point_t
   implicit none
   private
   public :: model_t, history_set_t, output_t
@@ -71,6 +72,8 @@ module dd3_model_model
     logical, allocatable :: fixed(:, :)
     !> Phases, in order.
     type(phase_t), allocatable :: phase(:)
+    !> Runs of single points, in order; where there are any there is no mesh.
+    type(point_t), allocatable :: point(:)
     !> Node sets followed in history.csv.
     type(history_set_t), allocatable :: history(:)
     !> Output settings.

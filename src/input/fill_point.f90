@@ -1,0 +1,78 @@
+!> Fills the runs of single material points.
+module dd3_input_fill_point
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : lower_case
+  use dd3_input_block, only : block_t, entry_t
+  use dd3_input_case, only : point_spec_t, point_goal_t
+  implicit none
+  private
+  public :: fill_point
+
+  !> Degrees in a radian.
+  real(wp), parameter :: degrees = 180.0_wp/acos(-1.0_wp)
+
+contains
+
+  !> Fills a run; its material and that one's axes are there already.
+  subroutine fill_point(point, block)
+    !> The run.
+    type(point_spec_t), intent(inout) :: point
+    !> The block.
+    type(block_t), intent(in) :: block
+
+    integer :: i, k
+
+    point%name = block%name
+    point%source = block
+    if (block%has("angle")) point%frame = frame_at(block%number("angle")/degrees)
+    point%by_gradient = block%has("gradient")
+    if (block%has("control")) then
+      k = block%find("control")
+      do i = 1, min(6, size(block%entry(k)%value))
+        point%by_stress(i) = index(lower_case(block%entry(k)%value(i)%text), "s") == 1
+      end do
+    end if
+    allocate (point%goal(count([(is_goal(block%entry(i)), i=1, block%n_entry)])))
+    k = 0
+    do i = 1, block%n_entry
+      if (.not. is_goal(block%entry(i))) cycle
+      k = k + 1
+      call fill_goal(point%goal(k), block%entry(i))
+    end do
+  end subroutine fill_point
+
+  !> Whether an entry is a goal in order.
+  pure logical function is_goal(entry)
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+
+    is_goal = entry%valid .and. (entry%key == "target" .or. entry%key == "gradient")
+  end function is_goal
+
+  !> Fills a goal: its values, then the number of steps.
+  pure subroutine fill_goal(goal, entry)
+    !> The goal.
+    type(point_goal_t), intent(inout) :: goal
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+
+    integer :: last
+
+    last = size(entry%number)
+    goal%value = entry%number(:last - 1)
+    goal%steps = nint(entry%number(last))
+    goal%at = entry%value(1)%at
+  end subroutine fill_goal
+
+  !> The directions of the sheet as columns, where x lies at an angle from the rolling direction.
+  pure function frame_at(angle) result(frame)
+    !> The angle.
+    real(wp), intent(in) :: angle
+    real(wp) :: frame(3, 3)
+
+    frame(:, 1) = [cos(angle), -sin(angle), 0.0_wp]
+    frame(:, 2) = [sin(angle), cos(angle), 0.0_wp]
+    frame(:, 3) = [0.0_wp, 0.0_wp, 1.0_wp]
+  end function frame_at
+
+end module dd3_input_fill_point

@@ -1,0 +1,152 @@
+!> Checks the runs of single material points: what leads them, and that no deformation gradient
+!> turns the material inside out on the way.
+module dd3_input_point_check
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : lower_case, to_text
+  use dd3_input_case, only : case_t, point_spec_t, gradient_values
+  implicit none
+  private
+  public :: check_points
+
+  !> The components in the order of the input.
+  character(len=2), parameter :: component(6) = ["11", "22", "33", "12", "23", "13"]
+  !> Blocks that have no place beside a point.
+  character(len=5), parameter :: of_a_sheet(3) = [character(len=5) :: "blank", "mesh", "phase"]
+  !> Largest strain of a goal, most steps of all goals.
+  real(wp), parameter :: largest_strain = 10.0_wp, most_steps = 1.0e7_wp
+  !> Steps of a gradient that are looked at.
+  integer, parameter :: steps_looked_at = 1000
+
+contains
+
+  !> Checks all of them.
+  subroutine check_points(case, errors)
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, before
+
+    if (size(case%point) == 0) return
+    do i = 1, case%deck%n_block
+      if (.not. any(of_a_sheet == case%deck%block(i)%keyword)) cycle
+      call errors%push_input(case%deck%block(i)%opened, &
+          "a sheet does not go with single points", "*POINT in a file of its own")
+    end do
+    do i = 1, size(case%point)
+      if (.not. case%point(i)%source%valid) cycle
+      before = errors%count
+      call check_lead(case%point(i), errors)
+      if (errors%count > before) cycle
+      call check_goals(case%point(i), errors)
+    end do
+  end subroutine check_points
+
+  !> Checks what leads a point: control and targets, or gradients.
+  subroutine check_lead(point, errors)
+    !> The point.
+    type(point_spec_t), intent(in) :: point
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    associate (block => point%source)
+      if (block%has("gradient") .and. block%has("target")) then
+        call errors%push_input(block%at("gradient"), "gradient stands beside target", "one of them")
+      else if (block%has("gradient") .and. block%has("control")) then
+        call errors%push_input(block%at("control"), "a gradient leads all components", &
+            "no control, or target in place of gradient")
+      else if (block%has("target") .and. .not. block%has("control")) then
+        call errors%push_input(block%at("target"), "control is missing: what do the values mean?", &
+            "control = e11 s22 s33 s12 s23 s13")
+      else if (.not. (block%has("target") .or. block%has("gradient"))) then
+        call errors%push_input(block%opened, "nothing leads the point '"//point%name//"'", &
+            "control and target, or gradient")
+      end if
+      if (block%has("control")) call check_control(point, errors)
+    end associate
+  end subroutine check_lead
+
+  !> Checks the words of the control.
+  subroutine check_control(point, errors)
+    !> The point.
+    type(point_spec_t), intent(in) :: point
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: word
+    integer :: i, k
+
+    k = point%source%find("control")
+    do i = 1, 6
+      word = lower_case(point%source%entry(k)%value(i)%text)
+      if (word == "e"//component(i) .or. word == "s"//component(i)) cycle
+      call errors%push_input(point%source%entry(k)%value(i)%at, "'"//word// &
+          "' is not understood here", "e"//component(i)//" or s"//component(i))
+    end do
+  end subroutine check_control
+
+  !> Checks the goals of a point.
+  subroutine check_goals(point, errors)
+    !> The point.
+    type(point_spec_t), intent(in) :: point
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: from(gradient_values), steps
+    integer :: i
+
+    from = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
+    steps = 0.0_wp
+    do i = 1, size(point%goal)
+      steps = steps + real(point%goal(i)%steps, wp)
+      if (steps > most_steps) then
+        call errors%push_input(point%goal(i)%at, "these are more than 10 million steps")
+        return
+      end if
+      if (point%by_gradient) then
+        call check_gradient(point, i, from, errors)
+        from = point%goal(i)%value
+      else if (any(abs(point%goal(i)%value) > largest_strain .and. .not. point%by_stress)) then
+        call errors%push_input(point%goal(i)%at, "a strain is larger than "// &
+            to_text(largest_strain), "logarithmic strains: 0.1 is about 10 %")
+      end if
+    end do
+  end subroutine check_goals
+
+  !> Checks that the way to a gradient leaves a positive volume.
+  subroutine check_gradient(point, i, from, errors)
+    !> The point.
+    type(point_spec_t), intent(in) :: point
+    !> Number of the goal.
+    integer, intent(in) :: i
+    !> The gradient before.
+    real(wp), intent(in) :: from(gradient_values)
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: part
+    integer :: k, n
+
+    n = min(point%goal(i)%steps, steps_looked_at)
+    do k = 1, n
+      part = real(k, wp)/real(n, wp)
+      if (volume(from + part*(point%goal(i)%value - from)) > 0.0_wp) cycle
+      call errors%push_input(point%goal(i)%at, "det F is not positive "// &
+          trim(merge("on the way", "at the end", k < n)), &
+          "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant all the way")
+      return
+    end do
+  end subroutine check_gradient
+
+  !> The determinant of a matrix given row by row.
+  pure real(wp) function volume(f)
+    !> The matrix.
+    real(wp), intent(in) :: f(gradient_values)
+
+    volume = f(1)*(f(5)*f(9) - f(6)*f(8)) - f(2)*(f(4)*f(9) - f(6)*f(7)) &
+             + f(3)*(f(4)*f(8) - f(5)*f(7))
+  end function volume
+
+end module dd3_input_point_check
