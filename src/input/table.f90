@@ -162,8 +162,7 @@ contains
       row("young", kind_real, "MPa", "", "Young's modulus", lower=zero, lower_open=.true.), &
       row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
       lower_open=.true., upper_open=.true.), &
-      row("yield", kind_law, "", "", "yield criterion and its parameters", &
-          later="karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"), &
+      row("yield", kind_law, "", "", "yield criterion and its parameters"), &
       row("hardening", kind_law, "", "", "hardening law and its parameters", &
           later="teodosiu_hu"), &
       row("backstress", kind_law, "", "none", &

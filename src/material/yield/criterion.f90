@@ -14,6 +14,8 @@ module dd3_material_yield_criterion
   type, abstract :: yield_criterion_t
     !> Whether any parameters within their bounds give a convex surface; known once they are set.
     logical :: always_convex = .false.
+    !> Whether the user takes a surface that is not convex.
+    logical :: convexity_waived = .false.
   contains
     !> Says its name, source and parameters.
     procedure(describe_i), deferred, nopass :: describe

@@ -5,6 +5,11 @@ module dd3_material_yield_registry
   use dd3_material_yield_hill48, only : hill48_t
   use dd3_material_yield_hosford, only : hosford_t
   use dd3_material_yield_yld91, only : yld91_t
+  use dd3_material_yield_karafillis_boyce, only : karafillis_boyce_t
+  use dd3_material_yield_drucker, only : drucker_t
+  use dd3_material_yield_cazacu_barlat2001, only : cazacu_barlat2001_t
+  use dd3_material_yield_yld2004, only : yld2004_t
+  use dd3_material_yield_cpb06, only : cpb06_t
   use dd3_material_description, only : description_t
   use dd3_material_yield_criterion, only : yield_slot_t
   implicit none
@@ -12,8 +17,7 @@ module dd3_material_yield_registry
   public :: fill_criteria, find_criterion, describe_criteria, later_criteria
 
   !> Laws that this version does not provide, separated by blanks.
-  character(len=*), parameter :: later_criteria = &
-    "karafillis_boyce drucker cazacu_barlat2001 yld2004 cpb06"
+  character(len=*), parameter :: later_criteria = ""
 
 contains
 
@@ -22,11 +26,16 @@ contains
     !> The laws, without parameters.
     type(yield_slot_t), allocatable, intent(out) :: entries(:)
 
-    allocate (entries(4))
+    allocate (entries(9))
     allocate (von_mises_t :: entries(1)%law)
     allocate (hill48_t :: entries(2)%law)
     allocate (hosford_t :: entries(3)%law)
     allocate (yld91_t :: entries(4)%law)
+    allocate (karafillis_boyce_t :: entries(5)%law)
+    allocate (drucker_t :: entries(6)%law)
+    allocate (cazacu_barlat2001_t :: entries(7)%law)
+    allocate (yld2004_t :: entries(8)%law)
+    allocate (cpb06_t :: entries(9)%law)
   end subroutine fill_criteria
 
   !> What each law says of itself, in the order of the registry.

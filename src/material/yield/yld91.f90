@@ -1,5 +1,5 @@
-!> The orthotropic criterion of F. Barlat, D. J. Lege and J. C. Brem, "Yld'91": Hosford's function of
-!> the principal values of S = L T,
+!> The orthotropic criterion of F. Barlat, D. J. Lege and J. C. Brem, "Yld'91": Hosford's function
+!> of the principal values of S = L T,
 !>
 !>     2 sb^m = |S1-S2|^m + |S2-S3|^m + |S3-S1|^m
 !>     S11 = [c (T11-T22) - b (T33-T11)]/3    S23 = f T23

@@ -111,6 +111,8 @@ contains
         call random_number(change)
         if (values(i)%name == "m") then
           values(i)%value = 4.0_wp + 2*int(3*change)
+        else if (description%name == "karafillis_boyce" .and. values(i)%name == "k") then
+          values(i)%value = 2.0_wp + int(3*change)
         else if (values(i)%value == 0.0_wp) then
           values(i)%value = 0.4_wp*change - 0.2_wp
         else

@@ -1,0 +1,160 @@
+!> The orthotropic criterion of O. Cazacu, B. Plunkett and F. Barlat, "CPB06", with different
+!> strengths in tension and compression: of the principal values of S = C s, s the deviator,
+!>
+!>     sb^m = sum (|S_i| - k S_i)^m / sum (|P_i| - k P_i)^m
+!>     S11 = C11 s11 + C12 s22 + C13 s33    S23 = C44 s23
+!>     S22 = C12 s11 + C22 s22 + C23 s33    S31 = C55 s31
+!>     S33 = C13 s11 + C23 s22 + C33 s33    S12 = C66 s12
+!>
+!> and P_i = (2 Ci1 - Ci2 - Ci3)/3, so that sb = T11 in tension along rolling. With m = 2 the second
+!> derivative jumps where a principal value is zero.
+module dd3_material_yield_cpb06
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t, row, kind_real
+  use dd3_material_description, only : description_t, problem_t, add_problem, value_of
+  use dd3_material_yield_hosford, only : exponent_row
+  use dd3_material_yield_power, only : exponent_t, new_exponent, powers, take_root
+  use dd3_material_yield_principal, only : principal_criterion_t
+  use dd3_material_yield_transformation, only : new_transformation
+  implicit none
+  private
+  public :: cpb06_t
+
+  !> The criterion.
+  type, extends(principal_criterion_t) :: cpb06_t
+    private
+    !> m.
+    type(exponent_t) :: exponent
+    !> k.
+    real(wp) :: k = 0.0_wp
+    !> What the root is multiplied with.
+    real(wp) :: normalisation = 1.0_wp
+  contains
+    procedure, nopass :: describe
+    procedure, nopass :: check
+    procedure :: set
+    procedure :: principal_function
+  end type cpb06_t
+
+contains
+
+  !> Says its name, source and parameters.
+  subroutine describe(description)
+    !> What the law says of itself.
+    type(description_t), intent(out) :: description
+
+    description%name = "cpb06"
+    description%title = "orthotropic, of exponent m, tension and compression differ"
+    description%source = "O. Cazacu, B. Plunkett, F. Barlat, Int. J. Plasticity 22 (2006) 1171-1194"
+    allocate (description%rows, source=[ &
+      row("C11", kind_real, "", "", "factor of s11 in S11; 1 in the isotropic case"), &
+      row("C12", kind_real, "", "", "factor of s22 in S11; 0 in the isotropic case"), &
+      row("C13", kind_real, "", "", "factor of s33 in S11"), &
+      row("C22", kind_real, "", "", "factor of s22 in S22"), &
+      row("C23", kind_real, "", "", "factor of s33 in S22"), &
+      row("C33", kind_real, "", "", "factor of s33 in S33"), &
+      row("C44", kind_real, "", "1", "factor of s23"), &
+      row("C55", kind_real, "", "1", "factor of s31"), &
+      row("C66", kind_real, "", "1", "factor of s12"), &
+      row("k", kind_real, "", "", "difference of tension and compression; 0: none", &
+          -1.0_wp, 1.0_wp), &
+      exponent_row()])
+    allocate (description%example, source=[ &
+      law_value_t("C11", 1.0_wp), law_value_t("C12", 0.0_wp), law_value_t("C13", 0.0_wp), &
+      law_value_t("C22", 1.0_wp), law_value_t("C23", 0.0_wp), law_value_t("C33", 1.0_wp), &
+      law_value_t("C44", 1.0_wp), law_value_t("C55", 1.0_wp), law_value_t("C66", 1.0_wp), &
+      law_value_t("k", 0.0_wp), law_value_t("m", 4.0_wp)])
+  end subroutine describe
+
+  !> Finds parameters that leave no strength along rolling.
+  subroutine check(values, problems)
+    !> The values given.
+    type(law_value_t), intent(in) :: values(:)
+    !> Receives what is wrong.
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+    real(wp) :: p(3), k
+
+    if (size(problems) > 0) return
+    p = along_rolling(values)
+    k = value_of(values, "k")
+    if (any(abs(p) - k*p > 0.0_wp)) return
+    call add_problem(problems, 0, "no equivalent stress along rolling: |P_i| = k P_i", &
+                     "C11 other than the mean of C12 and C13, or |k| below 1")
+  end subroutine check
+
+  !> Block of the normal components.
+  pure function normal_block(values) result(c)
+    !> The parameters.
+    type(law_value_t), intent(in) :: values(:)
+    real(wp) :: c(3, 3)
+
+    c(:, 1) = [value_of(values, "C11"), value_of(values, "C12"), value_of(values, "C13")]
+    c(:, 2) = [value_of(values, "C12"), value_of(values, "C22"), value_of(values, "C23")]
+    c(:, 3) = [value_of(values, "C13"), value_of(values, "C23"), value_of(values, "C33")]
+  end function normal_block
+
+  !> P of unit tension along rolling.
+  pure function along_rolling(values) result(p)
+    !> The parameters.
+    type(law_value_t), intent(in) :: values(:)
+    real(wp) :: p(3)
+
+    p = matmul(normal_block(values), [2.0_wp, -1.0_wp, -1.0_wp])/3
+  end function along_rolling
+
+  !> Takes its parameters.
+  subroutine set(self, values)
+    !> The criterion.
+    class(cpb06_t), intent(inout) :: self
+    !> Its parameters.
+    type(law_value_t), intent(in) :: values(:)
+    real(wp) :: e(6), first(6), second(6, 6), value
+
+    self%always_convex = .true.
+    call new_transformation(self%transformation(1), normal_block(values), &
+                            [value_of(values, "C44", 1.0_wp), value_of(values, "C55", 1.0_wp), &
+                             value_of(values, "C66", 1.0_wp)])
+    call new_exponent(self%exponent, value_of(values, "m"))
+    self%k = value_of(values, "k")
+    self%normalisation = 1.0_wp
+    e(1:3) = along_rolling(values)
+    e(4:6) = 0.0_wp
+    call self%principal_function(e, value, first, second)
+    self%normalisation = 1/value
+  end subroutine set
+
+  !> The function of the principal values, with its derivatives; zero where no term is positive.
+  pure subroutine principal_function(self, e, q, first, second)
+    !> The criterion.
+    class(cpb06_t), intent(in) :: self
+    !> Principal values, MPa.
+    real(wp), intent(in) :: e(6)
+    !> The function, MPa.
+    real(wp), intent(out) :: q
+    !> Its derivatives.
+    real(wp), intent(out) :: first(6), second(6, 6)
+    real(wp) :: f_first(6), f_second(6, 6), slope(3), x(3), scale, power(3), d(3), dd(3)
+    integer :: i
+
+    q = 0.0_wp
+    first = 0.0_wp
+    second = 0.0_wp
+    slope = sign(1.0_wp, e(1:3)) - self%k
+    x = slope*e(1:3)
+    scale = maxval(x)
+    if (.not. scale > 0.0_wp) return
+    x = x/scale
+    call powers(3, self%exponent, x, power, d, dd)
+    f_second = 0.0_wp
+    do i = 1, 3
+      f_first(i) = slope(i)*d(i)
+      f_second(i, i) = slope(i)**2*dd(i)
+    end do
+    call take_root(3, self%exponent%value, scale, 1.0_wp, sum(power), f_first, f_second, q, &
+                   first, second)
+    q = self%normalisation*q
+    first = self%normalisation*first
+    second = self%normalisation*second
+  end subroutine principal_function
+
+end module dd3_material_yield_cpb06
