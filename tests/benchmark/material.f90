@@ -44,15 +44,40 @@ program benchmark_material
 
 contains
 
-  !> A law with its example; Hill's with a mild steel in place of the isotropic one.
+  !> A law with its example; criteria with a published set of parameters in place of the isotropic
+  !> one.
   type(law_choice_t) function choice_of(description) result(choice)
     !> The law.
     type(description_t), intent(in) :: description
 
     choice = law_choice_t(description%name, description%example)
-    if (description%name /= "hill48") return
-    choice%values = [law_value_t("F", 0.284_wp), law_value_t("G", 0.358_wp), &
-                     law_value_t("H", 0.642_wp), law_value_t("N", 1.289_wp)]
+    select case (description%name)
+    case ("hill48")
+      choice%values = [law_value_t("F", 0.284_wp), law_value_t("G", 0.358_wp), &
+                            law_value_t("H", 0.642_wp), law_value_t("N", 1.289_wp)]
+    case ("hosford")
+      choice%values%value = 8.0_wp
+    case ("yld91")
+      choice%values%value = [1.0674_wp, 0.8559_wp, 1.1296_wp, 1.0_wp, 1.0_wp, 1.2970_wp, 8.0_wp]
+    case ("karafillis_boyce")
+      choice%values%value = [15.0_wp, 0.81_wp, 0.559_wp, 1.103_wp, 1.120_wp, 1.5_wp, 1.5_wp, &
+                             1.460_wp]
+    case ("drucker")
+      choice%values%value = [1.2129_wp, 0.81324_wp, 0.87964_wp, 1.11288_wp, 1.0_wp, 1.0_wp, &
+                             0.94426_wp]
+    case ("cazacu_barlat2001")
+      choice%values%value = [0.586_wp, 1.05_wp, 0.823_wp, 0.96_wp, 1.0_wp, 1.0_wp, 1.44_wp, &
+                             0.061_wp, -1.302_wp, -0.281_wp, -0.375_wp, 1.0_wp, 1.0_wp, 1.0_wp, &
+                             1.0_wp, 0.445_wp, 1.0_wp, 0.5_wp]
+    case ("yld2004")
+      choice%values%value = [-0.069888_wp, 0.936408_wp, 0.079143_wp, 1.003060_wp, 0.524741_wp, &
+                             1.363180_wp, 1.023770_wp, 1.069060_wp, 0.954322_wp, 0.981171_wp, &
+                             0.476741_wp, 0.575316_wp, 0.866827_wp, 1.145010_wp, -0.079294_wp, &
+                             1.051660_wp, 1.147100_wp, 1.404620_wp, 8.0_wp]
+    case ("cpb06")
+      choice%values%value = [1.0_wp, 0.2285_wp, 0.0374_wp, 1.2967_wp, 0.2439_wp, 0.3422_wp, &
+                             1.0_wp, 1.0_wp, 1.0_wp, 0.1556_wp, 2.0_wp]
+    end select
   end function choice_of
 
   !> Times one combination and prints a line.
