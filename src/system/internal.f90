@@ -1,8 +1,9 @@
 !> Internal forces and stiffness of the sheet: the loop over the elements and their integration
 !> points.
 !>
-!> Elements of one colour share no node, so that threads may add up their forces side by side; the
-!> colours come one after the other, which makes every sum the same for any number of threads.
+!> Blocks of elements of one colour share no node, so that threads may add up their forces side by
+!> side; the colours come one after the other, which makes every sum the same for any number of
+!> threads.
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
@@ -39,28 +40,30 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     type(verdict_t) :: mine
-    integer :: colour, k, e, thread
+    integer :: colour, k, e, block, thread
 
     verdict%outcome = verdict_converged
     new%internal_force = 0.0_wp
     if (with_stiffness) self%stiffness%value = 0.0_wp
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(mine, colour, k, e, thread)
+    !$omp& private(mine, colour, k, e, block, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
-      !$omp do schedule(static)
+      !$omp do schedule(dynamic)
       do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        e = self%coloured_element(k)
-        call update_element(model, old, new, e, self%element(thread), self%tangent(:, :, :, e), &
-            mine)
-        if (mine%outcome == verdict_converged) then
-          if (with_stiffness) call add_stiffness(self, model, e, self%element(thread))
-        else
-          !$omp critical (failed_element)
-          if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
-          !$omp end critical (failed_element)
-        end if
+        block = self%coloured_block(k)
+        do e = self%block_start(block), self%block_start(block + 1) - 1
+          call update_element(model, old, new, e, self%element(thread), &
+                              self%tangent(:, :, :, e), mine)
+          if (mine%outcome == verdict_converged) then
+            if (with_stiffness) call add_stiffness(self, model, e, self%element(thread))
+          else
+            !$omp critical (failed_element)
+            if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
+            !$omp end critical (failed_element)
+          end if
+        end do
       end do
       !$omp end do
     end do
@@ -93,9 +96,8 @@ contains
       call element_strain(model%element, old%orientation(:, :, :, e), work)
       do p = 1, model%element%n_point
         call material%update(old%stress(:, p, e), old%internal(:material%n_internal, p, e), &
-            work%strain(:, p), &
-                             new%stress(:, p, e), new%internal(:material%n_internal, p, e), &
-                             tangent(:, :, p), &
+                             work%strain(:, p), new%stress(:, p, e), &
+                             new%internal(:material%n_internal, p, e), tangent(:, :, p), &
                              new%plastic(p, e), verdict)
         verdict%element = e
         verdict%point = p
@@ -122,23 +124,25 @@ contains
     type(state_t), intent(in) :: new
 
     type(verdict_t) :: verdict
-    integer :: colour, k, e, thread
+    integer :: colour, k, e, block, thread
 
     self%stiffness%value = 0.0_wp
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(verdict, colour, k, e, thread)
+    !$omp& private(verdict, colour, k, e, block, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
-      !$omp do schedule(static)
+      !$omp do schedule(dynamic)
       do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        e = self%coloured_element(k)
-        associate (nodes => model%connectivity(:, e), work => self%element(thread))
-          call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
-          call element_strain(model%element, old%orientation(:, :, :, e), work)
-          work%stress(:, :) = new%stress(:, :, e)
-        end associate
-        call add_stiffness(self, model, e, self%element(thread))
+        block = self%coloured_block(k)
+        do e = self%block_start(block), self%block_start(block + 1) - 1
+          associate (nodes => model%connectivity(:, e), work => self%element(thread))
+            call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
+            call element_strain(model%element, old%orientation(:, :, :, e), work)
+            work%stress(:, :) = new%stress(:, :, e)
+          end associate
+          call add_stiffness(self, model, e, self%element(thread))
+        end do
       end do
       !$omp end do
     end do
@@ -156,24 +160,26 @@ contains
     type(state_t), intent(in) :: old
 
     type(verdict_t) :: verdict
-    integer :: colour, k, e, thread
+    integer :: colour, k, e, block, thread
 
     self%stiffness%value = 0.0_wp
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(verdict, colour, k, e, thread)
+    !$omp& private(verdict, colour, k, e, block, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
-      !$omp do schedule(static)
+      !$omp do schedule(dynamic)
       do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        e = self%coloured_element(k)
-        associate (nodes => model%connectivity(:, e), work => self%element(thread))
-          call element_gradients(model%element, old%x(:, nodes), work, verdict)
-          work%strain = 0.0_wp
-          work%rotation(:, :, :) = old%orientation(:, :, :, e)
-          work%stress(:, :) = old%stress(:, :, e)
-        end associate
-        call add_stiffness(self, model, e, self%element(thread))
+        block = self%coloured_block(k)
+        do e = self%block_start(block), self%block_start(block + 1) - 1
+          associate (nodes => model%connectivity(:, e), work => self%element(thread))
+            call element_gradients(model%element, old%x(:, nodes), work, verdict)
+            work%strain = 0.0_wp
+            work%rotation(:, :, :) = old%orientation(:, :, :, e)
+            work%stress(:, :) = old%stress(:, :, e)
+          end associate
+          call add_stiffness(self, model, e, self%element(thread))
+        end do
       end do
       !$omp end do
     end do

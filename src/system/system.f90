@@ -17,6 +17,8 @@ module dd3_system_system
 
   !> Elements for each thread below which the threads wait for one another longer than they work.
   integer, parameter :: least_elements = 128
+  !> Elements in a block that one thread takes at a time.
+  integer, parameter :: block_size = 32
 
   !> Everything the assembly and the solution work on.
   type :: system_t
@@ -34,8 +36,10 @@ module dd3_system_system
     integer :: threads = 1
     !> See above.
     logical :: parallel = .false.
-    !> Elements sorted by colour; elements of one colour share no node, `(n_element)`.
-    integer, allocatable :: coloured_element(:)
+    !> Blocks of consecutive elements, `(n_block + 1)`: where each begins, and the end of the last.
+    integer, allocatable :: block_start(:)
+    !> Blocks sorted by colour; blocks of one colour share no node, `(n_block)`.
+    integer, allocatable :: coloured_block(:)
     !> Where each colour begins among them, `(n_colour + 1)`.
     integer, allocatable :: colour_start(:)
     !> Contact operators of the candidates.
@@ -74,7 +78,7 @@ contains
     allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
     self%threads = threads
     self%parallel = threads > 1 .and. model%n_element >= least_elements*threads
-    call colour_elements(model, self%coloured_element, self%colour_start)
+    call colour_blocks(self, model)
     allocate (self%element(threads))
     do i = 1, threads
       call new_element_work(self%element(i), model%element)
@@ -85,35 +89,38 @@ contains
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
 
-  !> Colours the elements, greedily in their order, so that elements of one colour share no node.
-  subroutine colour_elements(model, coloured, first)
+  !> Colours the blocks of elements, greedily in their order, so that blocks of one colour share no
+  !> node: two colours for a mesh numbered section by section.
+  subroutine colour_blocks(self, model)
+    !> Gets the blocks and their colours.
+    type(system_t), intent(inout) :: self
     !> The model.
     type(model_t), intent(in) :: model
-    !> The elements sorted by colour.
-    integer, allocatable, intent(out) :: coloured(:)
-    !> Where each colour begins among them.
-    integer, allocatable, intent(out) :: first(:)
 
     logical, allocatable :: left(:), taken(:)
-    integer :: e, n
+    integer :: i, n, n_block
 
-    allocate (coloured(model%n_element), left(model%n_element), taken(model%n_node))
+    n_block = (model%n_element + block_size - 1)/block_size
+    self%block_start = [(min(1 + i*block_size, model%n_element + 1), i=0, n_block)]
+    allocate (self%coloured_block(n_block), left(n_block), taken(model%n_node))
     left = .true.
-    first = [1]
+    self%colour_start = [1]
     n = 0
     do while (any(left))
       taken = .false.
-      do e = 1, model%n_element
-        if (.not. left(e)) cycle
-        if (any(taken(model%connectivity(:, e)))) cycle
-        taken(model%connectivity(:, e)) = .true.
-        left(e) = .false.
+      do i = 1, n_block
+        if (.not. left(i)) cycle
+        associate (nodes => model%connectivity(:, self%block_start(i):self%block_start(i + 1) - 1))
+          if (any(taken(reshape(nodes, [size(nodes)])))) cycle
+          taken(reshape(nodes, [size(nodes)])) = .true.
+        end associate
+        left(i) = .false.
         n = n + 1
-        coloured(n) = e
+        self%coloured_block(n) = i
       end do
-      first = [first, n + 1]
+      self%colour_start = [self%colour_start, n + 1]
     end do
-  end subroutine colour_elements
+  end subroutine colour_blocks
 
   !> Nodes each pressed tool's row couples with: its candidates and their neighbours.
   subroutine coupled_nodes(model, first, coupled)
