@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Draw the figures of the bending study from its results, numbered like the paper's.
+
+    plot_study.py --work bending_study.out --output docs/images
+
+study_fig3, 6, 8, 9: travel reached, by penalty and mesh; study_fig4: the sheet at 2.0 mm with the status of its contact
+candidates; study_fig7: B of the node that controls the limit on the contact forces. A figure whose cases are not there
+is left out. Needs utils/requirements.txt.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import h5py  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from study import controlling, read_table  # noqa: E402
+
+PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
+MESHES = ["a", "b"]
+END = 40.0
+# For each figure the endings of its cases' names, and what they mean.
+BARS = {
+    "3": [("", "no force control")],
+    "6": [("-c0.1", "c = 0.1"), ("-c1", "c = 1"), ("-c1000", "c = 1000")],
+    "8": [("-normal", "normal force: 1, 1000, 1000"), ("-tangential", "tangential force: 1000, 1, 1")],
+    "9": [("-c1-alone", "c = 1"), ("-c1000-alone", "c = 1000")],
+}
+COLOURS = {"a": ["#c2571a", "#e08a4f", "#f2bd94"], "b": ["#1f5f99", "#5a95c9", "#a9cbe8"]}
+# Status of a candidate as fields.vtkhdf has it: name, colour, marker.
+STATUS = [("gap", "0.75", "o"), ("stick", "#1f5f99", "s"), ("slip", "#c2571a", "D")]
+
+
+def bars(results, number, path):
+    """Travel reached by each case of a set; the paper's Figs 3, 6, 8 and 9."""
+    groups = [(mesh, *ending) for mesh in MESHES for ending in BARS[number]]
+    if any(f"{mesh}-{p}{ending}" not in results for mesh, ending, _ in groups for p in PENALTIES):
+        return False
+    figure, axes = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
+    width = 0.84 / len(groups)
+    for i, (mesh, ending, label) in enumerate(groups):
+        place = np.arange(len(PENALTIES)) + (i - 0.5 * (len(groups) - 1)) * width
+        travel = [float(results[f"{mesh}-{p}{ending}"]["travel"]) for p in PENALTIES]
+        shade = COLOURS[mesh][i % len(BARS[number])]
+        drawn = axes.bar(place, travel, 0.94 * width, color=shade, label=f"mesh ({mesh}), {label}")
+        axes.bar_label(drawn, fmt="%.1f", fontsize=7, padding=1)
+    axes.axhline(END, color="0.5", linewidth=0.8, linestyle="--", zorder=0)
+    axes.set_xticks(range(len(PENALTIES)), [f"p = {float(p):.0f}" for p in PENALTIES])
+    axes.set_ylabel("punch travel reached (mm)")
+    axes.set_ylim(0.0, 1.08 * END)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, fontsize=8, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+    figure.savefig(path, dpi=150)
+    return True
+
+
+def control_force(work, results, path):
+    """B of the controlling node against travel; the paper's Fig. 7."""
+    cases = [f"{mesh}-1e3-c1" for mesh in MESHES]
+    if any(case not in results for case in cases):
+        return False
+    figure, axes = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
+    for mesh, case in zip(MESHES, cases):
+        points = list(controlling(read_table(work / case / "status.csv")))
+        colour = COLOURS[mesh][0]
+        axes.plot([t for t, *_ in points], [b for *_, b in points], ".", markersize=2.5, color=colour)
+        median = sorted(b for *_, b in points)[len(points) // 2]
+        axes.plot([], [], "o", color=colour, label=f"mesh ({mesh}), median {median:.0f} N")
+    axes.set_yscale("log")
+    axes.set_xlim(0.0, END)
+    axes.set_xlabel("punch travel (mm)")
+    axes.set_ylabel("B of the controlling node (N)")
+    axes.grid(True, color="0.9", linewidth=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(path, dpi=150)
+    return True
+
+
+def nodes_at(folder, travel):
+    """Positions and contact status of the nodes at a travel, and the elements' corners."""
+    with h5py.File(folder / "fields.vtkhdf", "r") as file:
+        grid = file["VTKHDF"]
+        steps = grid["Steps"]
+        values = steps["Values"][: int(steps.attrs["NSteps"])]
+        step = int(np.flatnonzero(np.abs(values - travel) <= np.abs(values - travel).min() + 2e-6)[-1])
+        count = int(grid["NumberOfPoints"][0])
+        first = int(steps["PointOffsets"][step])
+        points = grid["Points"][first:first + count]
+        first = int(steps["PointDataOffsets"]["contact_status"][step])
+        status = grid["PointData"]["contact_status"][first:first + count]
+        elements = grid["Connectivity"][...].reshape(-1, 8)
+    return points, status.astype(int).ravel(), elements, float(values[step])
+
+
+def sheets(work, results, path):
+    """Both sides of both sheets at 2.0 mm, seen from above; the paper's Fig. 4."""
+    cases = [f"{mesh}-1e3" for mesh in MESHES]
+    if any(case not in results for case in cases):
+        return False
+    figure, axes = plt.subplots(3, 2, figsize=(10.0, 4.6), layout="constrained", sharex=True,
+                                gridspec_kw={"height_ratios": [1.0, 1.0, 0.55]})
+    for column, case in enumerate(cases):
+        points, status, elements, travel = nodes_at(work / case, 2.0)
+        for row, (side, faces) in enumerate((("upper side: punch, blank-holder", elements[1::2, 4:]),
+                                             ("lower side: die", elements[0::2, :4]))):
+            plot = axes[row][column]
+            for face in faces:
+                plot.plot(*points[np.append(face, face[0]), :2].T, color="0.85", linewidth=0.7, zorder=1)
+            nodes = np.unique(faces)
+            for value, (name, colour, marker) in enumerate(STATUS):
+                chosen = nodes[status[nodes] == value]
+                plot.plot(*points[chosen, :2].T, marker, color=colour, markersize=4.5 if value else 3.0, label=name)
+            plot.set_title(f"mesh ({MESHES[column]}), {travel:.1f} mm, {side}", fontsize=8)
+            plot.set_ylabel("y (mm)", fontsize=8)
+        plot = axes[2][column]
+        edge = points[:, 1] < 0.2
+        plot.plot(points[edge, 0], points[edge, 2], ".", markersize=3, color="0.3")
+        plot.set_title("the edge y = 0 from the front", fontsize=8)
+        plot.set_xlabel("x (mm)", fontsize=8)
+        plot.set_ylabel("z (mm)", fontsize=8)
+    for plot in axes.ravel():
+        plot.tick_params(labelsize=7)
+        plot.spines[["top", "right"]].set_visible(False)
+    handles, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, frameon=False, fontsize=8, ncols=3, loc="outside lower center")
+    figure.savefig(path, dpi=150)
+    return True
+
+
+def main():
+    """Draws what can be drawn."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of the study's results")
+    parser.add_argument("--output", type=Path, help="folder of the pictures (default: the same)")
+    options = parser.parse_args()
+    try:
+        results = {row["case"]: row for row in read_table(options.work / "results.csv")}
+    except OSError as error:
+        sys.exit(f"{options.work}/results.csv: {error.strerror}")
+    folder = options.output or options.work
+    for number in BARS:
+        if bars(results, number, folder / f"study_fig{number}.png"):
+            print(folder / f"study_fig{number}.png")
+    for number, draw in (("4", sheets), ("7", control_force)):
+        if draw(options.work, results, folder / f"study_fig{number}.png"):
+            print(folder / f"study_fig{number}.png")
+
+
+if __name__ == "__main__":
+    main()

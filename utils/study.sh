@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# The bending study of docs/bending_study.md by one command: installs what is missing, builds, runs every case of
+# input_files/bending_study/cases.csv on the cores there are, gathers bending_study.out/results.csv and draws the
+# figures. Called again it goes on where it was interrupted; what is done is not repeated.
+#
+#   utils/study.sh                       all cases
+#   utils/study.sh --quick               the four cases of quick.csv, to 5 mm, into bending_study_quick.out
+#   utils/study.sh --sets "fig3 fig6"    some sets of cases
+#
+#   --cores N       runs at a time (default: the number of cores)
+#   --work DIR      folder of the results
+#   --program FILE  a program that is built already; nothing is built then
+#   -- ...          further options of snakemake, such as --dry-run or --profile utils/study_slurm
+set -euo pipefail
+cd "$(dirname "$0")/.."
+cores=$(nproc) sets="" work="" program="" quick=no
+while [ $# -gt 0 ]; do
+  case $1 in
+    --cores) cores=$2; shift 2 ;;
+    --sets) sets=$2; shift 2 ;;
+    --work) work=$2; shift 2 ;;
+    --program) program=$(realpath "$2"); shift 2 ;;
+    --quick) quick=yes; shift ;;
+    --) shift; break ;;
+    *) sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0"; exit 1 ;;
+  esac
+done
+
+python=${PYTHON:-.venv/bin/python}
+if ! "$python" -c "import snakemake, matplotlib" 2>/dev/null; then
+  utils/install_needed.sh
+  "$python" -c "import snakemake" 2>/dev/null || {
+    echo "== installing the workflow engine of utils/requirements-study.txt into .venv"
+    "$python" -m pip install -q --disable-pip-version-check -r utils/requirements-study.txt
+  }
+fi
+if [ -z "$program" ]; then
+  echo "== building"
+  mkdir -p build/release
+  { cmake --preset release && cmake --build --preset release --target dd3imp; } >build/release/build.log 2>&1 ||
+    { tail -n 60 build/release/build.log; exit 1; }
+  program=$PWD/build/release/dd3imp
+fi
+
+settings="python=$(realpath -s "$python") program=$program"
+if [ $quick = yes ]; then
+  work=${work:-bending_study_quick.out}
+  set -- --config $settings "cases=$PWD/input_files/bending_study/quick.csv" figures=no "$@"
+else
+  work=${work:-bending_study.out}
+  set -- --config $settings "sets=$sets" "$@"
+fi
+mkdir -p "$work"
+exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going \
+  --rerun-incomplete --rerun-triggers mtime params input --quiet all "$@"

@@ -1,0 +1,81 @@
+# The workflow of the bending study: a run for every row of the table of cases, one table of results, its figures.
+# utils/study.sh calls it; docs/bending_study.md says how it runs on a cluster. Exit code 3 of a run, stopped before
+# its end, is a result: `study.py case` notes it and succeeds.
+import csv
+import sys
+from pathlib import Path
+
+TOOLS = Path(workflow.basedir)
+PYTHON = config.get("python", sys.executable)
+PROGRAM = config.get("program", str(TOOLS.parent / "build" / "release" / "dd3imp"))
+TABLE = Path(config.get("cases", TOOLS.parent / "input_files" / "bending_study" / "cases.csv"))
+WANTED = str(config.get("sets") or "").split()
+FIGURES = str(config.get("figures", "yes")) == "yes"
+
+with open(TABLE, newline="", encoding="utf-8") as file:
+    CASES = {row["case"]: row for row in csv.DictReader(file) if not WANTED or row["set"] in WANTED}
+if not CASES:
+    sys.exit(f"{TABLE}: no case in the sets {' '.join(WANTED)}")
+
+
+wildcard_constraints:
+    case=r"[\w.+-]+",
+
+
+localrules:
+    all,
+    table,
+    figures,
+
+
+rule all:
+    input:
+        expand("{case}/run.json", case=CASES),
+        "results.csv",
+        ["figures.txt"] if FIGURES else [],
+
+
+# One run of the program. Its result hangs on the row of the table, not on the rest of the table.
+rule case:
+    input:
+        deck=TABLE.parent / "study.dat",
+        tools=sorted((TABLE.parent.parent / "bending").glob("*.bez")),
+        program=ancient(PROGRAM),
+    output:
+        "{case}/run.json",
+    params:
+        row=lambda wildcards: CASES[wildcards.case],
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=20,
+    message:
+        "{wildcards.case}"
+    shell:
+        "{PYTHON} {TOOLS}/study.py case {wildcards.case} --cases {TABLE} --program {PROGRAM} --work . "
+        "--sets " + " ".join(WANTED)
+
+
+rule table:
+    input:
+        expand("{case}/run.json", case=CASES),
+    output:
+        "results.csv",
+    params:
+        rows=CASES,
+    message:
+        "results.csv"
+    shell:
+        "{PYTHON} {TOOLS}/study.py table --cases {TABLE} --program {PROGRAM} --work . --only " + " ".join(CASES)
+
+
+rule figures:
+    input:
+        "results.csv",
+        script=TOOLS / "plot_study.py",
+    output:
+        "figures.txt",
+    message:
+        "figures"
+    shell:
+        "{PYTHON} {TOOLS}/plot_study.py --work . > {output}"

@@ -1,0 +1,186 @@
+"""The tables of docs/bending_study.md, from the results of the bending study; `study.py report` writes them."""
+
+from functools import cache
+
+from bending_tables import Run, differences, table
+from bending_tables import write as fill
+from study import read_table
+
+PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
+MESHES = ["a", "b"]
+END = 40.0
+# Endings of the cases' names and what they stand for.
+FORCE = {"": "off", "-c0.1": "0.1, 0.1, 0.1", "-c1": "1, 1, 1", "-c1000": "1000, 1000, 1000",
+         "-normal": "1, 1000, 1000", "-tangential": "1000, 1, 1"}
+ALONE = {"-c1-alone": "c = 1, trial 1 mm", "-c1000-alone": "c = 1000, trial 1 mm",
+         "-c1-alone-trial0.1": "c = 1, trial 0.1 mm", "-c1000-alone-trial0.1": "c = 1000, trial 0.1 mm"}
+VARIANTS = {"": "as in Fig. 3", "-c1": "c = 1", "-held": "u_y = 0", "-held-c1": "u_y = 0, c = 1",
+            "-half_holder": "blank-holder 11.3 kN", "-c1-floor0": "c = 1, no floor of B"}
+MAX8 = {"-max8": "off", "-c1-max8": "c = 1", "-c1000-max8": "c = 1000", "-held-max8": "off, u_y = 0"}
+PAPER_COST = {"-c0.1": "+150 %", "-c1": "+7 %", "-c1000": "-2 %", "-normal": "+3 %", "-tangential": "-8 %"}
+SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e-6", "trial0.1": "trial 0.1 mm",
+               "trial0.5": "trial 0.5 mm", "halved": "halved limits", "iterations10": "at most 10 iterations",
+               "iterations100": "at most 100 iterations", "cgs": "solver `cgs` alone", "umfpack": "solver `umfpack`"}
+
+
+class Results:
+    """The table of results, and the runs behind it."""
+
+    def __init__(self, work):
+        self.work = work
+        self.row = {row["case"]: row for row in read_table(work / "results.csv")}
+        self.run = cache(lambda case: Run(work / case))
+
+    def number(self, case, column):
+        return float(self.row[case][column])
+
+    def travel(self, case):
+        """Travel reached, one decimal; `-` where the case was not run."""
+        return f"{self.number(case, 'travel'):.1f}" if case in self.row else "-"
+
+    def finished(self, ending):
+        """Runs of mesh (b) with this ending that reached the end."""
+        cases = [f"b-{p}{ending}" for p in PENALTIES]
+        return [case for case in cases if self.number(case, "travel") > END - 1e-6]
+
+
+def percent(value, base):
+    """A change in per cent with its sign."""
+    return f"{100 * (value / base - 1):+.0f} %"
+
+
+def travel_table(results, endings, heading, meshes=MESHES):
+    """Travel by mesh, variant and penalty."""
+    rows = [[f"({mesh[0]}){' s = 0.5' if mesh == 'b05' else ''}", label] + [results.travel(f"{mesh}-{p}{ending}") for p in PENALTIES]
+            for mesh in meshes for ending, label in endings.items() if f"{mesh}-{PENALTIES[0]}{ending}" in results.row]
+    return table(["mesh", heading] + [f"p = {p}" for p in PENALTIES], rows)
+
+
+def travels(results):
+    """Travel reached, mm: Figs 3, 6 and 8."""
+    return travel_table(results, FORCE, "c, d, e")
+
+
+def alone(results):
+    """Travel reached with the limit on the contact forces alone, mm: Fig. 9."""
+    return travel_table(results, ALONE, "force limit alone")
+
+
+def eight(results):
+    """Travel reached with at most 8 iterations, mm."""
+    return travel_table(results, MAX8, "force limit")
+
+
+def variants(results):
+    """Travel reached in the variants, mm."""
+    return travel_table(results, VARIANTS, "variant", ["a", "b", "b05"])
+
+
+def costs(results):
+    """Cost of the runs of mesh (b) that reached the end, against those without force control."""
+    def mean(ending, column):
+        cases = results.finished(ending)
+        return sum(results.number(case, column) for case in cases) / len(cases)
+
+    columns = ["increments", "newton_iterations", "linear_iterations", "seconds"]
+    base = {column: mean("", column) for column in columns}
+    rows = [["off", str(len(results.finished("")))] + [f"{base[c]:.{1 if c == 'seconds' else 0}f}" for c in columns] + [""]]
+    for ending, paper in PAPER_COST.items():
+        rows.append([FORCE[ending], str(len(results.finished(ending)))] + [percent(mean(ending, c), base[c]) for c in columns] + [paper])
+    return table(["c, d, e", "runs", "increments", "Newton iterations", "linear iterations", "processor time, s", "paper, CPU"], rows)
+
+
+def equal_travel(results):
+    """What both meshes cost up to the travel where mesh (a) stops."""
+    rows = []
+    for p in PENALTIES:
+        end = results.number(f"a-{p}", "travel")
+        cells = []
+        for mesh in MESHES:
+            status = [r for r in results.run(f"{mesh}-{p}").status if r["outcome"] == "accepted" and float(r["travel"]) <= end + 1e-6]
+            cells.append((len(status), sum(int(r["iterations"]) for r in status), sum(float(r["seconds"]) for r in status)))
+        rows.append([p, f"{end:.1f}"] + [f"{a} / {b}" for a, b in list(zip(*cells))[:2]]
+                    + [f"{cells[0][2]:.2f} / {cells[1][2]:.2f}", f"{cells[0][2] / cells[1][2]:.2f}"])
+    return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)", "ratio"], rows)
+
+
+def control(results):
+    """The node that controls the limit on the contact forces, c = d = e = 1."""
+    rows = []
+    for ending, floor in (("-c1", "0.1"), ("-c1-floor0", "0")):
+        for p in PENALTIES:
+            pair = [results.row[f"{mesh}-{p}{ending}"] for mesh in MESHES]
+            rows.append([floor, p] + [f"{float(r['B_median']):.3g}" for r in pair] + [f"{float(r['flange']):.1f} %" for r in pair]
+                        + [f"{float(r['share_force']) + float(r['share_r_min']):.0f} %" for r in pair])
+    return table(["floor", "p", "median B (a), N", "(b), N", "node in the flange (a)", "(b)", "increments it sets (a)", "(b)"], rows)
+
+
+def limiters(results):
+    """What set the increments of the stroke, p = 1e3."""
+    names = ["rotation", "strain", "stress", "force", "r_max", "r_min"]
+    rows = [[f"({mesh})", label] + [f"{results.number(f'{mesh}-1e3{ending}', 'share_' + name):.1f} %" for name in names]
+            for mesh in MESHES for ending, label in FORCE.items()]
+    return table(["mesh", "c, d, e"] + [f"`{name}`" for name in names], rows)
+
+
+def sensitivity(results):
+    """What the numerical choices change, p = 1e3, free edges."""
+    rows = []
+    for mesh in MESHES:
+        base = f"{mesh}-1e3"
+        for ending, label in {"": "as in Fig. 3", **SENSITIVITY}.items():
+            case = f"{base}-{ending}" if ending else base
+            cells = [f"({mesh})", label, f"{results.number(case, 'travel'):.2f}", results.row[case]["increments"],
+                     results.row[case]["newton_iterations"], results.row[case]["linear_iterations"]]
+            rows.append(cells + (difference(results, case, base) if ending else ["", ""]))
+    return table(["mesh", "run", "reached, mm", "increments", "Newton iterations", "linear iterations",
+                  "largest difference of the force", "median"], rows)
+
+
+def difference(results, case, base):
+    """Largest and median difference of the punch force at equal travel, as cells."""
+    values = sorted(differences(results.run(case), results.run(base)))
+    if not values:
+        return ["", ""]
+    return [f"{values[-1][0]:.3f} % at {values[-1][1]:.1f} mm", f"{values[len(values) // 2][0]:.4f} %"]
+
+
+def agreement(results):
+    """How far the punch force depends on p and on the limits: against p = 1e4 without force control."""
+    rows = []
+    for mesh in MESHES:
+        base = f"{mesh}-1e4"
+        for ending, label in {**FORCE, "-c1-alone-trial0.1": "1, 1, 1 alone, trial 0.1 mm"}.items():
+            found = [(*max(values), p) for p in PENALTIES if f"{mesh}-{p}{ending}" != base
+                     and (values := differences(results.run(f"{mesh}-{p}{ending}"), results.run(base)))]
+            medians = [sorted(differences(results.run(f"{mesh}-{p}{ending}"), results.run(base))) for *_, p in found]
+            worst = max(found)
+            rows.append([f"({mesh})", label, f"{worst[0]:.2f} % (p = {worst[2]}, {worst[1]:.1f} mm)",
+                         f"{max(v[len(v) // 2][0] for v in medians):.3f} %"])
+    return table(["mesh", "c, d, e", "largest difference", "largest of the medians"], rows)
+
+
+def stops(results):
+    """Why the runs without force control stopped."""
+    rows = []
+    for ending, label in (("", "30"), ("-max8", "8")):
+        for mesh in MESHES:
+            for p in PENALTIES:
+                row = results.row[f"{mesh}-{p}{ending}"]
+                if row["code"] != "0":
+                    last = results.run(row["case"]).status[-1]
+                    rows.append([label, f"({mesh})", p, f"{float(row['travel']):.2f}", last["gap"] + ", " + last["stick"] + ", " + last["slip"],
+                                 row["reason"]])
+    return table(["iterations at most", "mesh", "p", "reached, mm", "gap, stick, slip", "reason"], rows)
+
+
+TABLES = [travels, alone, eight, variants, costs, equal_travel, control, limiters, sensitivity, agreement, stops]
+
+
+def write(work, document):
+    """Puts the tables into the document, and the number of runs and their time."""
+    results = Results(work)
+    tables = {make.__name__: make(results) for make in TABLES}
+    seconds = sum(float(row["seconds"]) for row in results.row.values())
+    tables["size"] = f"{len(results.row)} runs, {seconds:.0f} s of processor time together."
+    fill(document, tables)
