@@ -163,8 +163,7 @@ contains
       row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
       lower_open=.true., upper_open=.true.), &
       row("yield", kind_law, "", "", "yield criterion and its parameters"), &
-      row("hardening", kind_law, "", "", "hardening law and its parameters", &
-          later="teodosiu_hu"), &
+      row("hardening", kind_law, "", "", "hardening law and its parameters"), &
       row("backstress", kind_law, "", "none", &
       "back-stress law and its parameters; several add up", repeatable=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &

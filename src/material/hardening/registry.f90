@@ -9,6 +9,7 @@ module dd3_material_hardening_registry
   use dd3_material_hardening_ludwick, only : ludwick_t
   use dd3_material_hardening_hockett_sherby, only : hockett_sherby_t
   use dd3_material_hardening_table, only : table_t
+  use dd3_material_hardening_teodosiu_hu, only : teodosiu_hu_t
   use dd3_material_description, only : description_t
   use dd3_material_hardening_law, only : hardening_slot_t
   implicit none
@@ -17,7 +18,7 @@ module dd3_material_hardening_registry
 
   !> Laws that this version does not provide, separated by blanks.
   character(len=*), parameter :: later_hardenings = &
-    "teodosiu_hu"
+    ""
 
 contains
 
@@ -26,7 +27,7 @@ contains
     !> The laws, without parameters.
     type(hardening_slot_t), allocatable, intent(out) :: entries(:)
 
-    allocate (entries(8))
+    allocate (entries(9))
     allocate (perfect_t :: entries(1)%law)
     allocate (linear_t :: entries(2)%law)
     allocate (swift_t :: entries(3)%law)
@@ -35,6 +36,7 @@ contains
     allocate (ludwick_t :: entries(6)%law)
     allocate (hockett_sherby_t :: entries(7)%law)
     allocate (table_t :: entries(8)%law)
+    allocate (teodosiu_hu_t :: entries(9)%law)
   end subroutine fill_hardenings
 
   !> What each law says of itself, in the order of the registry.
