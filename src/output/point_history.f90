@@ -1,5 +1,6 @@
-!> history.csv of single material points: strain, stress, plastic strain and flow stress, one row for
-!> the start of each point and one for every n-th step; the last step of a point is always there.
+!> history.csv of single material points: strain, stress, plastic strain and flow stress, one row
+!> for the start of each point and one for every n-th step; the last step of a point is always
+!> there.
 module dd3_output_point_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
