@@ -1,9 +1,9 @@
-!> Whether a criterion with its parameters gives a closed and convex surface: over a fixed set of
-!> directions the equivalent stress must be positive and its second derivative must have no negative
-!> eigenvalue, which the pivots of its elimination show (Sylvester's law of inertia). Half of the
-!> directions lie in the sheet's plane, half anywhere among the deviators; they are points of the
-!> additive sequence of M. Roberts (2018) inside the unit ball. Of criteria that are convex by their
-!> form fewer directions are tried, to see whether the surface is closed.
+!> Whether a criterion with its parameters gives a closed and convex surface. Closed: the pure shears
+!> have an equivalent stress, and over the deviators without shears it nowhere falls to a small part
+!> of its largest value. Convex: over a fixed set of directions the second derivative must have no
+!> negative eigenvalue, which the pivots of its elimination show (Sylvester's law of inertia); half
+!> of the directions lie in the sheet's plane, half anywhere among the deviators. They are points of
+!> the additive sequence of M. Roberts (2018) inside the unit ball.
 module dd3_material_yield_convexity
   use dd3_base_kinds, only : wp
   use dd3_material_description, only : problem_t, add_problem
@@ -16,8 +16,11 @@ module dd3_material_yield_convexity
 
   !> Points of the sequence in the plane, and among all deviators; those outside the ball count.
   integer, parameter :: points(2) = [1500, 5000]
-  !> One in so many is tried of criteria that are convex by their form.
-  integer, parameter :: thinning = 20
+  !> Deviators without shears that are tried, and the smallest part of the largest equivalent stress
+  !> among them: less than the distance of neighbours, so that a zero between them is seen.
+  integer, parameter :: angles = 720
+  !> See above.
+  real(wp), parameter :: smallest_part = 0.005_wp
   !> Roots of x^4 = x + 1 and x^7 = x + 1, whose powers generate the sequences.
   real(wp), parameter :: generator(2) = [1.2207440846057596_wp, 1.1127756842787055_wp]
   !> Negative eigenvalues up to this part of the largest diagonal entry are round-off.
@@ -33,28 +36,60 @@ contains
     type(problem_t), allocatable, intent(inout) :: problems(:)
     type(flow_direction_t) :: at
     real(wp) :: stress(6)
-    integer :: family, n, step
+    integer :: family, n
 
-    step = merge(thinning, 1, criterion%always_convex)
+    call check_closed(criterion, problems)
+    if (size(problems) > 0 .or. criterion%always_convex .or. criterion%convexity_waived) return
     do family = 1, 2
-      do n = 1, points(family), step
+      do n = 1, points(family)
         stress = direction(family, n)
         if (dot_product(stress, stress) > 1.0_wp) cycle
         call criterion%second_derivative(stress, at)
-        if (.not. at%equivalent > 0.0_wp) then
-          call add_problem(problems, 0, "the yield surface is open at the stress "// &
-                           components(stress), "a closed surface")
-          return
-        else if (criterion%always_convex .or. criterion%convexity_waived) then
-          cycle
-        else if (.not. semidefinite(at%second)) then
-          call add_problem(problems, 0, "the yield surface is not convex at the stress "// &
-                           components(stress), "a convex surface")
-          return
-        end if
+        if (at%equivalent > 0.0_wp .and. semidefinite(at%second)) cycle
+        call add_problem(problems, 0, "the yield surface is not convex at the stress "// &
+                         components(stress), "a convex surface")
+        return
       end do
     end do
   end subroutine check_convexity
+
+  !> Adds a problem where a stress has no equivalent stress.
+  subroutine check_closed(criterion, problems)
+    !> The criterion, with its parameters.
+    class(yield_criterion_t), intent(in) :: criterion
+    !> Receives what is wrong.
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+    real(wp) :: value(angles), stress(6)
+    integer :: n
+
+    do n = 4, 6
+      stress = 0.0_wp
+      stress(n) = 1.0_wp
+      if (criterion%value(stress) > 0.0_wp .and. criterion%value(-stress) > 0.0_wp) cycle
+      call add_problem(problems, 0, "the yield surface is open at the stress "// &
+                       components(stress), "a closed surface")
+      return
+    end do
+    do n = 1, angles
+      value(n) = criterion%value(without_shear(n))
+    end do
+    n = minloc(value, 1)
+    if (value(n) > smallest_part*maxval(value)) return
+    call add_problem(problems, 0, "the yield surface is open near the stress "// &
+                     components(without_shear(n)), "a closed surface")
+  end subroutine check_closed
+
+  !> A deviator without shears.
+  pure function without_shear(n) result(stress)
+    !> Its number.
+    integer, intent(in) :: n
+    real(wp) :: stress(6), angle
+
+    angle = 2*acos(-1.0_wp)*real(n, wp)/angles
+    stress = 0.0_wp
+    stress(1:3) = cos(angle)*[0.5_wp, -0.5_wp, 0.0_wp] + &
+                  sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
+  end function without_shear
 
   !> A point of the sequence: a plane stress, or a deviator.
   pure function direction(family, n) result(stress)
