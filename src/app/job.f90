@@ -124,6 +124,9 @@ contains
     call log%note(echo_case(case))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
+      if (.not. model%material(i)%laws%criterion%convexity_waived) cycle
+      call log%say("warning: material "//trim(model%material_name(i))// &
+                   ": its yield surface is taken though it may not be convex")
     end do
   end subroutine introduce
 
