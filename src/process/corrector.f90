@@ -23,6 +23,12 @@ module dd3_process_corrector
 
   !> A pressed tool's force is met within this share of it.
   real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
+  !> Share of the criterion's tolerance below which all but the tools' forces counts as settled.
+  real(wp), parameter :: settled = 0.1_wp
+  !> Share of its force within which a tool's own motion may do the rest; attempts at that.
+  real(wp), parameter :: nearly_met = 1.0e-4_wp
+  !> See above.
+  integer, parameter :: most_balances = 4
   !> The largest displacement an iteration may make, as a multiple of the sheet's thickness.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
@@ -98,6 +104,7 @@ contains
     type(verdict_t), intent(inout) :: verdict
 
     integer :: j
+    logical :: moved
 
     system%problem%displacement = 0.0_wp
     system%problem%tool_motion = 0.0_wp
@@ -106,6 +113,15 @@ contains
       call evaluate(system, model, phase, old, new, j, verdict)
       if (verdict%outcome /= verdict_converged) return
       call judge(system, model, phase, new, j, correction, verdict)
+      if (verdict%outcome /= verdict_converged .and. j > 1 &
+          .and. verdict%norm < settled*phase%newton%tolerance) then
+        call balance_tools(system, model, phase, old, new, moved)
+        if (moved) then
+          correction%criterion = correction%criterion(:j - 1)
+          correction%status(:, :memory - 1) = correction%status(:, 2:)
+          call judge(system, model, phase, new, j, correction, verdict)
+        end if
+      end if
       if (verdict%outcome == verdict_converged) then
         new%lambda = system%contact%force
         return
@@ -165,13 +181,30 @@ contains
     !> Whether the material could be integrated.
     type(verdict_t), intent(inout) :: verdict
 
-    integer :: c, node, tool
-
     call system%profile%start()
     call update_material(system, model, old, new, j == 1, verdict)
     verdict%iterations = j
     call system%profile%add(section_material)
     if (verdict%outcome /= verdict_converged) return
+    call evaluate_forces(system, model, phase, old, new)
+    call system%profile%add(section_contact)
+  end subroutine evaluate
+
+  !> Contact of the trial state, and the residuals from it and the internal forces.
+  subroutine evaluate_forces(system, model, phase, old, new)
+    !> The system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+
+    integer :: c, node, tool
+
     call evaluate_contact(system%contact, model, phase, old, new)
     associate (problem => system%problem, contact => system%contact)
       problem%residual = new%internal_force - new%external_force
@@ -191,8 +224,88 @@ contains
         problem%tool_motion(:, tool) = motion_to_touch(contact, phase, new, tool)
       end do
     end associate
+  end subroutine evaluate_forces
+
+  !> Meets the forces of the pressed tools by the tools' own motion, once all else is settled. Where
+  !> many nodes lie flat under a tool, the last of them open and close for many iterations with
+  !> forces of a millionth of the tool's: far below the nodes' own residuals, but not below what is
+  !> asked of the tool's balance. A force farther off than `nearly_met` is left to the iterations.
+  subroutine balance_tools(system, model, phase, old, new, moved)
+    !> The evaluated system.
+    type(system_t), intent(inout) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: old
+    !> The trial state.
+    type(state_t), intent(inout) :: new
+
+    !> Whether a tool was moved.
+    logical, intent(out) :: moved
+
+    real(wp) :: way(model%n_tool)
+    integer :: attempt, tool
+
+    moved = .false.
+    call system%profile%start()
+    do attempt = 1, most_balances
+      way = 0.0_wp
+      do tool = 1, model%n_tool
+        if (.not. phase%pressed(tool)) cycle
+        associate (residual => abs(system%problem%tool_residual(tool)), &
+                   force => pressed_force(phase, new, tool))
+          if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
+            way(tool) = way_to_balance(system, phase, tool)
+        end associate
+      end do
+      if (all(abs(way) <= 0.0_wp)) exit
+      do tool = 1, model%n_tool
+        new%tool_displacement(:, tool) = new%tool_displacement(:, tool) &
+            + way(tool)*phase%direction(:, tool)
+      end do
+      moved = .true.
+      call evaluate_forces(system, model, phase, old, new)
+    end do
     call system%profile%add(section_contact)
-  end subroutine evaluate
+  end subroutine balance_tools
+
+  !> How far a pressed tool has to go along its line until its force is met; zero where nothing
+  !> resists it.
+  pure real(wp) function way_to_balance(system, phase, tool) result(way)
+    !> The system with its contact evaluated.
+    type(system_t), intent(in) :: system
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The tool.
+    integer, intent(in) :: tool
+
+    real(wp) :: stiffness, line(3)
+    integer :: c
+
+    line = phase%direction(:, tool)
+    stiffness = 0.0_wp
+    do c = 1, size(system%contact%tool)
+      if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
+      stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
+    end do
+    way = 0.0_wp
+    if (stiffness > 0.0_wp) way = system%problem%tool_residual(tool)/stiffness
+  end function way_to_balance
+
+  !> What a pressed tool's force is measured by, N.
+  pure real(wp) function pressed_force(phase, new, tool)
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(in) :: new
+    !> The tool.
+    integer, intent(in) :: tool
+
+    pressed_force = max(norm2(new%tool_load(:, tool)), &
+        1.0e-3_wp*norm2(phase%press_start(:, tool)), 1.0e-3_wp*norm2(phase%press_end(:, tool)))
+  end function pressed_force
 
   !> A tool that is pressed and touches nothing; 0 where there is none.
   pure integer function lost_tool(system, model, phase, new)
@@ -208,7 +321,8 @@ contains
     do lost_tool = model%n_tool, 1, -1
       if (.not. phase%pressed(lost_tool)) cycle
       if (norm2(new%tool_load(:, lost_tool)) <= 0.0_wp) cycle
-      if (.not. any(system%contact%tool == lost_tool .and. system%contact%status /= status_gap)) return
+      if (.not. any(system%contact%tool == lost_tool &
+                    .and. system%contact%status /= status_gap)) return
     end do
   end function lost_tool
 
@@ -262,9 +376,8 @@ contains
       end if
       sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
       forces_met = forces_met &
-          .and. abs(system%problem%tool_residual(tool)) <= tool_force_tolerance &
-                   *max(norm2(new%tool_load(:, tool)), 1.0e-3_wp*norm2(phase%press_start(:, tool)), &
-                        1.0e-3_wp*norm2(phase%press_end(:, tool)))
+          .and. abs(system%problem%tool_residual(tool)) &
+          <= tool_force_tolerance*pressed_force(phase, new, tool)
     end do
     scale = max(norm2(new%lambda), norm2(new%internal_force), &
                 negligible_strain*model%material(1)%laws%elasticity%shear*model%thickness**2)
