@@ -1,0 +1,140 @@
+#!/usr/bin/env -S uv run --script
+# /// script
+# requires-python = ">=3.11"
+# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
+# ///
+"""Draw what materials do at a point: tension curves, r-values against the angle, yield surfaces with their normals.
+
+    plot_point.py steel.dat aluminium.dat --program build/release/dd3imp --output materials.png
+
+The files hold *MATERIAL blocks, and no sheet. Each material is drawn in one colour. All values come from runs of the
+program with single points (*POINT): tension at angles to the rolling direction; plane stress by ratios of strain, whose
+stresses over the flow stress are the yield surface and whose strains are its normals. Back-stresses count as stress.
+"""
+
+import argparse
+import csv
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+TENSION = "e11 s22 s33 s12 s23 s13"
+PLANE = "e11 e22 s33 s12 s23 s13"
+
+
+def names_in(path):
+    """Names of the materials of a file."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        sys.exit(f"{path}: {error.strerror}")
+    found = re.findall(r"^\s*\*material\s+([\w.-]+)", text, re.IGNORECASE | re.MULTILINE)
+    if not found:
+        sys.exit(f"{path}: no *MATERIAL")
+    return [name.lower() for name in found]
+
+
+def point(name, material, control, targets, angle=None):
+    """A *POINT block."""
+    lines = [f"*POINT {name}", f"  material = {material}", f"  control = {control}"]
+    if angle is not None:
+        lines.append(f"  angle = {angle:g}")
+    lines += [f"  target = {' '.join(f'{value:.9g}' for value in values)} steps={steps}" for values, steps in targets]
+    return "\n".join(lines)
+
+
+def deck(path, materials, angles, ratios, strain):
+    """Input that takes each material along all paths."""
+    blocks = [f'*INCLUDE "{Path(path).resolve()}"']
+    for m, material in enumerate(materials):
+        for angle in angles:
+            elastic, end = [1e-6, 0, 0, 0, 0, 0], [strain, 0, 0, 0, 0, 0]
+            blocks.append(point(f"t{m}_{angle:g}", material, TENSION, [(elastic, 1), (end, 100)], angle))
+        for i, ratio in enumerate(ratios):
+            end = [0.05 * np.cos(ratio), 0.05 * np.sin(ratio), 0, 0, 0, 0]
+            blocks.append(point(f"p{m}_{i}", material, PLANE, [(end, 10)], 0))
+    return "\n".join(blocks) + "\n"
+
+
+def run(program, text):
+    """Rows of the history of a run, by point."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "points.dat"
+        file.write_text(text, encoding="utf-8")
+        command = [program, "--quiet", "--output", str(Path(folder) / "out"), str(file)]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as error:
+            sys.exit(f"{program}: {error.strerror}")
+        if done.returncode != 0:
+            sys.exit(done.stderr.strip() or f"{program} failed")
+        with open(Path(folder) / "out" / "history.csv", newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    points = {}
+    for row in rows:
+        points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
+    return points
+
+
+def r_value(rows):
+    """Ratio of the plastic strains across, over the second half of a tension test."""
+    share = rows[1]["e22"] / rows[1]["s11"], rows[1]["e33"] / rows[1]["s11"]
+    across, through = ([row[key] - part * row["s11"] for row in (rows[len(rows) // 2], rows[-1])]
+                       for key, part in zip(("e22", "e33"), share))
+    return (across[1] - across[0]) / (through[1] - through[0])
+
+
+def draw(axes, points, m, label, angles, ratios, colour):
+    """Draws one material."""
+    for angle, style in ((0, "-"), (45, "--"), (90, ":")):
+        rows = points[f"t{m}_{angle}"]
+        text = f"{label}, {angle}°" if angle else label
+        axes[0].plot([row["e11"] for row in rows], [row["s11"] for row in rows], style, color=colour, label=text)
+    axes[1].plot(angles, [r_value(points[f"t{m}_{angle:g}"]) for angle in angles], "o-", color=colour, label=label)
+    ends = [points[f"p{m}_{i}"][-1] for i in range(len(ratios))]
+    x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in ("s11", "s22"))
+    axes[2].plot(np.append(x, x[0]), np.append(y, y[0]), color=colour, label=label)
+    axes[2].quiver(x[::6], y[::6], np.cos(ratios[::6]), np.sin(ratios[::6]), color=colour, width=0.004, scale=14)
+
+
+def main():
+    """Draws the picture."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", nargs="+", help="file with *MATERIAL blocks")
+    parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
+    parser.add_argument("--strain", type=float, default=0.2, help="strain of the tension curves (0.2)")
+    parser.add_argument("--output", default="materials.png", help="picture (materials.png)")
+    options = parser.parse_args()
+    angles = list(range(0, 91, 15))
+    ratios = np.radians(np.arange(0, 360, 5))
+    figure, axes = plt.subplots(1, 3, figsize=(15, 5), layout="constrained")
+    number = 0
+    for path in options.file:
+        materials = names_in(path)
+        points = run(options.program, deck(path, materials, angles, ratios, options.strain))
+        for m, material in enumerate(materials):
+            draw(axes, points, m, material, angles, ratios, f"C{number % 10}")
+            number += 1
+    axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title="Tension")
+    axes[1].set(xlabel="angle to the rolling direction (°)", ylabel="r-value", title="r-values", xticks=angles)
+    axes[2].set(xlabel="s11 / flow stress", ylabel="s22 / flow stress", title="Yield surface", aspect="equal")
+    axes[2].margins(0.15)
+    for part in axes:
+        part.grid(alpha=0.3)
+        part.legend(fontsize="small")
+    try:
+        figure.savefig(options.output, dpi=120)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{options.output}: {error}")
+
+
+if __name__ == "__main__":
+    main()
