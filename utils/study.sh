@@ -51,5 +51,8 @@ else
   set -- --config $settings "sets=$sets" "$@"
 fi
 mkdir -p "$work"
-exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going \
+# The engine's own lock would stay behind when it is killed; this one goes with the process.
+exec 9>"$work/.lock"
+flock --nonblock 9 || { echo "error: another study.sh works in $work" >&2; exit 1; }
+exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going --nolock \
   --rerun-incomplete --rerun-triggers mtime params input --quiet all "$@"

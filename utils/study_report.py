@@ -98,7 +98,8 @@ def equal_travel(results):
         cells = []
         for mesh in MESHES:
             status = [r for r in results.run(f"{mesh}-{p}").status if r["outcome"] == "accepted" and float(r["travel"]) <= end + 1e-6]
-            cells.append((len(status), sum(int(r["iterations"]) for r in status), sum(float(r["seconds"]) for r in status)))
+            share = sum(float(r["seconds"]) for r in status) / sum(float(r["seconds"]) for r in results.run(f"{mesh}-{p}").status)
+            cells.append((len(status), sum(int(r["iterations"]) for r in status), share * results.number(f"{mesh}-{p}", "seconds")))
         rows.append([p, f"{end:.1f}"] + [f"{a} / {b}" for a, b in list(zip(*cells))[:2]]
                     + [f"{cells[0][2]:.2f} / {cells[1][2]:.2f}", f"{cells[0][2] / cells[1][2]:.2f}"])
     return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)", "ratio"], rows)
