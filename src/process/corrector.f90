@@ -12,7 +12,8 @@ module dd3_process_corrector
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_system_contact, only : contact_work_t, evaluate_contact, touch
+  use dd3_process_balance, only : balance_tools
+  use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force, tool_force_tolerance
   use dd3_system_internal, only : update_material, assemble_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced, solve_info_t
@@ -21,14 +22,8 @@ module dd3_process_corrector
   private
   public :: correct, correction_t
 
-  !> A pressed tool's force is met within this share of it.
-  real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
   !> Share of the criterion's tolerance below which all but the tools' forces counts as settled.
   real(wp), parameter :: settled = 0.1_wp
-  !> Share of its force within which a tool's own motion may do the rest; attempts at that.
-  real(wp), parameter :: nearly_met = 1.0e-4_wp
-  !> See above.
-  integer, parameter :: most_balances = 4
   !> The largest displacement an iteration may make, as a multiple of the sheet's thickness.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
@@ -189,161 +184,6 @@ contains
     call evaluate_forces(system, model, phase, old, new)
     call system%profile%add(section_contact)
   end subroutine evaluate
-
-  !> Contact of the trial state, and the residuals from it and the internal forces.
-  subroutine evaluate_forces(system, model, phase, old, new)
-    !> The system.
-    type(system_t), intent(inout) :: system
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-
-    integer :: c, node, tool
-
-    call evaluate_contact(system%contact, model, phase, old, new)
-    associate (problem => system%problem, contact => system%contact)
-      problem%residual = new%internal_force - new%external_force
-      do c = 1, model%n_contact
-        node = model%contact_node(c)
-        problem%residual(:, node) = problem%residual(:, node) + new%lambda(:, c)
-      end do
-      problem%excess = contact%force - new%lambda
-      new%tool_force = 0.0_wp
-      do c = 1, model%n_contact
-        tool = contact%tool(c)
-        if (tool > 0) new%tool_force(:, tool) = new%tool_force(:, tool) + contact%force(:, c)
-      end do
-      do tool = 1, model%n_tool
-        problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
-                                                  new%tool_load(:, tool) + new%tool_force(:, tool))
-        problem%tool_motion(:, tool) = motion_to_touch(contact, phase, new, tool)
-      end do
-    end associate
-  end subroutine evaluate_forces
-
-  !> Meets the forces of the pressed tools by the tools' own motion, once all else is settled. Where
-  !> many nodes lie flat under a tool, the last of them open and close for many iterations with
-  !> forces of a millionth of the tool's: far below the nodes' own residuals, but not below what is
-  !> asked of the tool's balance. A force farther off than `nearly_met` is left to the iterations.
-  subroutine balance_tools(system, model, phase, old, new, moved)
-    !> The evaluated system.
-    type(system_t), intent(inout) :: system
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-
-    !> Whether a tool was moved.
-    logical, intent(out) :: moved
-
-    real(wp) :: way(model%n_tool)
-    integer :: attempt, tool
-
-    moved = .false.
-    call system%profile%start()
-    do attempt = 1, most_balances
-      way = 0.0_wp
-      do tool = 1, model%n_tool
-        if (.not. phase%pressed(tool)) cycle
-        associate (residual => abs(system%problem%tool_residual(tool)), &
-                   force => pressed_force(phase, new, tool))
-          if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
-            way(tool) = way_to_balance(system, phase, tool)
-        end associate
-      end do
-      if (all(abs(way) <= 0.0_wp)) exit
-      do tool = 1, model%n_tool
-        new%tool_displacement(:, tool) = new%tool_displacement(:, tool) &
-            + way(tool)*phase%direction(:, tool)
-      end do
-      moved = .true.
-      call evaluate_forces(system, model, phase, old, new)
-    end do
-    call system%profile%add(section_contact)
-  end subroutine balance_tools
-
-  !> How far a pressed tool has to go along its line until its force is met; zero where nothing
-  !> resists it.
-  pure real(wp) function way_to_balance(system, phase, tool) result(way)
-    !> The system with its contact evaluated.
-    type(system_t), intent(in) :: system
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The tool.
-    integer, intent(in) :: tool
-
-    real(wp) :: stiffness, line(3)
-    integer :: c
-
-    line = phase%direction(:, tool)
-    stiffness = 0.0_wp
-    do c = 1, size(system%contact%tool)
-      if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
-      stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
-    end do
-    way = 0.0_wp
-    if (stiffness > 0.0_wp) way = system%problem%tool_residual(tool)/stiffness
-  end function way_to_balance
-
-  !> What a pressed tool's force is measured by, N.
-  pure real(wp) function pressed_force(phase, new, tool)
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(in) :: new
-    !> The tool.
-    integer, intent(in) :: tool
-
-    pressed_force = max(norm2(new%tool_load(:, tool)), &
-        1.0e-3_wp*norm2(phase%press_start(:, tool)), 1.0e-3_wp*norm2(phase%press_end(:, tool)))
-  end function pressed_force
-
-  !> A tool that is pressed and touches nothing; 0 where there is none.
-  pure integer function lost_tool(system, model, phase, new)
-    !> The evaluated system.
-    type(system_t), intent(in) :: system
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(in) :: new
-
-    do lost_tool = model%n_tool, 1, -1
-      if (.not. phase%pressed(lost_tool)) cycle
-      if (norm2(new%tool_load(:, lost_tool)) <= 0.0_wp) cycle
-      if (.not. any(system%contact%tool == lost_tool &
-                    .and. system%contact%status /= status_gap)) return
-    end do
-  end function lost_tool
-
-  !> The way of a pressed tool that has lost the sheet back to touch; zero for the others.
-  pure function motion_to_touch(contact, phase, new, tool) result(motion)
-    !> Contact of the candidates.
-    type(contact_work_t), intent(in) :: contact
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(in) :: new
-    !> The tool.
-    integer, intent(in) :: tool
-    real(wp) :: motion(3)
-
-    motion = 0.0_wp
-    if (.not. phase%pressed(tool) .or. norm2(new%tool_load(:, tool)) <= 0.0_wp) return
-    if (.not. any(contact%tool == tool)) return
-    if (any(contact%tool == tool .and. contact%status /= status_gap)) return
-    motion = phase%direction(:, tool)*(minval(contact%distance, mask=contact%tool == tool) + touch)
-  end function motion_to_touch
 
   !> The criterion of convergence, eq. (19), and whether it is met.
   subroutine judge(system, model, phase, new, j, correction, verdict)
