@@ -3,13 +3,16 @@
 # requires-python = ">=3.11"
 # dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
 # ///
-"""Draw what materials do at a point: tension curves, r-values against the angle, yield surfaces with their normals.
+"""Draw what materials do at a point: tension curves, r-values and yield stresses against the angle, yield surfaces.
 
     plot_point.py steel.dat aluminium.dat --program build/release/dd3imp --output materials.png
+    plot_point.py sheets.dat:dc06 sheets.dat:dp600
+    plot_point.py --run point.out --run other.out
 
-The files hold *MATERIAL blocks, and no sheet. Each material is drawn in one colour. All values come from runs of the
-program with single points (*POINT): tension at angles to the rolling direction; plane stress by ratios of strain, whose
+The files hold *MATERIAL blocks, and no sheet; FILE:NAME draws one of them. Each material is drawn in one colour. All values
+come from runs of the program with single points (*POINT): tension at angles to the rolling direction; plane stress by ratios of strain, whose
 stresses over the flow stress are the yield surface and whose strains are its normals. Back-stresses count as stress.
+--run draws the points of a run that was made already, a folder of results or its history.csv: s11 over e11.
 """
 
 import argparse
@@ -30,8 +33,11 @@ TENSION = "e11 s22 s33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
 
 
-def names_in(path):
-    """Names of the materials of a file."""
+def names_in(file):
+    """The path of FILE or FILE:NAME, and the names of its materials."""
+    path, _, chosen = file.rpartition(":")
+    if not path or Path(file).exists():
+        path, chosen = file, ""
     try:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
@@ -39,7 +45,10 @@ def names_in(path):
     found = re.findall(r"^\s*\*material\s+([\w.-]+)", text, re.IGNORECASE | re.MULTILINE)
     if not found:
         sys.exit(f"{path}: no *MATERIAL")
-    return [name.lower() for name in found]
+    names = [name.lower() for name in found]
+    if chosen and chosen.lower() not in names:
+        sys.exit(f"{path}: no *MATERIAL {chosen}; there are: {', '.join(names)}")
+    return path, [chosen.lower()] if chosen else names
 
 
 def point(name, material, control, targets, angle=None):
@@ -76,8 +85,21 @@ def run(program, text):
             sys.exit(f"{program}: {error.strerror}")
         if done.returncode != 0:
             sys.exit(done.stderr.strip() or f"{program} failed")
-        with open(Path(folder) / "out" / "history.csv", newline="", encoding="utf-8") as stream:
+        return read_points(Path(folder) / "out")
+
+
+def read_points(path):
+    """Rows of a history by point; path is a folder of results or its history.csv."""
+    path = Path(path)
+    if path.is_dir():
+        path = path / "history.csv"
+    try:
+        with open(path, newline="", encoding="utf-8") as stream:
             rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    except OSError as error:
+        sys.exit(f"{path}: {error.strerror}")
+    if not rows or "point" not in rows[0]:
+        sys.exit(f"{path}: not the history of single points")
     points = {}
     for row in rows:
         points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
@@ -92,46 +114,76 @@ def r_value(rows):
     return (across[1] - across[0]) / (through[1] - through[0])
 
 
+def yield_stress(rows):
+    """Stress over the flow stress in tension."""
+    return rows[-1]["s11"] / rows[-1]["flow_stress"]
+
+
+def draw_runs(axes, runs):
+    """Draws s11 over e11 of the points of the runs."""
+    for path in runs:
+        points = read_points(path)
+        name = Path(path).resolve()
+        name = (name if name.is_dir() else name.parent).name.removesuffix(".out")
+        for point_name, rows in points.items():
+            label = f"{name}, {point_name}" if len(runs) > 1 else point_name
+            axes.plot([row["e11"] for row in rows], [row["s11"] for row in rows], label=label)
+
+
 def draw(axes, points, m, label, angles, ratios, colour):
     """Draws one material."""
     for angle, style in ((0, "-"), (45, "--"), (90, ":")):
         rows = points[f"t{m}_{angle}"]
-        text = f"{label}, {angle}°" if angle else label
+        text = None if angle else label
         axes[0].plot([row["e11"] for row in rows], [row["s11"] for row in rows], style, color=colour, label=text)
     axes[1].plot(angles, [r_value(points[f"t{m}_{angle:g}"]) for angle in angles], "o-", color=colour, label=label)
+    stresses = [yield_stress(points[f"t{m}_{angle:g}"]) for angle in angles]
+    axes[2].plot(angles, stresses, "o-", color=colour, label=label)
     ends = [points[f"p{m}_{i}"][-1] for i in range(len(ratios))]
     x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in ("s11", "s22"))
-    axes[2].plot(np.append(x, x[0]), np.append(y, y[0]), color=colour, label=label)
-    axes[2].quiver(x[::6], y[::6], np.cos(ratios[::6]), np.sin(ratios[::6]), color=colour, width=0.004, scale=14)
+    axes[3].plot(np.append(x, x[0]), np.append(y, y[0]), color=colour, label=label)
+    axes[3].quiver(x[::6], y[::6], np.cos(ratios[::6]), np.sin(ratios[::6]), color=colour, width=0.004, scale=14)
 
 
 def main():
     """Draws the picture."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="+", help="file with *MATERIAL blocks")
+    parser.add_argument("file", nargs="*", help="file with *MATERIAL blocks, or FILE:NAME")
+    parser.add_argument("--run", action="append", default=[], help="finished run to draw; may be repeated")
     parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     parser.add_argument("--strain", type=float, default=0.2, help="strain of the tension curves (0.2)")
     parser.add_argument("--output", default="materials.png", help="picture (materials.png)")
+    parser.add_argument("--dpi", type=int, default=100, help="dots per inch (100)")
     options = parser.parse_args()
+    if not options.file and not options.run:
+        parser.error("a file or a --run is needed")
     angles = list(range(0, 91, 15))
     ratios = np.radians(np.arange(0, 360, 5))
-    figure, axes = plt.subplots(1, 3, figsize=(15, 5), layout="constrained")
+    panels = (2, 2) if options.file else (1, 1)
+    size = (10, 9) if options.file else (7, 4.5)
+    figure, axes = plt.subplots(*panels, figsize=size, layout="constrained", squeeze=False)
+    axes = axes.ravel()
     number = 0
-    for path in options.file:
-        materials = names_in(path)
+    for file in options.file:
+        path, materials = names_in(file)
         points = run(options.program, deck(path, materials, angles, ratios, options.strain))
         for m, material in enumerate(materials):
             draw(axes, points, m, material, angles, ratios, f"C{number % 10}")
             number += 1
-    axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title="Tension")
-    axes[1].set(xlabel="angle to the rolling direction (°)", ylabel="r-value", title="r-values", xticks=angles)
-    axes[2].set(xlabel="s11 / flow stress", ylabel="s22 / flow stress", title="Yield surface", aspect="equal")
-    axes[2].margins(0.15)
+    draw_runs(axes[0], options.run)
+    title = "Tension (-- at 45°, : at 90°)" if options.file else ""
+    axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
+    if options.file:
+        axes[1].set(xlabel="angle to the rolling direction (°)", ylabel="r-value", title="r-values", xticks=angles)
+        axes[2].set(xlabel="angle to the rolling direction (°)", ylabel="stress / flow stress", title="Yield stress",
+                    xticks=angles)
+        axes[3].set(xlabel="s11 / flow stress", ylabel="s22 / flow stress", title="Yield surface", aspect="equal")
+        axes[3].margins(0.15)
     for part in axes:
         part.grid(alpha=0.3)
-        part.legend(fontsize="small")
+        part.legend(fontsize="small", loc="lower right" if options.file and part is axes[3] else "best")
     try:
-        figure.savefig(options.output, dpi=120)
+        figure.savefig(options.output, dpi=options.dpi)
     except (OSError, ValueError) as error:
         sys.exit(f"{options.output}: {error}")
 
