@@ -9,10 +9,11 @@
     plot_point.py sheets.dat:dc06 sheets.dat:dp600
     plot_point.py --run point.out --run other.out
 
-The files hold *MATERIAL blocks, and no sheet; FILE:NAME draws one of them. Each material is drawn in one colour. All values
-come from runs of the program with single points (*POINT): tension at angles to the rolling direction; plane stress by ratios of strain, whose
-stresses over the flow stress are the yield surface and whose strains are its normals. Back-stresses count as stress.
---run draws the points of a run that was made already, a folder of results or its history.csv: s11 over e11.
+The files hold *MATERIAL blocks, and no sheet; FILE:NAME draws one of them. Each material is drawn in one colour. All
+values come from runs of the program with single points (*POINT): tension at angles to the rolling direction; plane
+stress by ratios of strain, whose stresses over the flow stress are the yield surface and whose strains are its
+normals. Back-stresses count as stress. --run draws the points of a run that was made already, a folder of results or
+its history.csv: s11 over e11.
 """
 
 import argparse
