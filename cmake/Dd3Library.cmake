@@ -1,17 +1,13 @@
-# dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...])
+# dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...] [GENERATED <file>...])
 #
 # Declares src/<folder>/ as the library dd3_<folder>. Its module files go into a directory of its own, which only those
 # libraries see that name it in USES: a `use` of a folder that is not declared does not compile. Every .f90 below the folder
-# is taken, but for a main program (see dd3_program); version.f90.in is filled in.
+# is taken, but for a main program (see dd3_program), and the GENERATED files with them.
 function(dd3_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
   list(FILTER sources EXCLUDE REGEX "/src/${folder}/${PROJECT_NAME}\\.f90$")
-  if(EXISTS "${CMAKE_SOURCE_DIR}/src/${folder}/version.f90.in")
-    set(version "${CMAKE_BINARY_DIR}/generated/${folder}/version.f90")
-    configure_file("${CMAKE_SOURCE_DIR}/src/${folder}/version.f90.in" "${version}" @ONLY)
-    list(APPEND sources "${version}")
-  endif()
+  list(APPEND sources ${arg_GENERATED})
   set(library dd3_${folder})
   if(NOT sources)
     add_library(${library} INTERFACE)

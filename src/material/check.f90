@@ -5,18 +5,17 @@ module dd3_material_check
   use dd3_base_parameter, only : parameter_t, law_value_t
   use dd3_base_text, only : join, nearest_name, same_name, to_text
   use dd3_material_backstress_law, only : backstress_slot_t
-  use dd3_material_backstress_registry, only : describe_backstresses, find_backstress, &
-                                               later_backstresses
+  use dd3_material_backstress_registry, only : describe_backstresses, find_backstress
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given
   use dd3_material_hardening_law, only : hardening_slot_t
-  use dd3_material_hardening_registry, only : describe_hardenings, find_hardening, later_hardenings
+  use dd3_material_hardening_registry, only : describe_hardenings, find_hardening
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_convexity, only : check_convexity
-  use dd3_material_yield_registry, only : describe_criteria, find_criterion, later_criteria
+  use dd3_material_yield_registry, only : describe_criteria, find_criterion
   implicit none
   private
   public :: law_yield, law_hardening, law_backstress
-  public :: describe_laws, known_laws, later_laws, law_rows, check_law
+  public :: describe_laws, known_laws, law_rows, check_law
 
   !> The kinds of laws.
   integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3
@@ -56,22 +55,6 @@ contains
     end do
   end subroutine known_laws
 
-  !> Names of the laws of a kind that this version does not provide, separated by blanks.
-  pure function later_laws(kind) result(names)
-    !> One of the `law_*` values.
-    integer, intent(in) :: kind
-    character(len=:), allocatable :: names
-
-    select case (kind)
-    case (law_yield)
-      names = later_criteria
-    case (law_hardening)
-      names = later_hardenings
-    case default
-      names = later_backstresses
-    end select
-  end function later_laws
-
   !> The parameters of a law; none where the name is unknown.
   subroutine law_rows(kind, name, rows)
     !> One of the `law_*` values.
@@ -109,7 +92,7 @@ contains
     allocate (problems(0))
     call known_laws(kind, names)
     if (.not. any(names == name)) then
-      call unknown_law(kind, name, names, problems)
+      call unknown_law(name, names, problems)
       return
     end if
     call law_rows(kind, name, rows)
@@ -117,10 +100,8 @@ contains
     call check_together(kind, name, values, problems)
   end subroutine check_law
 
-  !> Says that a law is unknown, or not in this version.
-  subroutine unknown_law(kind, name, names, problems)
-    !> One of the `law_*` values.
-    integer, intent(in) :: kind
+  !> Says that a law is unknown, and which one may be meant.
+  subroutine unknown_law(name, names, problems)
     !> Name as given.
     character(len=*), intent(in) :: name
     !> Names there are.
@@ -130,10 +111,6 @@ contains
     character(len=:), allocatable :: near, expected
 
     expected = "one of "//join(names, ", ")
-    if (index(" "//later_laws(kind)//" ", " "//trim(name)//" ") > 0) then
-      call add_problem(problems, 0, trim(name)//" is not available in this version", expected)
-      return
-    end if
     near = nearest_name(name, names)
     if (len(near) > 0) expected = near//"? ("//expected//")"
     call add_problem(problems, 0, "unknown law "//trim(name), expected)

@@ -1,9 +1,7 @@
 !> Help on the laws, and the manual's reference of them, printed from the registries.
 module dd3_model_law_help
-  use dd3_base_text, only : join, same_name
+  use dd3_base_text, only : same_name
   use dd3_input_help, only : describe_key, escaped
-  use dd3_input_table, only : block_row_t, block_table, find_block, find_key
-  use dd3_input_value, only : not_available, split_words, word_length
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
   use dd3_material_description, only : description_t
   implicit none
@@ -33,26 +31,11 @@ contains
     do k = 1, size(kinds)
       call describe_laws(kinds(k), law)
       do i = 1, size(law)
-        if (any(later_words(keys(k)) == law(i)%name)) cycle
         text = text//"  "//law(i)%name(:name_width)//trim(keys(k))//": "//trim(law(i)%title)
         text = text//newline
       end do
     end do
   end function help_laws
-
-  !> Laws that the input refuses in this version.
-  function later_words(key) result(word)
-    !> The key the laws are given with.
-    character(len=*), intent(in) :: key
-    character(len=word_length), allocatable :: word(:)
-
-    type(block_row_t), allocatable :: table(:)
-
-    table = block_table()
-    associate (material => table(find_block(table, "material")))
-      word = split_words(material%key(find_key(material%key, key))%later)
-    end associate
-  end function later_words
 
   !> Help on one law; empty if there is none of this name.
   function help_law(name) result(text)
@@ -70,9 +53,6 @@ contains
         if (.not. same_name(law(i)%name, name)) cycle
         text = text//trim(keys(k))//" = "//trim(law(i)%name)//newline//"  "//trim(law(i)%title)// &
                newline//"  source: "//trim(law(i)%source)//newline
-        if (any(later_words(keys(k)) == law(i)%name)) then
-          text = text//"  This law "//not_available//"."//newline
-        end if
         do p = 1, size(law(i)%rows)
           text = text//"  "//describe_key(law(i)%rows(p))//newline//repeat(" ", 6)// &
                  trim(law(i)%rows(p)%help)//newline
@@ -94,7 +74,6 @@ contains
       text = text//newline//"## `"//trim(keys(k))//" = law key=value ...`"//newline//newline// &
              "| law | meaning | parameters | source |"//newline//"|---|---|---|---|"//newline
       do i = 1, size(law)
-        if (any(later_words(keys(k)) == law(i)%name)) cycle
         text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
         do p = 1, size(law(i)%rows)
           if (p > 1) text = text//"; "
@@ -102,9 +81,6 @@ contains
         end do
         text = text//" | "//escaped(trim(law(i)%source))//" |"//newline
       end do
-      if (size(later_words(keys(k))) == 0) cycle
-      text = text//newline//"Not available in this version: "
-      text = text//join(later_words(keys(k)), " ")//"."//newline
     end do
   end function law_reference_markdown
 
