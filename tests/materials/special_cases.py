@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Checks the special cases that docs/laws states: two laws that are said to be the same give the same stresses.
+
+    special_cases.py --program build/release/dd3imp
+
+Both materials of a pair go along the same random paths of strain, all six components, with a change of direction.
+"""
+import argparse
+import csv
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+PATHS = 12
+UNIT = "perfect Y0=100"
+SWIFT = "swift K=565 e0=0.007117 n=0.259"
+ABC = {"a": 0.81385, "b": 0.88006, "c": 1.11247, "f": 0.9, "g": 1.1, "h": 0.94446}
+DRUCKER = " ".join(f"C{i}={value}" for i, value in enumerate(ABC.values(), 1))
+BARLAT = " ".join(f"{name}={value}" for name, value in ABC.items())
+
+
+def hill_of_barlat():
+    """Hill's coefficients of the transformed stress of yld91 with a quadratic function."""
+    a, b, c = ABC["a"], ABC["b"], ABC["c"]
+    f, g, h = ((x * x + (x * y + x * z - y * z) / 2) / 3 for x, y, z in ((a, b, c), (b, a, c), (c, a, b)))
+    shears = (1.5 * ABC[name] ** 2 for name in "fgh")
+    return "hill48 F={:.15g} G={:.15g} H={:.15g} L={:.15g} M={:.15g} N={:.15g}".format(f, g, h, *shears)
+
+
+def mixture_of_barlat(k, c):
+    """karafillis_boyce with the transformed stress of yld91."""
+    x, y, z = ABC["a"], ABC["b"], ABC["c"]
+    scale = (y + z) / 3
+    values = (k, c, scale, (x + z) / (y + z), (x + y) / (y + z), *(ABC[name] / scale for name in "fgh"))
+    return "karafillis_boyce k={} c={} scale={:.15g} alpha1={:.15g} alpha2={:.15g} gamma1={:.15g} gamma2={:.15g} " \
+           "gamma3={:.15g}".format(*values)
+
+
+def two_of_barlat(m):
+    """yld2004 with the transformed stress of yld91, twice."""
+    a, b, c = ABC["a"], ABC["b"], ABC["c"]
+    values = {"12": (b + 2 * c) / 3, "13": (2 * b + c) / 3, "21": (a + 2 * c) / 3, "23": (2 * a + c) / 3,
+              "31": (a + 2 * b) / 3, "32": (2 * a + b) / 3, "44": ABC["f"], "55": ABC["g"], "66": ABC["h"]}
+    return "yld2004 " + " ".join(f"{t}{key}={value:.15g}" for t in "cd" for key, value in values.items()) + f" m={m}"
+
+
+def ones(law, names, rest):
+    """A criterion with all these parameters 1."""
+    return f"{law} {' '.join(f'{name}=1' for name in names)} {rest}"
+
+
+NORMAL = [f"{t}{place}" for t in "cd" for place in ("12", "13", "21", "23", "31", "32")]
+CAZACU = [f"a{i}" for i in range(1, 7)] + [f"b{i}" for i in range(1, 12)]
+QUADRATIC = "cazacu_barlat2001 a1=1.3 a2=0.7 a3=0.8 a4=0.9 a5=1.2 a6=1.1 b1=1 b2=1 b3=1 b4=1 c=0"
+ISOTROPIC = "cpb06 C11=1 C12=0 C13=0 C22=1 C23=0 C33=1"
+CRITERIA = (
+    ("hill48 r0=1 r45=1 r90=1", "von_mises"), ("hosford m=2", "von_mises"), ("hosford m=4", "von_mises"),
+    (ones("yld91", "abc", "m=6"), "hosford m=6"), (f"yld91 {BARLAT} m=2", hill_of_barlat()),
+    (f"yld91 {BARLAT} m=4", hill_of_barlat()), (mixture_of_barlat(3, 0), f"yld91 {BARLAT} m=6"),
+    (mixture_of_barlat(1, 0.3), hill_of_barlat()), (mixture_of_barlat(2, 0.3), hill_of_barlat()),
+    ("drucker c=0", "von_mises"), (f"drucker c=0 {DRUCKER}", hill_of_barlat()),
+    (ones("cazacu_barlat2001", CAZACU, "c=1.2"), "drucker c=1.2"),
+    (QUADRATIC, "hill48 F={:.15g} G={:.15g} H={:.15g} L={:.15g} M={:.15g} N={:.15g}".format(
+        *(value / 2.1 for value in (0.7, 0.8, 1.3, 3.3, 3.6, 2.7)))),
+    (ones("yld2004", NORMAL, "m=8"), "hosford m=8"), (two_of_barlat(6), f"yld91 {BARLAT} m=6"),
+    (f"{ISOTROPIC} k=0 m=2", "von_mises"), (f"{ISOTROPIC} k=0 m=4", "von_mises"),
+)
+STRUCTURES = "Ssat=200 CSL=1 nL=1 CP=2 nP=20 r=2"
+HARDENING = (
+    ("linear Y0=200 H=0", "perfect Y0=200"), ("swift K=565 Y0=156.6 n=0.259", f"swift K=565 e0="
+     f"{(156.6 / 565) ** (1 / 0.259):.15g} n=0.259"), ("voce Y0=200 Rsat=0 CR=10", "perfect Y0=200"),
+    ("swift_voce alpha=0 K=565 e0=0.007117 n=0.259 Y0=160 Rsat=200 CR=10", SWIFT),
+    ("swift_voce alpha=1 K=565 e0=0.007117 n=0.259 Y0=160 Rsat=200 CR=10", "voce Y0=160 Rsat=200 CR=10"),
+    ("ludwick Y0=150 K=450 n=1", "linear Y0=150 H=450"),
+    ("hockett_sherby Y0=150 Ysat=420 N=6 q=1", "voce Y0=150 Rsat=270 CR=6"),
+    ("table 0:150 1:600", "linear Y0=150 H=450"),
+    (f"teodosiu_hu Y0=150 CR=10 Rsat=200 CX=0 X0=0 CSD=4 f=0 {STRUCTURES}", "voce Y0=150 Rsat=200 CR=10"),
+    (f"teodosiu_hu Y0=150 CR=10 Rsat=200 CX=50 X0=60 CSD=0 f=0.5 {STRUCTURES}",
+     "voce Y0=150 Rsat=200 CR=10\n  backstress = lemaitre_chaboche CX=50 Xsat=60"),
+    ("perfect Y0=200\n  backstress = prager k=0", "perfect Y0=200"),
+    ("perfect Y0=200\n  backstress = lemaitre_chaboche CX=0 Xsat=60", "perfect Y0=200"),
+    ("perfect Y0=200\n  backstress = lemaitre_chaboche CX=1e-6 Xsat=5e8", "perfect Y0=200\n  backstress = prager k=500"),
+    ("perfect Y0=200\n  backstress = prager k=300\n  backstress = prager k=200",
+     "perfect Y0=200\n  backstress = prager k=500"),
+)
+
+
+def deck(number, laws):
+    """Both materials of a pair along its paths."""
+    lines = []
+    for i, law in enumerate(laws):
+        lines += [f"*MATERIAL m{i}", "  young = 2.1e5", "  poisson = 0.3", *law]
+    for path in range(PATHS):
+        random.seed(100 * number + path)
+        ways = [[random.gauss(0, 0.02) for _ in range(6)] for _ in range(2)]
+        ways[1] = [a + b for a, b in zip(*ways)]
+        for i in range(2):
+            lines += [f"*POINT p{i}_{path}", f"  material = m{i}", "  control = e11 e22 e33 e12 e23 e13"]
+            lines += [f"  target = {' '.join(f'{value:.9f}' for value in way)} steps=10" for way in ways]
+    return "\n".join(lines) + "\n"
+
+
+def stresses(program, text):
+    """Stresses of both materials of a pair, and what the program says where it fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "pair.dat"
+        file.write_text(text, encoding="utf-8")
+        out = pathlib.Path(folder) / "out"
+        done = subprocess.run([program, "--quiet", "--output", str(out), str(file)], capture_output=True, text=True,
+                              timeout=60, check=False)
+        if done.returncode != 0:
+            return None, done.stderr
+        found = ([], [])
+        with open(out / "history.csv", newline="", encoding="utf-8") as stream:
+            for row in csv.DictReader(line for line in stream if not line.startswith("#")):
+                found[int(row["point"][1])].extend(float(row[key]) for key in ("s11", "s22", "s12", "s23", "s13"))
+        return found, ""
+
+
+def main():
+    """Compares all pairs."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, help="the program dd3imp")
+    program = parser.parse_args().program
+    pairs = [([f"  yield = {law}", f"  hardening = {UNIT}"] for law in pair) for pair in CRITERIA]
+    pairs += [(["  yield = hill48 r0=1.79 r45=1.51 r90=2.27", f"  hardening = {law}"] for law in pair)
+              for pair in HARDENING]
+    wrong, largest = [], 0.0
+    for number, (pair, names) in enumerate(zip(pairs, (*CRITERIA, *HARDENING))):
+        found, said = stresses(program, deck(number, list(pair)))
+        if not found:
+            wrong.append(f"{names[0]}: {said}")
+            continue
+        scale = max(map(abs, found[0]))
+        apart = max(abs(a - b) for a, b in zip(*found)) / scale
+        largest = max(largest, apart)
+        if not apart < 1e-6:
+            wrong.append(f"{names[0]}\nis not\n{names[1]}:\n{apart:.1e} apart")
+    print("\n".join(wrong) or f"{len(CRITERIA) + len(HARDENING)} pairs agree within {largest:.1e}")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
