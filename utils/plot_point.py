@@ -32,6 +32,17 @@ import numpy as np  # noqa: E402
 
 TENSION = "e11 s22 s33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
+INCLUDE = re.compile(r'^\s*\*include\s+"?([^"#!\n]*[^"#!\s])', re.IGNORECASE | re.MULTILINE)
+
+
+def text_of(path, parents=()):
+    """The text of a file, and of those it includes."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        sys.exit(f"{path}: {getattr(error, 'strerror', None) or 'not a text'}")
+    included = [path.parent / name for name in INCLUDE.findall(text)]
+    return "".join([text, *(text_of(file, (*parents, path)) for file in included if file not in parents)])
 
 
 def names_in(file):
@@ -39,10 +50,7 @@ def names_in(file):
     path, _, chosen = file.rpartition(":")
     if not path or Path(file).exists():
         path, chosen = file, ""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
+    text = text_of(Path(path))
     found = re.findall(r"^\s*\*material\s+([\w.-]+)", text, re.IGNORECASE | re.MULTILINE)
     if not found:
         sys.exit(f"{path}: no *MATERIAL")
@@ -131,19 +139,35 @@ def draw_runs(axes, runs):
             axes.plot([row["e11"] for row in rows], [row["s11"] for row in rows], label=label)
 
 
+def draw_over_angle(axes, angles, values, **style):
+    """Draws values over the angle to the rolling direction."""
+    axes.plot(angles, values, **style)
+    axes.set(xlabel="angle to the rolling direction (°)", xticks=range(0, 91, 15))
+
+
+def draw_surface(axes, ends, normals, keys=("s11", "s22"), **style):
+    """Draws a yield surface: stresses over the flow stress at the ends of paths; given normals, those of each sixth."""
+    x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in keys)
+    line, = axes.plot(np.append(x, x[0]), np.append(y, y[0]), **style)
+    if normals is not None:
+        along, across = (part[::6] / np.hypot(*normals)[::6] for part in normals)
+        axes.quiver(x[::6], y[::6], along, across, color=line.get_color(), width=0.004, angles="xy",
+                    scale_units="inches", scale=3.5)
+    axes.set(xlabel=f"{keys[0]} / flow stress", ylabel=f"{keys[1]} / flow stress", aspect="equal")
+    axes.margins(0.15)
+
+
 def draw(axes, points, m, label, angles, ratios, colour):
     """Draws one material."""
     for angle, style in ((0, "-"), (45, "--"), (90, ":")):
         rows = points[f"t{m}_{angle}"]
         text = None if angle else label
         axes[0].plot([row["e11"] for row in rows], [row["s11"] for row in rows], style, color=colour, label=text)
-    axes[1].plot(angles, [r_value(points[f"t{m}_{angle:g}"]) for angle in angles], "o-", color=colour, label=label)
-    stresses = [yield_stress(points[f"t{m}_{angle:g}"]) for angle in angles]
-    axes[2].plot(angles, stresses, "o-", color=colour, label=label)
+    for part, value in ((axes[1], r_value), (axes[2], yield_stress)):
+        values = [value(points[f"t{m}_{angle:g}"]) for angle in angles]
+        draw_over_angle(part, angles, values, marker="o", color=colour, label=label)
     ends = [points[f"p{m}_{i}"][-1] for i in range(len(ratios))]
-    x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in ("s11", "s22"))
-    axes[3].plot(np.append(x, x[0]), np.append(y, y[0]), color=colour, label=label)
-    axes[3].quiver(x[::6], y[::6], np.cos(ratios[::6]), np.sin(ratios[::6]), color=colour, width=0.004, scale=14)
+    draw_surface(axes[3], ends, (np.cos(ratios), np.sin(ratios)), color=colour, label=label)
 
 
 def main():
@@ -175,11 +199,9 @@ def main():
     title = "Tension (-- at 45°, : at 90°)" if options.file else ""
     axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
     if options.file:
-        axes[1].set(xlabel="angle to the rolling direction (°)", ylabel="r-value", title="r-values", xticks=angles)
-        axes[2].set(xlabel="angle to the rolling direction (°)", ylabel="stress / flow stress", title="Yield stress",
-                    xticks=angles)
-        axes[3].set(xlabel="s11 / flow stress", ylabel="s22 / flow stress", title="Yield surface", aspect="equal")
-        axes[3].margins(0.15)
+        axes[1].set(ylabel="r-value", title="r-values")
+        axes[2].set(ylabel="stress / flow stress", title="Yield stress")
+        axes[3].set(title="Yield surface")
     for part in axes:
         part.grid(alpha=0.3)
         part.legend(fontsize="small", loc="lower right" if options.file and part is axes[3] else "best")
