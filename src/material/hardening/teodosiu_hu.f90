@@ -9,14 +9,15 @@
 !>     h = (1 - X:V/Xsat)/2,   P_D = P:N,   a = CP/(CSD + CP),
 !>     g = 1 - a |S_D/Ssat - P_D| for P_D >= 0, else (1 + P_D)^nP (1 - a S_D/Ssat).
 !>
-!> X:V is X:N over N':N of the papers. Over an increment N is that of its end; R, P and S_L are
-!> integrated exactly, S_D and X by backward Euler, h is that of the start in the new direction,
-!> between 0 and 1. All derivatives are exact.
+!> X:V is X:N over N':N of the papers. Over an increment N and Xsat are those of its end; R, P, X
+!> and S_L are integrated exactly, S_D by backward Euler. h falls from its value at the start in the
+!> new direction, which is held between 0 and 1, by exp(-CX dp), as it does where N and Xsat stay
+!> the same; its mean enters. All derivatives are exact.
 module dd3_material_hardening_teodosiu_hu
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_linalg_tensor, only : kelvin_deviator
-  use dd3_material_backstress_relaxation, only : relax_back_stress
+  use dd3_material_backstress_relaxation, only : relax, relax_back_stress
   use dd3_material_description, only : description_t, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -178,7 +179,7 @@ contains
     type(back_response_t), intent(out) :: back
     type(structure_t) :: structure
     type(scalar_t) :: strength
-    real(wp) :: normal(6), gradient(6)
+    real(wp) :: normal(6), gradient(6), kept, weight
     integer :: j
 
     call follow(self, old, increment, direction, structure)
@@ -186,7 +187,8 @@ contains
     call relax_back_stress(self%c_x*(self%x0 + (1 - self%f)*strength%value), self%c_x, &
                            old(7:12), increment, direction, back)
     if (.not. direction%equivalent > 0.0_wp) return
-    normal = increment*self%c_x*(1 - self%f)/(1 + self%c_x*increment) &
+    call relax(self%c_x, increment, kept, weight)
+    normal = weight*self%c_x*(1 - self%f) &
              *kelvin_deviator(direction%stress)/direction%equivalent
     gradient = gradient_of(strength, structure, direction)
     back%slope = back%slope + strength%slope*normal
@@ -258,6 +260,7 @@ contains
     polarity%by_n = structure%decay*old(1:6)
     polarity%by_v = 0.0_wp
     release = release_of(self, old(7:12), whole, start, direction%gradient)
+    call take_mean(self, increment, release)
     call follow_latent(self, max(0.0_wp, whole - start%value**2), start, increment, structure)
     call follow_directed(self, start, polarity, release, increment, structure%directed)
   end subroutine follow
@@ -305,6 +308,26 @@ contains
     if (root > nothing*self%s_sat) release%by_n = 0.5_wp*along/saturation**2*(1 - self%f) &
                                                   *(1 - self%r)*start%value/root*start%by_n
   end function release_of
+
+  !> From h of the start to its mean over the increment.
+  pure subroutine take_mean(self, increment, release)
+    !> The law.
+    class(teodosiu_hu_t), intent(in) :: self
+    !> Plastic increment.
+    real(wp), intent(in) :: increment
+    !> h.
+    type(scalar_t), intent(inout) :: release
+    real(wp) :: kept, weight, share
+
+    release%slope = -0.5_wp*self%c_x*release%value
+    if (.not. increment > 0.0_wp) return
+    call relax(self%c_x, increment, kept, weight)
+    share = weight/increment
+    release%slope = release%value*(kept - share)/increment
+    release%value = share*release%value
+    release%by_n = share*release%by_n
+    release%by_v = share*release%by_v
+  end subroutine take_mean
 
   !> |S_L|^2 at the end.
   pure subroutine follow_latent(self, before, start, increment, structure)
@@ -360,7 +383,7 @@ contains
     slope = self%s_sat/(1 - step*(by_s*(1 - s) - g - release%value))
     directed%value = self%s_sat*s
     directed%slope = slope*(self%c_sd*(g*(1 - s) - release%value*s) &
-                            + step*by_p*(1 - s)*polarity%slope)
+                            + step*(by_p*(1 - s)*polarity%slope - s*release%slope))
     directed%by_n = slope*(start%by_n/self%s_sat + step*by_p*(1 - s)*polarity%by_n &
                            - step*s*release%by_n)
     directed%by_v = -slope*step*s*release%by_v

@@ -4,7 +4,7 @@
 module path_law
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
-  use dd3_material_backstress_relaxation, only : relax_back_stress
+  use dd3_material_backstress_relaxation, only : relax, relax_back_stress
   use dd3_material_description, only : description_t
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -88,14 +88,15 @@ contains
     real(wp), intent(in) :: old(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(back_response_t), intent(out) :: back
-    real(wp) :: p(6), slope, gradient(6), normal(6)
+    real(wp) :: p(6), slope, gradient(6), normal(6), kept, weight
     integer :: j
 
     call polarity(old(1:6), increment, direction, p, slope, gradient)
     call relax_back_stress(c_x*(x0 + g*dot_product(p, p)), c_x, old(7:12), increment, direction, &
                            back)
     if (.not. direction%equivalent > 0.0_wp) return
-    normal = increment*c_x*g/(1 + c_x*increment)*kelvin_deviator(direction%stress) &
+    call relax(c_x, increment, kept, weight)
+    normal = weight*c_x*g*kelvin_deviator(direction%stress) &
              /direction%equivalent
     back%slope = back%slope + slope*normal
     do j = 1, 6
