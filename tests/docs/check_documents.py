@@ -7,7 +7,10 @@
 - Links and pictures lead to files and headings that exist.
 - Scripts, input files and presets named in the documents exist, and every `--option` of the program and the scripts
   that is used there is one that they have.
-- Blocks of code that are whole input files pass `dd3imp --check`.
+- Blocks of code that are whole input files pass `dd3imp --check`; those of single points run to their end.
+- Each law has a page docs/laws/<law>.md with its picture, linked from the page that gathers its kind, whose table holds
+  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults; and an input file
+  input_files/laws/<law>.dat that runs to its end.
 """
 import argparse
 import json
@@ -18,9 +21,13 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md"}
+LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
+PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
+BOUND = re.compile(r"[<>]=? ")
 SCRIPT = re.compile(r"(?:utils|tests)/[\w/]+\.(?:py|sh)")
 
 
@@ -76,6 +83,8 @@ def broken_commands(program, text):
         else:
             found = SCRIPT.search(line)
             known = (ROOT / found[0]).read_text(encoding="utf-8") if found and (ROOT / found[0]).exists() else None
+            if known and "argparse" in known:
+                known += "--help"
         if known is None:
             continue
         for option in re.findall(r"(?<=\s)--[a-z][\w-]*", line.split(" #")[0]):
@@ -84,18 +93,79 @@ def broken_commands(program, text):
 
 
 def broken_examples(program, text):
-    """Whole input files in a document that the program refuses."""
+    """Whole input files in a document that the program refuses, or of single points that do not end well."""
     for example in FENCE.findall(text):
-        if "*BLANK" not in example:
+        if "*BLANK" not in example and "*POINT" not in example:
             continue
         with tempfile.TemporaryDirectory() as folder:
             deck = pathlib.Path(folder) / "example.dat"
             deck.write_text(example, encoding="utf-8")
             for surface in (ROOT / "input_files" / "bending").glob("*.bez"):
                 (pathlib.Path(folder) / surface.name).write_bytes(surface.read_bytes())
-            said, code = run(program, "--check", str(deck))
+            said, code = run(program, *(["--check"] if "*BLANK" in example else ["--quiet"]), str(deck))
             if code:
-                yield f"an example is refused:\n{said}"
+                yield f"an example is refused, or does not end well:\n{said}"
+
+
+def laws_of(reference):
+    """The laws of the keyword reference: kind and name."""
+    kind, laws = "", []
+    for heading, name in LAW.findall(reference.partition("\n# Laws")[2]):
+        kind = heading or kind
+        if name:
+            laws.append((kind, name))
+    return laws
+
+
+def parameters_of(said):
+    """What --help says of a law's parameters: unit, bounds and default by name."""
+    found = {}
+    for name, value, states in PARAMETER.findall(said):
+        parts = value.split(", ")[1:]
+        bounds = [part for part in parts if BOUND.match(part)]
+        unit = [part for part in parts if part not in bounds and " " not in part]
+        default = ", ".join(state.removeprefix("default ") for state in states.split(") ("))
+        found[name] = [unit[0] if unit else "-", ", ".join(bounds) or "any", default]
+    return found
+
+
+def broken_page(program, kind, law):
+    """What is wrong with the page of a law."""
+    page = ROOT / "docs" / "laws" / f"{law}.md"
+    if not page.exists():
+        yield "there is no such page"
+        return
+    text = page.read_text(encoding="utf-8")
+    table = {}
+    for line in re.findall(r"^\| `.*\|$", text, re.MULTILINE):
+        name, _, *rest = (cell.strip() for cell in line.strip("|").split("|"))
+        table[name.strip("`")] = rest
+    wanted = parameters_of(run(program, "--help", law)[0])
+    for name in sorted(wanted.keys() | table.keys()):
+        if wanted.get(name) != table.get(name):
+            yield f"the parameter {name} has {table.get(name)} in the table, {wanted.get(name)} by dd3imp --help {law}"
+    picture = ROOT / "docs" / "images" / "laws" / f"{law}.png"
+    if f"](../images/laws/{law}.png)" not in text:
+        yield "its picture is missing; draw it: utils/law_pictures.py"
+    elif picture.exists() and picture.stat().st_size > 60000:
+        yield f"its picture has {picture.stat().st_size} bytes, more than 60000"
+    if f"](laws/{law}.md)" not in (ROOT / "docs" / GATHERED[kind]).read_text(encoding="utf-8"):
+        yield f"docs/{GATHERED[kind]} does not lead to it"
+    deck = ROOT / "input_files" / "laws" / f"{law}.dat"
+    with tempfile.TemporaryDirectory() as folder:
+        said, code = run(program, "--quiet", "--output", str(pathlib.Path(folder) / "out"), str(deck))
+    if code:
+        yield f"{deck.relative_to(ROOT)} does not end well:\n{said}"
+
+
+def broken_laws(program, reference):
+    """What is wrong with the pages of the laws."""
+    laws = laws_of(reference)
+    for kind, law in laws:
+        yield from (f"docs/laws/{law}.md: {problem}" for problem in broken_page(program, kind, law))
+    for page in sorted((ROOT / "docs" / "laws").glob("*.md")):
+        if page.stem not in {law for _, law in laws}:
+            yield f"docs/laws/{page.name}: the program has no such law"
 
 
 def main():
@@ -111,6 +181,7 @@ def main():
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:
             wrong.append(f"{path.relative_to(ROOT)}: {problem}")
+    wrong += broken_laws(program, printed)
     if wrong:
         sys.exit("\n".join(wrong))
 
