@@ -30,8 +30,8 @@ module dd3_output_status
     character(len=16) :: limiter = ""
     !> Iterations of the corrector.
     integer :: iterations = 0
-    !> The convergence criterion's value at the end.
-    real(wp) :: criterion = 0.0_wp
+    !> The convergence criterion after the last iteration that had one; negative: none had.
+    real(wp) :: criterion = -1.0_wp
     !> Iterations of the linear solver, all together.
     integer :: solver_iterations = 0
     !> Contact candidates in each status.
@@ -119,7 +119,11 @@ contains
       call table%add_real(row%r)
       call table%add_text(row%limiter)
       call table%add_integer(row%iterations)
-      call table%add_real(row%criterion)
+      if (row%criterion < 0.0_wp) then
+        call table%add_text("")
+      else
+        call table%add_real(row%criterion)
+      end if
       call table%add_integer(row%solver_iterations)
       call table%add_integer(row%gap)
       call table%add_integer(row%stick)

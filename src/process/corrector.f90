@@ -20,7 +20,7 @@ module dd3_process_corrector
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: correct, correction_t
+  public :: correct, clear_correction, correction_t
 
   !> Share of the criterion's tolerance below which all but the tools' forces counts as settled.
   real(wp), parameter :: settled = 0.1_wp
@@ -71,7 +71,7 @@ contains
 
     character(len=:), allocatable :: changes
 
-    call start(correction, model)
+    call clear_correction(correction, model)
     call iterate(system, model, phase, old, new, info, correction, verdict)
     if (verdict%outcome == verdict_converged .or. len_trim(verdict%reason) == 0) return
     if (index(verdict%reason, changing_status) > 0) return
@@ -144,7 +144,7 @@ contains
   end subroutine iterate
 
   !> Makes the correction ready for a new increment.
-  subroutine start(correction, model)
+  subroutine clear_correction(correction, model)
     !> The correction.
     type(correction_t), intent(inout) :: correction
     !> The model.
@@ -156,7 +156,9 @@ contains
     if (.not. allocated(correction%lambda)) allocate (correction%lambda(3, model%n_contact))
     correction%status = -1
     correction%lambda = 0.0_wp
-  end subroutine start
+    correction%worst_node = 0
+    correction%worst_residual = 0.0_wp
+  end subroutine clear_correction
 
   !> Stresses, internal forces and contact of the trial state, and the residuals from them; with the
   !> stiffness in the first iteration, which is never the last.

@@ -6,7 +6,7 @@ module dd3_process_increment
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t, state_copy
-  use dd3_process_corrector, only : correct, correction_t
+  use dd3_process_corrector, only : clear_correction, correct, correction_t
   use dd3_process_limiters, only : limit_increment, limit_t
   use dd3_process_predictor, only : new_prediction, predict, prediction_t
   use dd3_system_solve, only : solve_info_t
@@ -67,6 +67,7 @@ contains
     self%attempt = 1
     self%info = solve_info_t()
     self%limit = limit_t()
+    call clear_correction(self%correction, model)
     call predict(self%prediction, self%system, model, phase, committed, self%info, verdict)
     if (verdict%outcome /= verdict_converged) return
     self%limit = limit_increment(model, phase, committed, self%system, self%prediction, &

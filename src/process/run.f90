@@ -270,7 +270,9 @@ contains
       row%r_force = stepper%limit%r_force
       row%force_at = stepper%limit%force_at
       row%iterations = verdict%iterations
-      row%criterion = verdict%norm
+      associate (criterion => stepper%correction%criterion)
+        if (size(criterion) > 0) row%criterion = criterion(size(criterion))
+      end associate
       row%solver_iterations = stepper%info%iterations
       row%solver = stepper%info%solver(:len(row%solver))
       row%gap = count(stepper%system%contact%status == status_gap)

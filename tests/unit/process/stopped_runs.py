@@ -17,6 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BENDING = ROOT / "input_files" / "bending" / "bending.dat"
 BEGINNING = ROOT / "tests" / "cases" / "bending_start" / "case.dat"
 SLIDING = ROOT / "tests" / "cases" / "friction_above" / "case.dat"
+TENSION = ROOT / "tests" / "cases" / "tension_00" / "case.dat"
 SIZE_LIMIT = 750_000
 
 
@@ -55,6 +56,20 @@ def no_convergence(program, directory):
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["reason"], f"status.csv ends with {last}")
     check("stopped: " in (directory / "job.log").read_text(encoding="utf-8"), "job.log does not say that it stopped")
+
+
+def inside_out(program, directory):
+    """An element pushed through itself in one increment: status.csv says where; there is no criterion to tell of."""
+    text = TENSION.read_text(encoding="utf-8")
+    for old, new in (("strain = 0.001", "strain = off"), ("trial = 0.01", "trial = 1"), ("x_max x 2.3", "x_max x -15")):
+        text = text.replace(old, new)
+    deck = directory.with_suffix(".dat")
+    deck.write_text(text, encoding="utf-8")
+    said = run(program, directory, deck)
+    check("inside out" in said, f"the cause is not named:\n{said}")
+    last = table(directory / "status.csv")[-1]
+    check(last["outcome"] == "failed" and last["worst"].startswith("element 1 point "), f"status.csv ends with {last}")
+    check(last["criterion"] == "", f"the criterion is {last['criterion']}")
 
 
 def small_disk(program, directory):
@@ -109,7 +124,7 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, small_disk, full_device, no_directory, interrupted):
+    for test in (no_convergence, inside_out, small_disk, full_device, no_directory, interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
