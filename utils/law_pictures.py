@@ -10,8 +10,8 @@
 
 Materials and paths are those of input_files/laws/<law>.dat; all values come from runs of the program. Criteria: the
 yield surface with its normals, r-values and yield stresses against the angle, with von Mises' surface as a broken line.
-Hardening laws: tension as true and as nominal stress, a dot where the force is largest; reversals and changes of the path
-for back-stresses and for laws that follow the path.
+Hardening laws: tension as true and as nominal stress, a dot where the force is largest; reversals and changes of the
+path for back-stresses and for laws that follow the path.
 """
 
 import argparse
@@ -32,8 +32,8 @@ import plot_point as pp  # noqa: E402
 ROOT = Path(__file__).resolve().parents[1]
 DECKS = ROOT / "input_files" / "laws"
 STYLE = {"font.size": 9, "axes.grid": True, "grid.color": "0.9", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
-         "lines.markersize": 4, "axes.titlesize": 9, "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False,
-         "axes.formatter.useoffset": False}
+         "lines.markersize": 4, "axes.titlesize": 9, "legend.frameon": False, "axes.spines.top": False,
+         "axes.spines.right": False,         "axes.formatter.useoffset": False}
 BROKEN = {"color": "0.55", "linestyle": "--", "linewidth": 1.1, "label": "von Mises"}
 DOTS = {"color": "black", "marker": "o", "linestyle": "", "label": "measured", "zorder": 3}
 RATIOS = np.radians(np.arange(0, 360, 5))

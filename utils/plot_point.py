@@ -151,8 +151,8 @@ def draw_surface(axes, ends, normals, keys=("s11", "s22"), **style):
     line, = axes.plot(np.append(x, x[0]), np.append(y, y[0]), **style)
     if normals is not None:
         along, across = (part[::6] / np.hypot(*normals)[::6] for part in normals)
-        axes.quiver(x[::6], y[::6], along, across, color=line.get_color(), width=0.004, angles="xy",
-                    scale_units="inches", scale=3.5)
+        axes.quiver(x[::6], y[::6], along, across, color=line.get_color(), angles="xy", units="inches", width=0.016,
+                    scale_units="inches", scale=3.5, zorder=2)
     axes.set(xlabel=f"{keys[0]} / flow stress", ylabel=f"{keys[1]} / flow stress", aspect="equal")
     axes.margins(0.15)
 

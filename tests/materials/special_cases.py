@@ -81,7 +81,8 @@ HARDENING = (
      "voce Y0=150 Rsat=200 CR=10\n  backstress = lemaitre_chaboche CX=50 Xsat=60"),
     ("perfect Y0=200\n  backstress = prager k=0", "perfect Y0=200"),
     ("perfect Y0=200\n  backstress = lemaitre_chaboche CX=0 Xsat=60", "perfect Y0=200"),
-    ("perfect Y0=200\n  backstress = lemaitre_chaboche CX=1e-6 Xsat=5e8", "perfect Y0=200\n  backstress = prager k=500"),
+    ("perfect Y0=200\n  backstress = lemaitre_chaboche CX=1e-6 Xsat=5e8",
+     "perfect Y0=200\n  backstress = prager k=500"),
     ("perfect Y0=200\n  backstress = prager k=300\n  backstress = prager k=200",
      "perfect Y0=200\n  backstress = prager k=500"),
 )

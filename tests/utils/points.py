@@ -1,5 +1,5 @@
-"""Draws materials at a point: what utils/plot_point.py computes and draws, the pictures of the laws, and what both say of
-bad input. Skipped (77) without the packages.
+"""Draws materials at a point: what utils/plot_point.py computes and draws, the pictures of the laws, and what both say
+of bad input. Skipped (77) without the packages.
 
     points.py --program build/release/dd3imp
 """
@@ -79,7 +79,8 @@ def check_values(program, file):
 def check_pictures(program, folder):
     """Two files in one picture, finished runs, pictures of laws."""
     picture = folder / "both.png"
-    figure = call(plot_point, folder / "steel.dat", folder / "round.dat:round", "--program", program, "--output", picture)
+    files = folder / "steel.dat", folder / "round.dat:round"
+    figure = call(plot_point, *files, "--program", program, "--output", picture)
     assert picture.read_bytes()[:4] == b"\x89PNG"
     tension, r_values, stresses, surface = figure.axes
     for axes in figure.axes:
