@@ -33,7 +33,7 @@ ROOT = Path(__file__).resolve().parents[1]
 DECKS = ROOT / "input_files" / "laws"
 STYLE = {"font.size": 9, "axes.grid": True, "grid.color": "0.9", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
          "lines.markersize": 4, "axes.titlesize": 9, "legend.frameon": False, "axes.spines.top": False,
-         "axes.spines.right": False,         "axes.formatter.useoffset": False}
+         "axes.spines.right": False}
 BROKEN = {"color": "0.55", "linestyle": "--", "linewidth": 1.1, "label": "von Mises"}
 DOTS = {"color": "black", "marker": "o", "linestyle": "", "label": "measured", "zorder": 3}
 RATIOS = np.radians(np.arange(0, 360, 5))
