@@ -7,11 +7,12 @@
 The number is that of the program's increments in each part of a path, by which it counts the rows; the values do not
 depend on it.
 
-The equations are those of the papers, as rates, with the whole fourth-order tensor S and with
-h = (1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, held between 0 and 1 (it leaves them only where Xsat falls; without that
-the shear stress of latent_crossed rises by 0.02 MPa, the others stay). The strain is additive, its elastic part
-Hooke's. Runge and Kutta's method of fourth order follows the stress rate of the continuum tangent; the elastic parts of
-a path are taken in one go up to the yield surface. Needs numpy only; nothing of the program is used.
+The equations are those of docs/laws/teodosiu_hu.md as rates, with the whole fourth-order tensor S and with h as
+(1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, held between 0 and 1 (it leaves them only where Xsat falls; without that the
+shear stress of latent_crossed rises by 0.02 MPa, the others stay). The strain is additive, its elastic part Hooke's.
+Runge and Kutta's method of fourth order follows the stress rate of the continuum tangent; the elastic parts of a path
+are taken in one go up to the yield surface; four times as many steps change no printed digit. Needs numpy only; nothing
+of the program is used.
 """
 import math
 import sys
