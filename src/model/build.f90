@@ -23,8 +23,11 @@ module dd3_model_build
 
   !> How deep inside the sheet a tool may start, mm.
   real(wp), parameter :: start_depth = 1.0e-3_wp
-  !> How deep a start inside the sheet is looked for, in thicknesses.
+  !> How deep a start inside the sheet is looked for, in thicknesses: farther behind a surface a
+  !> node may well lie beyond its border.
   real(wp), parameter :: reach = 10.0_wp
+  !> How far a tool is looked for that turns away from the sheet, mm.
+  real(wp), parameter :: far = 1.0e4_wp
 
 contains
 
@@ -244,22 +247,30 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: deepest
+    real(wp) :: deepest, nearest
     integer :: c, t, node, worst
 
     do t = 1, model%n_tool
       deepest = -start_depth
+      nearest = far
       worst = 0
       do c = 1, model%n_contact
         if (.not. model%candidate(t, c)) cycle
         node = model%contact_node(c)
         hint = hint_t()
         call find_contact(model%tool(t)%surface, model%x0(:, node) - model%tool(t)%position, hint, &
-                          reach*model%thickness, reach*model%thickness, hit)
-        if (.not. hit%found .or. hit%distance >= deepest) cycle
+                          far, far, hit)
+        if (.not. hit%found) cycle
+        if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
+        if (hit%distance >= deepest .or. hit%distance < -reach*model%thickness) cycle
         deepest = hit%distance
         worst = node
       end do
+      if (worst == 0 .and. nearest < -start_depth) then
+        call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name &
+            //"' turns away from the sheet, "//to_text(-nearest, 4)//" mm off", &
+            "patches whose normals (the cross product of their u and v) point to the sheet")
+      end if
       if (worst == 0) cycle
       call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name &
           //"' starts inside the sheet: "// &

@@ -18,7 +18,7 @@ contains
     integer :: e, p, tool
 
     call new_state(state, model%n_node, model%element%n_point, model%n_element, model%n_internal, &
-                   model%n_contact, model%n_tool)
+                   model%n_contact, model%n_tool, size(model%load_set))
     state%x = model%x0
     do e = 1, model%n_element
       do p = 1, model%element%n_point

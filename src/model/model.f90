@@ -5,6 +5,7 @@ module dd3_model_model
   use dd3_element_table, only : element_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
+  use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
   use dd3_model_point, only : point_t
   implicit none
@@ -70,6 +71,8 @@ module dd3_model_model
     integer, allocatable :: tool_block(:)
     !> Degrees of freedom held in every phase, `(3, n_node)`.
     logical, allocatable :: fixed(:, :)
+    !> Sets that carry a load in some phase.
+    type(load_set_t), allocatable :: load_set(:)
     !> Phases, in order.
     type(phase_t), allocatable :: phase(:)
     !> Runs of single points, in order; where there are any there is no mesh.

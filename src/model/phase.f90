@@ -26,25 +26,28 @@ module dd3_model_phase
     !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase
     !> begins.
     real(wp), allocatable :: tool_start(:, :)
-    !> Whether this phase leaves the nodal forces, and the force on each tool, as it finds them;
-    !> `(n_tool)`.
-    logical :: keeps_load = .true.
-    !> See above.
+    !> Whether this phase leaves the force on each tool as it finds it, `(n_tool)`.
     logical, allocatable :: keeps_press(:)
     !> Unit vector of the pressed tools' line of motion, or of a moved tool's motion, `(3, n_tool)`.
     real(wp), allocatable :: direction(:, :)
     !> Whether contact with the tool is on, `(n_tool)`.
     logical, allocatable :: active(:)
-    !> Whether contact was on until this phase and goes now, `(n_tool)`.
-    logical, allocatable :: released(:)
     !> Degrees of freedom whose displacement is prescribed, supports included, `(3, n_node)`.
     logical, allocatable :: prescribed(:, :)
     !> Their displacement over the phase, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
-    !> External nodal forces at the start and at the end of the phase, `(3, n_node)`, N.
+    !> Total forces on the sets with loads at the start and at the end of the phase, `(3,
+    !> size(load_set))`, N; the start is set when the phase begins.
     real(wp), allocatable :: load_start(:, :), load_end(:, :)
+    !> Whether this phase leaves the load of a set as it finds it, `(size(load_set))`.
+    logical, allocatable :: keeps_load(:)
+    !> Push of the sheet on released tools that fades to nothing over the phase, `(3, n_contact)`, N;
+    !> set when the phase begins.
+    real(wp), allocatable :: fading(:, :)
     !> What ends it early.
     type(until_t) :: until
+    !> Whether the force that ends it is met from below; set when the phase begins.
+    logical :: until_from_below = .true.
     !> Limits of the predictor.
     type(limits_t) :: limits
     !> Settings of the corrector.

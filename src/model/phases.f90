@@ -5,19 +5,12 @@ module dd3_model_phases
   use dd3_base_error, only : error_list_t
   use dd3_input_case, only : case_t, case_phase_t => phase_t, until_never
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_loads, only : load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   implicit none
   private
   public :: new_phases
-
-  !> The force a node set carries at present.
-  type :: set_load_t
-    !> Name of the set.
-    character(len=:), allocatable :: set
-    !> Total force, N.
-    real(wp) :: force(3) = 0.0_wp
-  end type set_load_t
 
 contains
 
@@ -33,18 +26,17 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(phase_t) :: before
-    type(set_load_t), allocatable :: load(:)
     integer :: i
 
+    call new_load_sets(model, case, mesh)
     call new_phase(before, model)
-    allocate (load(0))
     allocate (model%phase(size(case%phase)))
     do i = 1, size(case%phase)
       call follow(model%phase(i), before)
       call take_settings(model, case%phase(i), model%phase(i))
       call take_tools(case%phase(i), model%phase(i), errors)
       call take_displacements(case%phase(i), mesh, model%phase(i))
-      call take_loads(case%phase(i), mesh, load, model%phase(i))
+      call take_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
   end subroutine new_phases
@@ -64,10 +56,12 @@ contains
     allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), &
         source=0.0_wp)
     allocate (phase%tool_start(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
-    allocate (phase%pressed(n_tool), phase%released(n_tool), source=.false.)
+    allocate (phase%pressed(n_tool), source=.false.)
     allocate (phase%active(n_tool), phase%keeps_press(n_tool), source=.true.)
-    allocate (phase%displacement(3, n_node), phase%load_start(3, n_node), phase%load_end(3, &
-        n_node), source=0.0_wp)
+    allocate (phase%displacement(3, n_node), phase%fading(3, model%n_contact), source=0.0_wp)
+    allocate (phase%load_start(3, size(model%load_set)), phase%load_end(3, size(model%load_set)), &
+        source=0.0_wp)
+    allocate (phase%keeps_load(size(model%load_set)), source=.true.)
     phase%prescribed = model%fixed
   end subroutine new_phase
 
@@ -81,9 +75,8 @@ contains
     phase = before
     phase%move = 0.0_wp
     phase%displacement = 0.0_wp
-    phase%released = .false.
     phase%keeps_press = .true.
-    phase%load_start = before%load_end
+    phase%keeps_load = .true.
     phase%press_start = before%press_end
   end subroutine follow
 
@@ -134,7 +127,6 @@ contains
     end do
     do i = 1, size(from%release)
       t = from%release(i)%tool
-      phase%released(t) = phase%active(t)
       phase%active(t) = .false.
       call stop_pressing(phase, t)
     end do
@@ -211,50 +203,62 @@ contains
     end do
   end subroutine take_displacements
 
-  !> Takes loads: a set named again changes its force, the others keep theirs; the nodes of a set
-  !> share it equally.
-  subroutine take_loads(from, mesh, load, phase)
+  !> Takes loads: a set that is named gets another force, the others keep theirs.
+  subroutine take_loads(from, model, phase)
     !> The phase of the case.
     type(case_phase_t), intent(in) :: from
-    !> The mesh.
-    type(mesh_t), intent(in) :: mesh
-    !> The loads until now.
-    type(set_load_t), allocatable, intent(inout) :: load(:)
+    !> The model with its sets.
+    type(model_t), intent(in) :: model
     !> The phase.
     type(phase_t), intent(inout) :: phase
 
-    integer, allocatable :: node(:)
-    integer :: i, j, k
+    integer :: i, s
 
     do i = 1, size(from%load)
-      do j = 1, size(load)
-        if (load(j)%set == from%load(i)%set) exit
-      end do
-      if (j > size(load)) call append_load(load)
-      load(j)%set = from%load(i)%set
-      load(j)%force = from%load(i)%force
-    end do
-    phase%keeps_load = size(from%load) == 0
-    phase%load_end = 0.0_wp
-    do j = 1, size(load)
-      node = mesh%nodes_of(load(j)%set)
-      do k = 1, size(node)
-        phase%load_end(:, node(k)) = phase%load_end(:, node(k)) + load(j)%force/real(size(node), wp)
-      end do
+      s = find_load_set(model%load_set, from%load(i)%set)
+      phase%load_end(:, s) = from%load(i)%force
+      phase%keeps_load(s) = .false.
     end do
   end subroutine take_loads
 
-  !> Makes room for one more load.
-  subroutine append_load(load)
-    !> The loads.
-    type(set_load_t), allocatable, intent(inout) :: load(:)
+  !> Lists the sets that carry a load in some phase.
+  subroutine new_load_sets(model, case, mesh)
+    !> Gets the sets.
+    type(model_t), intent(inout) :: model
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The mesh.
+    type(mesh_t), intent(in) :: mesh
 
-    type(set_load_t), allocatable :: longer(:)
+    type(load_set_t), allocatable :: set(:)
+    integer :: i, j, n
 
-    allocate (longer(size(load) + 1))
-    longer(:size(load)) = load
-    call move_alloc(longer, load)
-  end subroutine append_load
+    allocate (set(sum([(size(case%phase(i)%load), i=1, size(case%phase))])))
+    n = 0
+    do i = 1, size(case%phase)
+      do j = 1, size(case%phase(i)%load)
+        associate (name => case%phase(i)%load(j)%set)
+          if (find_load_set(set(:n), name) > 0) cycle
+          n = n + 1
+          set(n)%name = name
+          set(n)%node = mesh%nodes_of(name)
+        end associate
+      end do
+    end do
+    model%load_set = set(:n)
+  end subroutine new_load_sets
+
+  !> Position of a set; 0 where it is not among them.
+  pure integer function find_load_set(set, name) result(s)
+    !> The sets.
+    type(load_set_t), intent(in) :: set(:)
+    !> The name looked for.
+    character(len=*), intent(in) :: name
+
+    do s = size(set), 1, -1
+      if (set(s)%name == name) return
+    end do
+  end function find_load_set
 
   !> The vector with length one.
   pure function unit(vector)

@@ -21,8 +21,14 @@ module dd3_model_state
     real(wp), allocatable :: x(:, :)
     !> Internal forces, `(3, n_node)`, N.
     real(wp), allocatable :: internal_force(:, :)
-    !> External forces, `(3, n_node)`, N.
+    !> External forces, `(3, n_node)`, N: the loads, and what has not faded of released contacts.
     real(wp), allocatable :: external_force(:, :)
+    !> Total forces on the sets with loads, `(3, n_load)`, N.
+    real(wp), allocatable :: load(:, :)
+    !> Push of the candidate nodes on released tools that has not faded yet, `(3, n_contact)`, N.
+    real(wp), allocatable :: fading(:, :)
+    !> The tool each candidate was released by last, `(n_contact)`; 0 for none.
+    integer, allocatable :: fading_tool(:)
     !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
     real(wp), allocatable :: stress(:, :, :)
     !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the
@@ -44,29 +50,33 @@ module dd3_model_state
     real(wp), allocatable :: tool_displacement(:, :)
     !> Force pressed on the tools from outside, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :)
-    !> Force of the sheet on the tools, `(3, n_tool)`, N.
+    !> Force of the sheet on the tools, that which fades included, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_force(:, :)
   end type state_t
 
 contains
 
   !> Allocates a state and sets all to zero; no point is plastic, no node in contact.
-  subroutine new_state(self, n_node, n_point, n_element, n_internal, n_contact, n_tool)
+  subroutine new_state(self, n_node, n_point, n_element, n_internal, n_contact, n_tool, n_load)
     !> The state made.
     type(state_t), intent(out) :: self
     !> Its sizes.
-    integer, intent(in) :: n_node, n_point, n_element, n_internal, n_contact, n_tool
+    integer, intent(in) :: n_node, n_point, n_element, n_internal, n_contact, n_tool, n_load
 
     allocate (self%x(3, n_node), self%internal_force(3, n_node), self%external_force(3, n_node))
     allocate (self%stress(6, n_point, n_element), self%internal(n_internal, n_point, n_element))
     allocate (self%orientation(3, 3, n_point, n_element), self%plastic(n_point, n_element))
     allocate (self%lambda(3, n_contact), self%status(n_contact), self%contact_tool(n_contact))
     allocate (self%hint(n_tool, n_contact))
+    allocate (self%load(3, n_load), self%fading(3, n_contact), self%fading_tool(n_contact))
     allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), self%tool_force(3, &
         n_tool))
     self%x = 0.0_wp
     self%internal_force = 0.0_wp
     self%external_force = 0.0_wp
+    self%load = 0.0_wp
+    self%fading = 0.0_wp
+    self%fading_tool = 0
     self%stress = 0.0_wp
     self%internal = 0.0_wp
     self%orientation = 0.0_wp
@@ -93,6 +103,9 @@ contains
     to%x(:, :) = from%x
     to%internal_force(:, :) = from%internal_force
     to%external_force(:, :) = from%external_force
+    to%load(:, :) = from%load
+    to%fading(:, :) = from%fading
+    to%fading_tool(:) = from%fading_tool
     to%stress(:, :, :) = from%stress
     to%internal(:, :, :) = from%internal
     to%orientation(:, :, :, :) = from%orientation

@@ -133,15 +133,46 @@ contains
     end do
     verdict%outcome = verdict_retry
     verdict%norm = correction%criterion(phase%newton%iterations)
+    call explain(system, model, phase, new, correction, verdict)
+  end subroutine iterate
+
+  !> Says what did not converge: contact that finds no status, a tool that presses on nothing, a
+  !> tool's force, or the residual of a node.
+  subroutine explain(system, model, phase, new, correction, verdict)
+    !> The evaluated system.
+    type(system_t), intent(in) :: system
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The running phase.
+    type(phase_t), intent(in) :: phase
+    !> The trial state.
+    type(state_t), intent(in) :: new
+    !> The course of the iterations.
+    type(correction_t), intent(in) :: correction
+    !> Gets the reason and where it is.
+    type(verdict_t), intent(inout) :: verdict
+
+    character(len=:), allocatable :: reason
+    integer :: tool
+
+    verdict%tool = lost_tool(system, model, phase, new)
+    if (verdict%tool > 0) then
+      verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
+      return
+    end if
     verdict%node = correction%worst_node
     verdict%reason = status_changes(model, correction, len(verdict%reason))
-    verdict%tool = lost_tool(system, model, phase, new)
-    if (verdict%tool > 0) verdict%reason = "nothing resists the pressed tool " &
-        //model%tool(verdict%tool)%name
-    if (len_trim(verdict%reason) == 0) verdict%reason = "residual " &
-        //to_text(correction%worst_residual, 3)//" N at node "//to_text(correction%worst_node) &
-        //" after "//to_text(phase%newton%iterations)//" iterations"
-  end subroutine iterate
+    if (len_trim(verdict%reason) > 0) return
+    reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
+             //to_text(correction%worst_node)
+    if (verdict%norm < phase%newton%tolerance) then
+      tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
+      if (tool > 0) reason = "force on the pressed tool "//model%tool(tool)%name//" off by " &
+          //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
+      verdict%node = 0
+    end if
+    verdict%reason = reason//" after "//to_text(phase%newton%iterations)//" iterations"
+  end subroutine explain
 
   !> Makes the correction ready for a new increment.
   subroutine clear_correction(correction, model)
@@ -258,7 +289,7 @@ contains
       share = 0.0_wp
       if (c > 0) then
         equilibrium = equilibrium + system%problem%excess(:, c)
-        share = sum(system%problem%excess(:, c)**2, mask=.not. phase%prescribed(:, node))
+        share = sum(system%problem%excess(:, c)**2)
       end if
       share = share + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
       sum_of_squares = sum_of_squares + share

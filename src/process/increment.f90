@@ -3,6 +3,7 @@
 module dd3_process_increment
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t, state_copy
@@ -101,7 +102,10 @@ contains
       trial%x = committed%x + r*prediction%displacement
       trial%lambda = committed%lambda + r*prediction%lambda
       trial%tool_displacement = committed%tool_displacement + r*prediction%tool
-      trial%external_force = phase%load_start + progress*(phase%load_end - phase%load_start)
+      trial%load = phase%load_start + progress*(phase%load_end - phase%load_start)
+      trial%fading = (1.0_wp - progress)*phase%fading
+      call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
+          trial%external_force)
       trial%tool_load = phase%press_start + progress*(phase%press_end - phase%press_start)
       trial%hint%due = .true.
     end associate

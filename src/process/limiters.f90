@@ -300,7 +300,7 @@ contains
     type(prediction_t), intent(in) :: prediction
     type(limit_t) :: limit
 
-    real(wp) :: value, rate, line(3)
+    real(wp) :: value, left, rate, line(3)
     integer :: tool, c
 
     tool = phase%until%tool
@@ -319,8 +319,12 @@ contains
       if (value < 0.0_wp) rate = -rate
       if (abs(value) <= 0.0_wp) rate = abs(rate)
     end if
-    value = abs(value)
-    if (rate > 0.0_wp) limit%r = max(0.0_wp, phase%until%value - value)/rate
+    left = phase%until%value - abs(value)
+    if (.not. phase%until_from_below) then
+      left = -left
+      rate = -rate
+    end if
+    if (rate > 0.0_wp) limit%r = max(0.0_wp, left)/rate
   end function until_limit
 
 end module dd3_process_limiters

@@ -9,6 +9,7 @@ module dd3_process_predictor
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_rate, only : element_rate
+  use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -120,7 +121,8 @@ contains
     integer :: tool
 
     associate (problem => system%problem)
-      problem%residual = -self%progress*(phase%load_end - phase%load_start)
+      call nodal_forces(model%load_set, -self%progress*(phase%load_end - phase%load_start), &
+          model%contact_node, self%progress*phase%fading, problem%residual)
       problem%excess = 0.0_wp
       problem%displacement = self%progress*phase%displacement
       problem%tool_motion = self%progress*phase%move

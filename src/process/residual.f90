@@ -14,6 +14,8 @@ module dd3_process_residual
 
   !> A pressed tool's force is met within this share of it.
   real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
+  !> The force of a tool that presses less than this share of others is measured by theirs.
+  real(wp), parameter :: small = 1.0e-3_wp
 
 contains
 
@@ -44,6 +46,8 @@ contains
       do c = 1, model%n_contact
         tool = contact%tool(c)
         if (tool > 0) new%tool_force(:, tool) = new%tool_force(:, tool) + contact%force(:, c)
+        tool = new%fading_tool(c)
+        if (tool > 0) new%tool_force(:, tool) = new%tool_force(:, tool) + new%fading(:, c)
       end do
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
@@ -72,7 +76,8 @@ contains
     motion = phase%direction(:, tool)*(minval(contact%distance, mask=contact%tool == tool) + touch)
   end function motion_to_touch
 
-  !> What a pressed tool's force is measured by, N.
+  !> What a pressed tool's force is measured by, N. One that is eased to nothing is measured by what
+  !> bore it, and by what goes on in the sheet.
   pure real(wp) function pressed_force(phase, new, tool)
     !> The running phase.
     type(phase_t), intent(in) :: phase
@@ -82,7 +87,8 @@ contains
     integer, intent(in) :: tool
 
     pressed_force = max(norm2(new%tool_load(:, tool)), &
-        1.0e-3_wp*norm2(phase%press_start(:, tool)), 1.0e-3_wp*norm2(phase%press_end(:, tool)))
+        small*norm2(phase%press_start(:, tool)), small*norm2(phase%press_end(:, tool)), &
+        small*norm2(new%internal_force))
   end function pressed_force
 
   !> A tool that is pressed and touches nothing; 0 where there is none.

@@ -21,7 +21,8 @@ module dd3_process_run
   use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
       shrink_increment, stepper_t, &
                                     try_increment
-  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
+  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over, &
+      release_warning
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -177,9 +178,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(phase_t) :: phase
+    real(wp), allocatable :: strain_before(:, :)
+    character(len=:), allocatable :: warning
     real(wp) :: next_output
 
+    strain_before = run%committed%internal(1, :, :)
     call begin_phase(model, number, phase, run%committed)
+    if (phase_is_over(phase, run%committed)) call log%say("phase '"//phase%name &
+        //"' has no increment: its early end is there from the start")
     do while (.not. phase_is_over(phase, run%committed))
       next_output = next_output_progress(model, phase, run%committed)
       call run_increment(run, model, phase, next_output, error)
@@ -192,6 +198,8 @@ contains
         return
       end if
     end do
+    warning = release_warning(phase, strain_before, run%committed)
+    if (len(warning) > 0) call log%say(warning)
     call run%fields%write(model, run%committed, error)
   end subroutine run_phase
 

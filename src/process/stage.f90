@@ -1,14 +1,16 @@
 !> The start of a phase: what only the state at that moment can tell.
 module dd3_process_stage
   use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_input_case, only : until_displacement, until_force
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: begin_phase, next_output_progress, phase_is_over
+  public :: begin_phase, next_output_progress, phase_is_over, release_warning
 
   !> How far a pressed tool that touches nothing is looked for along its line, mm.
   real(wp), parameter :: reach = 1.0e3_wp
@@ -18,11 +20,16 @@ module dd3_process_stage
   real(wp), parameter :: closed = 1.0e-9_wp
   !> Share of a phase by which an end is met.
   real(wp), parameter :: sharp = 1.0e-9_wp
+  !> Plastic strain in a release that is more than a little yielding backwards.
+  real(wp), parameter :: notable_strain = 1.0e-3_wp
 
 contains
 
   !> Begins a phase: forces go on from where they are, released contacts become forces that fade
   !> over the phase, and a pressed tool that touches nothing approaches to touch.
+  !>
+  !> A release is predicted elastic: beyond the largest force a tool can bear, the tangents of
+  !> loading would lead the sheet on along the falling branch instead of back.
   subroutine begin_phase(model, number, phase, state)
     !> The model.
     type(model_t), intent(in) :: model
@@ -33,25 +40,31 @@ contains
     !> The committed state.
     type(state_t), intent(inout) :: state
 
-    integer :: c, tool, node
+    integer :: c, tool
+    logical :: released
 
     phase = model%phase(number)
     state%phase = number
     state%progress = 0.0_wp
-    phase%load_start = state%external_force
+    phase%load_start = state%load
+    where (spread(phase%keeps_load, 1, 3)) phase%load_end = phase%load_start
     call take_press_start(phase, state)
-    if (phase%keeps_load) phase%load_end = phase%load_start
     where (spread(phase%pressed .and. phase%keeps_press, 1, 3)) phase%press_end = phase%press_start
+    call take_until_side(phase, state)
+    released = .false.
     do c = 1, model%n_contact
       tool = state%contact_tool(c)
       if (tool == 0) cycle
       if (phase%active(tool)) cycle
-      node = model%contact_node(c)
-      phase%load_start(:, node) = phase%load_start(:, node) - state%lambda(:, c)
+      state%fading(:, c) = state%fading(:, c) + state%lambda(:, c)
+      state%fading_tool(c) = tool
       state%lambda(:, c) = 0.0_wp
       state%status(c) = status_gap
       state%contact_tool(c) = 0
+      released = .true.
     end do
+    phase%fading = state%fading
+    if (released) state%plastic = .false.
     do tool = 1, model%n_tool
       if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, phase, tool, state)
     end do
@@ -79,6 +92,36 @@ contains
       end if
     end do
   end subroutine take_press_start
+
+  !> From which side the force is met that ends the phase early: the one it begins on.
+  subroutine take_until_side(phase, state)
+    !> The phase.
+    type(phase_t), intent(inout) :: phase
+    !> The committed state.
+    type(state_t), intent(in) :: state
+
+    if (phase%until%kind /= until_force) return
+    phase%until_from_below = until_value(phase, state) <= phase%until%value
+  end subroutine take_until_side
+
+  !> What is compared with the value of the early end: the displacement of its tool along its line
+  !> since the phase began, mm, or the force on it along that line, N; its size.
+  real(wp) function until_value(phase, state) result(value)
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> The state.
+    type(state_t), intent(in) :: state
+
+    associate (tool => phase%until%tool)
+      if (phase%until%kind == until_displacement) then
+        value = dot_product(phase%direction(:, tool), state%tool_displacement(:, tool) &
+            - phase%tool_start(:, tool))
+      else
+        value = dot_product(phase%direction(:, tool), state%tool_force(:, tool))
+      end if
+    end associate
+    value = abs(value)
+  end function until_value
 
   !> Moves a pressed tool that touches nothing along its line until it touches.
   subroutine approach(model, phase, tool, state)
@@ -142,6 +185,29 @@ contains
     if (progress > 1.0_wp) progress = huge(1.0_wp)
   end function next_output_progress
 
+  !> What the user is told where the sheet yields while the forces of released tools fade: as loads of
+  !> fixed direction they may lead it on where withdrawn tools would not. Empty elsewhere.
+  function release_warning(phase, strain_before, state) result(text)
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> Equivalent plastic strains at its start, `(n_point, n_element)`.
+    real(wp), intent(in) :: strain_before(:, :)
+    !> The state at its end.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    integer :: place(2)
+
+    text = ""
+    if (all(abs(phase%fading) <= 0.0_wp)) return
+    place = maxloc(state%internal(1, :, :) - strain_before)
+    associate (growth => state%internal(1, place(1), place(2)) - strain_before(place(1), place(2)))
+      if (growth > notable_strain) text = "warning: in phase '"//phase%name &
+        //"' the plastic strain of element "//to_text(place(2))//" grew by "//to_text(growth, 3) &
+        //" while the forces of released tools faded; compare with tools withdrawn by `move`"
+    end associate
+  end function release_warning
+
   !> Whether the phase has come to its end, or met its early end.
   logical function phase_is_over(phase, state)
     !> The running phase.
@@ -161,16 +227,14 @@ contains
     !> The committed state.
     type(state_t), intent(in) :: state
 
-    real(wp) :: line(3), value
+    real(wp), parameter :: displacement_tolerance = 1.0e-6_wp, force_tolerance = 1.0e-3_wp
 
-    line = phase%direction(:, phase%until%tool)
-    if (phase%until%kind == 1) then
-      value = dot_product(line, state%tool_displacement(:, phase%until%tool) - phase%tool_start(:, &
-          phase%until%tool))
-      until_met = abs(value) >= phase%until%value*(1.0_wp - 1.0e-6_wp)
+    if (phase%until%kind == until_displacement) then
+      until_met = until_value(phase, state) >= phase%until%value*(1.0_wp - displacement_tolerance)
+    else if (phase%until_from_below) then
+      until_met = until_value(phase, state) >= phase%until%value*(1.0_wp - force_tolerance)
     else
-      value = dot_product(line, state%tool_force(:, phase%until%tool))
-      until_met = abs(value) >= phase%until%value*(1.0_wp - 1.0e-3_wp)
+      until_met = until_value(phase, state) <= phase%until%value*(1.0_wp + force_tolerance)
     end if
   end function until_met
 

@@ -17,7 +17,7 @@ module dd3_system_contact
   real(wp), parameter :: touch = 1.0e-4_wp
   !> A contact force that makes no more than this of a gap is none, mm.
   real(wp), parameter :: round_off = 1.0e-12_wp
-  !> How far the predictor looks for a tool that touches nothing, mm.
+  !> How far the predictor looks for tools, mm: whatever comes near limits the increment.
   real(wp), parameter :: far = 1.0e3_wp
   !> A node stays with its tool unless another is nearer by this, mm.
   real(wp), parameter :: hysteresis = 1.0e-6_wp
@@ -124,7 +124,7 @@ contains
       if (state%status(c) == status_gap) cycle
       if (norm2(state%lambda(:, c)) > phase%penalty*round_off) touching(state%contact_tool(c)) = .true.
     end do
-    reach = merge(phase%search_distance, far, touching)
+    reach = far
     do c = 1, model%n_contact
       hint = state%hint(:, c)
       self%tool(c) = state%contact_tool(c)

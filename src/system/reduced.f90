@@ -115,7 +115,7 @@ contains
     pressed = phase%pressed(tool)
     d = contact%d(:, :, c)
     remaining = identity - contact%e(:, :, c)
-    residual = node_residual(phase, contact, problem, node, c)
+    residual = node_residual(phase, problem, node, c)
     problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%excess(:, c)
     if (.not. pressed) then
       problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
@@ -191,19 +191,17 @@ contains
   end subroutine add_share
 
   !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium
-  !> holds the unknown reaction, and the contact force's component is made to vanish instead.
-  pure function node_residual(phase, contact, problem, node, c) result(residual)
+  !> holds the unknown reaction, and the contact force's component follows the contact law instead.
+  pure function node_residual(phase, problem, node, c) result(residual)
     !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Contact operators of the candidates.
-    type(contact_work_t), intent(in) :: contact
     !> Residuals.
     type(linear_problem_t), intent(in) :: problem
     !> The node and its number among the candidates.
     integer, intent(in) :: node, c
     real(wp) :: residual(3)
 
-    residual = merge(contact%lambda(:, c), problem%residual(:, node), phase%prescribed(:, node))
+    residual = merge(-problem%excess(:, c), problem%residual(:, node), phase%prescribed(:, node))
   end function node_residual
 
   !> Adds a row vector to the force row of a pressed tool.
@@ -340,7 +338,7 @@ contains
                            + stiffness%value(:, 3, k)*problem%solution(first + 2))
       end do
       where (phase%prescribed(:, node)) change = 0.0_wp
-      increment(:, c) = -node_residual(phase, contact, problem, node, c) - change
+      increment(:, c) = -node_residual(phase, problem, node, c) - change
     end do
   end subroutine contact_force_increment
 

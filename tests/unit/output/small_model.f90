@@ -81,7 +81,7 @@ contains
     model%phase(1)%name = "clamp"
     model%phase(2)%name = "draw"
     model%phase(2)%control = 1
-    call new_state(state, 12, 8, 2, 1, 2, 2)
+    call new_state(state, 12, 8, 2, 1, 2, 2, 0)
     state%x = model%x0
     do i = 1, 3
       state%orientation(i, i, :, :) = 1.0_wp
