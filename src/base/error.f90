@@ -4,7 +4,7 @@ module dd3_base_error
   use dd3_base_kinds, only : i8
   implicit none
   private
-  public :: location_t, error_t, error_list_t, fatal_error, input_error, add_context
+  public :: location_t, error_t, error_list_t, fatal_error, input_error
 
   !> Where a piece of input was written.
   type :: location_t
@@ -111,16 +111,6 @@ contains
       end if
     end do
   end function caret_indent
-
-  !> Says on the way up what was being done.
-  subroutine add_context(error, text)
-    !> The error; nothing happens where there is none.
-    type(error_t), allocatable, intent(inout) :: error
-    !> What was being done.
-    character(len=*), intent(in) :: text
-
-    if (allocated(error)) error%message = text//": "//error%message
-  end subroutine add_context
 
   !> Adds an error to the list; nothing happens where there is none.
   subroutine error_list_push(self, error)

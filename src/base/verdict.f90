@@ -3,7 +3,7 @@ module dd3_base_verdict
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: verdict_t, verdict_converged, verdict_retry, verdict_impossible, worse
+  public :: verdict_t, verdict_converged, verdict_retry, verdict_impossible
 
   !> The step succeeded.
   integer, parameter :: verdict_converged = 0
@@ -25,15 +25,5 @@ module dd3_base_verdict
     !> Worst node, element, integration point and tool; 0 where it has no meaning.
     integer :: node = 0, element = 0, point = 0, tool = 0
   end type verdict_t
-
-contains
-
-  !> Whether the first verdict is worse than the second.
-  pure logical function worse(a, b)
-    !> The two verdicts.
-    type(verdict_t), intent(in) :: a, b
-
-    worse = a%outcome > b%outcome
-  end function worse
 
 end module dd3_base_verdict

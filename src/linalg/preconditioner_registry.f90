@@ -6,7 +6,7 @@ module dd3_linalg_preconditioner_registry
   use dd3_linalg_preconditioner, only : preconditioner_t
   implicit none
   private
-  public :: new_preconditioner, preconditioner_names
+  public :: new_preconditioner
 
   !> Names of the preconditioners.
   character(len=3), parameter :: preconditioner_names(1) = [character(len=3) :: "ilu"]

@@ -9,9 +9,9 @@ module dd3_linalg_tensor
   implicit none
   private
   public :: identity, kelvin_identity, kelvin_deviator_projector
-  public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_trace, kelvin_deviator
-  public :: trace, deviator, determinant, inverse, symmetric_eigen
-  public :: cross, outer, skew_vector, norm, solve_small
+  public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_deviator
+  public :: deviator, determinant, inverse, symmetric_eigen
+  public :: cross, norm, solve_small
 
   !> Square root of two and its inverse.
   real(wp), parameter :: root = sqrt(2.0_wp), half_root = 1.0_wp/sqrt(2.0_wp)
@@ -87,14 +87,6 @@ contains
     end do
   end function kelvin_rotation
 
-  !> Trace of the tensor behind a Kelvin vector.
-  pure real(wp) function kelvin_trace(v)
-    !> The Kelvin vector.
-    real(wp), intent(in) :: v(6)
-
-    kelvin_trace = v(1) + v(2) + v(3)
-  end function kelvin_trace
-
   !> Deviator of a Kelvin vector.
   pure function kelvin_deviator(v) result(s)
     !> The Kelvin vector.
@@ -105,14 +97,6 @@ contains
     s(1:3) = v(1:3) - mean
     s(4:6) = v(4:6)
   end function kelvin_deviator
-
-  !> Trace of a tensor.
-  pure real(wp) function trace(t)
-    !> The tensor.
-    real(wp), intent(in) :: t(3, 3)
-
-    trace = t(1, 1) + t(2, 2) + t(3, 3)
-  end function trace
 
   !> Deviator of a tensor.
   pure function deviator(t) result(s)
@@ -237,28 +221,6 @@ contains
     c(2) = a(3)*b(1) - a(1)*b(3)
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross
-
-  !> Dyadic product a b^T.
-  pure function outer(a, b) result(c)
-    !> The two vectors.
-    real(wp), intent(in) :: a(3), b(3)
-    real(wp) :: c(3, 3)
-
-    c(:, 1) = a*b(1)
-    c(:, 2) = a*b(2)
-    c(:, 3) = a*b(3)
-  end function outer
-
-  !> Axial vector w of the skew part of a tensor: skw(t) x = w x x.
-  pure function skew_vector(t) result(w)
-    !> The tensor.
-    real(wp), intent(in) :: t(3, 3)
-    real(wp) :: w(3)
-
-    w(1) = 0.5_wp*(t(3, 2) - t(2, 3))
-    w(2) = 0.5_wp*(t(1, 3) - t(3, 1))
-    w(3) = 0.5_wp*(t(2, 1) - t(1, 2))
-  end function skew_vector
 
   !> Length of a 3-vector.
   pure real(wp) function norm(a)

@@ -15,7 +15,7 @@ module element_cases
   private
   public :: law_t, patch_t
   public :: seed, random_number_in, random_rotation, rotation_about, elasticity, bent_law
-  public :: identities, make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system
+  public :: identities, make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system, element_volume
 
   !> A smooth law: T = T0 + C e + kappa (a.e) B e, with an unsymmetric tangent; kappa = 0 is
   !> elastic, flow > 0 adds a radial return (Wilkins 1964).
@@ -344,5 +344,25 @@ contains
       end associate
     end do
   end subroutine patch_system
+
+  !> Volume, mm3.
+  pure real(wp) function element_volume(element, x) result(volume)
+    !> The element's table.
+    type(element_t), intent(in) :: element
+    !> Positions, mm: `x(3,n_node)`.
+    real(wp), intent(in) :: x(3, element%n_node)
+
+    real(wp) :: j(3, 3)
+    integer :: p
+
+    volume = 0.0_wp
+    do p = 1, element%n_point
+      j = matmul(x, transpose(element%dshape(:, :, p)))
+      volume = volume + element%weight(p)*( &
+               j(1, 1)*(j(2, 2)*j(3, 3) - j(2, 3)*j(3, 2)) &
+               + j(1, 2)*(j(2, 3)*j(3, 1) - j(2, 1)*j(3, 3)) &
+               + j(1, 3)*(j(2, 1)*j(3, 2) - j(2, 2)*j(3, 1)))
+    end do
+  end function element_volume
 
 end module element_cases
