@@ -6,7 +6,7 @@ module dd3_linalg_matrix
   implicit none
   private
   public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-    multiply
+    multiply, clear, copy_blocks, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -265,6 +265,82 @@ contains
       end if
     end do
   end function position_of
+
+  !> Sets all blocks to zero.
+  pure subroutine clear(self)
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: self
+
+    call set_zero(size(self%value), self%value)
+  end subroutine clear
+
+  !> Kernel of `clear`: one stretch, where the array of blocks would be cleared block by block.
+  pure subroutine set_zero(n, value)
+    !> Number of values.
+    integer, intent(in) :: n
+    !> The values.
+    real(wp), intent(out) :: value(n)
+
+    value = 0.0_wp
+  end subroutine set_zero
+
+  !> Copies the blocks of a matrix into one of the same pattern.
+  pure subroutine copy_blocks(from, to)
+    !> The matrix copied.
+    type(block_matrix_t), intent(in) :: from
+    !> Its copy.
+    type(block_matrix_t), intent(inout) :: to
+
+    call copy_values(size(from%value), from%value, to%value)
+  end subroutine copy_blocks
+
+  !> Kernel of `copy_blocks`.
+  pure subroutine copy_values(n, from, to)
+    !> Number of values.
+    integer, intent(in) :: n
+    !> The values.
+    real(wp), intent(in) :: from(n)
+    !> Their copies.
+    real(wp), intent(out) :: to(n)
+
+    to = from
+  end subroutine copy_values
+
+  !> Adds the blocks of an element.
+  pure subroutine add_element(self, n_node, position, block)
+    !> The matrix.
+    type(block_matrix_t), intent(inout) :: self
+    !> Number of nodes of the element.
+    integer, intent(in) :: n_node
+    !> Where they go: row node, column node.
+    integer, intent(in) :: position(n_node, n_node)
+    !> The blocks: row component, column component, column node, row node.
+    real(wp), intent(in) :: block(9, n_node, n_node)
+
+    call add_blocks(n_node, position, block, size(self%column), self%value)
+  end subroutine add_element
+
+  !> Kernel of `add_element`.
+  pure subroutine add_blocks(n_node, position, block, n_block, value)
+    !> Number of nodes of the element.
+    integer, intent(in) :: n_node
+    !> See `add_element`.
+    integer, intent(in) :: position(n_node, n_node)
+    !> See `add_element`.
+    real(wp), intent(in) :: block(9, n_node, n_node)
+    !> Number of blocks of the matrix.
+    integer, intent(in) :: n_block
+    !> Blocks of the matrix.
+    real(wp), intent(inout) :: value(9, n_block)
+    integer :: a, b, k
+
+    do a = 1, n_node
+      do b = 1, n_node
+        k = position(a, b)
+        value(:, k) = value(:, k) + block(:, b, a)
+      end do
+    end do
+  end subroutine add_blocks
 
   !> Product y = A x.
   pure subroutine multiply(self, x, y)

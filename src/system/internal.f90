@@ -13,6 +13,7 @@ module dd3_system_internal
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_stiffness, only : element_stiffness
   use dd3_element_work, only : element_work_t
+  use dd3_linalg_matrix, only : add_element, clear
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_system, only : system_t
@@ -44,7 +45,7 @@ contains
 
     verdict%outcome = verdict_converged
     new%internal_force = 0.0_wp
-    if (with_stiffness) self%stiffness%value = 0.0_wp
+    if (with_stiffness) call clear(self%stiffness)
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
     !$omp& private(mine, colour, k, e, block, thread)
     thread = 1
@@ -126,7 +127,7 @@ contains
     type(verdict_t) :: verdict
     integer :: colour, k, e, block, thread
 
-    self%stiffness%value = 0.0_wp
+    call clear(self%stiffness)
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
     !$omp& private(verdict, colour, k, e, block, thread)
     thread = 1
@@ -162,7 +163,7 @@ contains
     type(verdict_t) :: verdict
     integer :: colour, k, e, block, thread
 
-    self%stiffness%value = 0.0_wp
+    call clear(self%stiffness)
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
     !$omp& private(verdict, colour, k, e, block, thread)
     thread = 1
@@ -197,16 +198,21 @@ contains
     !> Its workspace with kinematics, strain, axes and stress.
     type(element_work_t), intent(inout) :: work
 
-    integer :: a, b, k
-
-    work%tangent(:, :, :) = self%tangent(:, :, :, e)
+    call take_tangents(size(work%tangent), self%tangent(:, :, :, e), work%tangent)
     call element_stiffness(model%element, work)
-    do a = 1, size(self%position, 1)
-      do b = 1, size(self%position, 2)
-        k = self%position(a, b, e)
-        self%stiffness%value(:, :, k) = self%stiffness%value(:, :, k) + work%stiffness(:, :, b, a)
-      end do
-    end do
+    call add_element(self%stiffness, model%element%n_node, self%position(:, :, e), work%stiffness)
   end subroutine add_stiffness
+
+  !> Copies an element's tangents in one stretch.
+  pure subroutine take_tangents(n, from, to)
+    !> Number of values.
+    integer, intent(in) :: n
+    !> The tangents of the element.
+    real(wp), intent(in) :: from(n)
+    !> Those of the workspace.
+    real(wp), intent(out) :: to(n)
+
+    to = from
+  end subroutine take_tangents
 
 end module dd3_system_internal

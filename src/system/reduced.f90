@@ -10,7 +10,7 @@
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
-  use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_matrix, only : block_matrix_t, copy_blocks, position_of
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_contact_operator, only : status_gap
@@ -72,7 +72,7 @@ contains
 
     integer :: c, node
 
-    reduced%value(:, :, :) = stiffness%value
+    call copy_blocks(stiffness, reduced)
     do node = 1, model%n_node
       problem%rhs(3*node - 2:3*node) = -problem%residual(:, node)
     end do
