@@ -102,14 +102,16 @@ contains
     !> The derivatives of the positions, mm.
     real(wp), intent(out) :: jacobian(n_slope, 3)
 
+    real(wp) :: total
     integer :: a, i, q
 
-    jacobian = 0.0_wp
-    do a = 1, n_node
-      do i = 1, 3
-        do q = 1, n_slope
-          jacobian(q, i) = jacobian(q, i) + slope(q, a)*x(i, a)
+    do i = 1, 3
+      do q = 1, n_slope
+        total = 0.0_wp
+        do a = 1, n_node
+          total = total + slope(q, a)*x(i, a)
         end do
+        jacobian(q, i) = total
       end do
     end do
   end subroutine add_jacobians

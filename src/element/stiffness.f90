@@ -92,7 +92,7 @@ contains
     end do
     do g = 1, n_group
       do i = 1, 3
-        work%column_factor(i, :, g) = work%column_factor(i, :, g) &
+        work%column_factor(:, i, g) = work%column_factor(:, i, g) &
           + (work%curvature(g) - work%pressure(g))*work%mean_gradient(:, i, g)
       end do
     end do
@@ -131,19 +131,14 @@ contains
     !> Gradients, 1/mm.
     real(wp), intent(in) :: gradient(n_node, 3)
     !> The sums.
-    real(wp), intent(inout) :: factor(3, n_node)
+    real(wp), intent(inout) :: factor(n_node, 3)
 
-    real(wp) :: t(3, 3)
-    integer :: a, i, j
+    real(wp) :: t(3)
+    integer :: i
 
-    do j = 1, 3
-      do i = 1, 3
-        t(i, j) = weight*unit(place(i, j))*kelvin(place(i, j))
-      end do
-    end do
-    do a = 1, n_node
-      factor(:, a) = factor(:, a) + t(:, 1)*gradient(a, 1) + t(:, 2)*gradient(a, 2) &
-                     + t(:, 3)*gradient(a, 3)
+    do i = 1, 3
+      t = weight*unit(place(:, i))*kelvin(place(:, i))
+      factor(:, i) = factor(:, i) + t(1)*gradient(:, 1) + t(2)*gradient(:, 2) + t(3)*gradient(:, 3)
     end do
   end subroutine add_factor
 
@@ -233,7 +228,7 @@ contains
     !> Sizes.
     integer, intent(in) :: n_node, n_group
     !> p_a and q_b, N/mm2.
-    real(wp), intent(in) :: row_factor(3, n_node, n_group), column_factor(3, n_node, n_group)
+    real(wp), intent(in) :: row_factor(n_node, 3, n_group), column_factor(n_node, 3, n_group)
     !> Mean gradients, 1/mm.
     real(wp), intent(in) :: mean_gradient(n_node, 3, n_group)
     !> The stiffness.
@@ -244,12 +239,12 @@ contains
 
     do g = 1, n_group
       do a = 1, n_node
-        p = row_factor(:, a, g)
+        p = row_factor(a, :, g)
         s = mean_gradient(a, :, g)
         do b = 1, n_node
           do k = 1, 3
             stiffness(:, k, b, a) = stiffness(:, k, b, a) + p*mean_gradient(b, k, g) &
-                                    + s*column_factor(k, b, g)
+                                    + s*column_factor(b, k, g)
           end do
         end do
       end do

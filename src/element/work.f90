@@ -50,7 +50,7 @@ module dd3_element_work
     real(wp), allocatable :: jacobian(:, :, :), jacobian_old(:, :, :)
     !> Inner: tangent contracted with the column node's gradient, `half(3,3,n_node,3,n_point)`.
     real(wp), allocatable :: half(:, :, :, :, :)
-    !> Inner: factors of the groups' outer products, N/mm2: `row_factor(3,n_node,n_group)`,
+    !> Inner: factors of the groups' outer products, N/mm2: `row_factor(n_node,3,n_group)`,
     !> `column_factor` alike, and the group's volume integral of the mean stress, N mm:
     !> `pressure(n_group)`.
     real(wp), allocatable :: row_factor(:, :, :), column_factor(:, :, :), pressure(:)
@@ -79,7 +79,7 @@ contains
     allocate (self%force(3, n), self%stiffness(3, 3, n, n), self%rate(6, p), self%spin(p))
     allocate (self%jacobian(3, p, 3), self%jacobian_old(3, p, 3), self%cauchy(3, 3, p))
     allocate (self%half(3, 3, n, 3, p))
-    allocate (self%row_factor(3, n, g), self%column_factor(3, n, g), self%pressure(g), &
+    allocate (self%row_factor(n, 3, g), self%column_factor(n, 3, g), self%pressure(g), &
               self%curvature(g))
   end subroutine new_element_work
 
