@@ -7,29 +7,44 @@ module dd3_element_force
   use dd3_element_work, only : element_work_t
   implicit none
   private
-  public :: element_force, global_stress
+  public :: element_cauchy, element_force, global_stress
 
 contains
 
-  !> Internal forces, after `element_strain` and once `work%stress` is set.
+  !> Stresses in the global frame, after `element_strain` and once `work%stress` is set.
+  subroutine element_cauchy(element, work)
+    !> The element's table.
+    type(element_t), intent(in) :: element
+    !> `cauchy` and `pressure` are set.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: s(3, 3)
+    integer :: g, p
+
+    work%pressure = 0.0_wp
+    do p = 1, element%n_point
+      work%cauchy(:, :, p) = global_stress(work%stress(:, p), work%rotation(:, :, p))
+      g = element%group(p)
+      if (g == 0) cycle
+      s = work%weight(p)*work%cauchy(:, :, p)
+      work%pressure(g) = work%pressure(g) + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
+    end do
+  end subroutine element_cauchy
+
+  !> Internal forces, after `element_cauchy`.
   subroutine element_force(element, work)
     !> The element's table.
     type(element_t), intent(in) :: element
-    !> `force`, `cauchy` and `pressure` are set.
+    !> `force` is set.
     type(element_work_t), intent(inout) :: work
 
-    integer :: p
-
-    do p = 1, element%n_point
-      work%cauchy(:, :, p) = global_stress(work%stress(:, p), work%rotation(:, :, p))
-    end do
     if (element%n_node == 8 .and. element%n_point == 8 .and. element%n_group == 1) then
       call add_forces(8, 8, 1, element%group, work%weight, work%cauchy, work%gradient, &
-                      work%mean_gradient, work%force, work%pressure)
+                      work%mean_gradient, work%pressure, work%force)
     else
       call add_forces(element%n_node, element%n_point, element%n_group, element%group, &
-                      work%weight, work%cauchy, work%gradient, work%mean_gradient, work%force, &
-                      work%pressure)
+                      work%weight, work%cauchy, work%gradient, work%mean_gradient, &
+                      work%pressure, work%force)
     end if
   end subroutine element_force
 
@@ -56,7 +71,7 @@ contains
 
   !> Sums the forces over the points.
   pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, &
-                             mean_gradient, force, pressure)
+                             mean_gradient, pressure, force)
     !> Sizes.
     integer, intent(in) :: n_node, n_point, n_group
     !> Group of each point.
@@ -67,36 +82,32 @@ contains
     real(wp), intent(in) :: cauchy(3, 3, n_point)
     !> Gradients and their means, 1/mm.
     real(wp), intent(in) :: gradient(n_node, 3, n_point), mean_gradient(n_node, 3, n_group)
+    !> Volume integral of the mean stress of each group, N mm.
+    real(wp), intent(in) :: pressure(n_group)
     !> Forces, N.
     real(wp), intent(out) :: force(3, n_node)
-    !> Volume integral of the mean stress of each group, N mm.
-    real(wp), intent(out) :: pressure(n_group)
 
-    real(wp) :: s(3, 3), mean
-    integer :: a, g, i, p
+    real(wp) :: by_node(n_node, 3), s(3, 3), mean
+    integer :: g, i, p
 
-    force = 0.0_wp
-    pressure = 0.0_wp
+    by_node = 0.0_wp
     do p = 1, n_point
       s = weight(p)*cauchy(:, :, p)
-      g = group(p)
-      if (g > 0) then
+      if (group(p) > 0) then
         mean = (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
-        pressure(g) = pressure(g) + mean
         do i = 1, 3
           s(i, i) = s(i, i) - mean
         end do
       end if
-      do a = 1, n_node
-        force(:, a) = force(:, a) + s(:, 1)*gradient(a, 1, p) + s(:, 2)*gradient(a, 2, p) &
-                      + s(:, 3)*gradient(a, 3, p)
+      do i = 1, 3
+        by_node(:, i) = by_node(:, i) + s(i, 1)*gradient(:, 1, p) + s(i, 2)*gradient(:, 2, p) &
+                        + s(i, 3)*gradient(:, 3, p)
       end do
     end do
     do g = 1, n_group
-      do a = 1, n_node
-        force(:, a) = force(:, a) + pressure(g)*mean_gradient(a, :, g)
-      end do
+      by_node = by_node + pressure(g)*mean_gradient(:, :, g)
     end do
+    force = transpose(by_node)
   end subroutine add_forces
 
 end module dd3_element_force

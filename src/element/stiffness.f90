@@ -13,7 +13,6 @@
 !> (9 n_node) x (3 n_point) by a (3 n_point) x n_node matrix.
 module dd3_element_stiffness
   use dd3_base_kinds, only : wp
-  use dd3_element_force, only : element_force
   use dd3_element_moduli, only : point_moduli
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
@@ -29,14 +28,13 @@ module dd3_element_stiffness
 
 contains
 
-  !> Forces and stiffness, after `element_strain` and once `work%stress` and `work%tangent` are set.
+  !> Stiffness, after `element_cauchy` and once `work%tangent` is set.
   subroutine element_stiffness(element, work)
     !> The element's table.
     type(element_t), intent(in) :: element
-    !> `stiffness` is set, and all that `element_force` sets.
+    !> `stiffness` is set.
     type(element_work_t), intent(inout) :: work
 
-    call element_force(element, work)
     associate (n => element%n_node, m => element%n_point, g => element%n_group)
       if (n == 8 .and. m == 8 .and. g == 1) then
         call contract_points(8, 8, 1, element%group, work)

@@ -8,7 +8,7 @@ module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_element_force, only : element_force
+  use dd3_element_force, only : element_cauchy, element_force
   use dd3_element_increment, only : element_strain
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_stiffness, only : element_stiffness
@@ -106,6 +106,7 @@ contains
       end do
       new%orientation(:, :, :, e) = work%rotation
       work%stress(:, :) = new%stress(:, :, e)
+      call element_cauchy(model%element, work)
       call element_force(model%element, work)
       do a = 1, size(nodes)
         new%internal_force(:, nodes(a)) = new%internal_force(:, nodes(a)) + work%force(:, a)
@@ -141,6 +142,7 @@ contains
             call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
             call element_strain(model%element, old%orientation(:, :, :, e), work)
             work%stress(:, :) = new%stress(:, :, e)
+            call element_cauchy(model%element, work)
           end associate
           call add_stiffness(self, model, e, self%element(thread))
         end do
@@ -178,6 +180,7 @@ contains
             work%strain = 0.0_wp
             work%rotation(:, :, :) = old%orientation(:, :, :, e)
             work%stress(:, :) = old%stress(:, :, e)
+            call element_cauchy(model%element, work)
           end associate
           call add_stiffness(self, model, e, self%element(thread))
         end do
@@ -195,7 +198,7 @@ contains
     type(model_t), intent(in) :: model
     !> The element.
     integer, intent(in) :: e
-    !> Its workspace with kinematics, strain, axes and stress.
+    !> Its workspace with kinematics, strain, axes and stresses.
     type(element_work_t), intent(inout) :: work
 
     call take_tangents(size(work%tangent), self%tangent(:, :, :, e), work%tangent)

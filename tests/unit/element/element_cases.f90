@@ -3,7 +3,7 @@ module element_cases
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_element_force, only : element_force
+  use dd3_element_force, only : element_cauchy, element_force
   use dd3_element_increment, only : element_strain
   use dd3_element_kinematics, only : element_kinematics
   use dd3_element_registry, only : element_name, new_element
@@ -244,6 +244,8 @@ contains
       call evaluate_law(law, start(:, p), work%strain(:, p), work%stress(:, p), &
                         work%tangent(:, :, p))
     end do
+    call element_cauchy(element, work)
+    call element_force(element, work)
     call element_stiffness(element, work)
   end subroutine evaluate
 
