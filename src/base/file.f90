@@ -1,6 +1,7 @@
 !> Text files whose every write is checked. The flush of the Fortran library does not report a full
 !> disk, so these go through the POSIX calls creat, write, ftruncate and close. After a failed
-!> write the file is cut back to its last whole line.
+!> write the file is cut back to its last whole line. A file may keep room on the disk for what its
+!> buffer holds: a full disk is then found while all lines can still be written.
 module dd3_base_file
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_ptr, c_null_char, &
                                           c_f_pointer, c_associated
@@ -14,7 +15,9 @@ module dd3_base_file
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
   !> Characters gathered before they are handed to the system.
-  integer, parameter :: buffer_size = 65536
+  integer, parameter :: buffer_size = 16384
+  !> Room kept on the disk: for a full buffer, and for what is added while a run comes to its end.
+  integer(i8), parameter :: room_kept = 2*buffer_size
   !> Longest time a line waits in the buffer while others follow, s.
   real(wp), parameter :: longest_wait = 1.0_wp
   !> Error numbers of Linux: interrupted call, file exists, too large, disk full, quota used up.
@@ -40,11 +43,14 @@ module dd3_base_file
     real(wp) :: flushed = 0.0_wp
     !> Whether a write failed.
     logical :: failed = .false.
+    !> Whether room is kept for what waits; whether it was said that there is none any more.
+    logical :: keeps_room = .false., full = .false.
   contains
     procedure :: create => file_create
     procedure :: attach => file_attach
     procedure :: put => file_put
     procedure :: flush => file_flush
+    procedure :: keep_room => file_keep_room
     procedure :: reserve => file_reserve
     procedure :: release => file_release
     procedure :: close => file_close
@@ -151,6 +157,8 @@ contains
     self%whole = 0
     self%length = 0
     self%failed = .false.
+    self%keeps_room = .false.
+    self%full = .false.
     self%flushed = wall_time()
   end subroutine file_attach
 
@@ -162,24 +170,29 @@ contains
     character(len=*), intent(in) :: text
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
     integer :: first, n
 
     if (self%failed) return
     first = 1
     do while (first <= len(text))
       if (self%used == buffer_size) then
-        call self%flush(error)
-        if (allocated(error)) return
+        call self%flush(late)
+        if (allocated(late)) call move_alloc(late, error)
+        if (self%failed) return
       end if
       n = min(len(text) - first + 1, buffer_size - self%used)
       self%buffer(self%used + 1:self%used + n) = text(first:first + n - 1)
       self%used = self%used + n
       first = first + n
     end do
-    if (wall_time() - self%flushed > longest_wait) call self%flush(error)
+    if (wall_time() - self%flushed <= longest_wait) return
+    call self%flush(late)
+    if (allocated(late)) call move_alloc(late, error)
   end subroutine file_put
 
-  !> Hands what waits to the system.
+  !> Hands what waits to the system, into the room kept for it; an error says that no more can be
+  !> kept.
   subroutine file_flush(self, error)
     !> The file.
     class(file_t), intent(inout) :: self
@@ -187,10 +200,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: first
     integer(c_size_t) :: n
-    integer(c_int) :: status
+    integer(c_int) :: status, cause
 
     self%flushed = wall_time()
     if (self%failed .or. self%descriptor < 0) return
+    cause = 0
+    if (self%keeps_room .and. .not. self%full) then
+      call try_to_reserve(self, self%length, self%used + room_kept, cause)
+      self%full = cause /= 0
+    end if
     first = 1
     do while (first <= self%used)
       n = posix_write(self%descriptor, self%buffer(first:self%used), &
@@ -208,7 +226,20 @@ contains
       first = first + int(n)
     end do
     self%used = 0
+    if (self%failed .or. cause == 0) return
+    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
   end subroutine file_flush
+
+  !> From now on room is kept on the disk for what waits in the buffer.
+  subroutine file_keep_room(self, error)
+    !> The file, open.
+    class(file_t), intent(inout) :: self
+    !> Says why there is no room.
+    type(error_t), allocatable, intent(out) :: error
+
+    self%keeps_room = .true.
+    call self%flush(error)
+  end subroutine file_keep_room
 
   !> Keeps the book of the file's length and of its whole lines.
   subroutine count_written(self, text)
@@ -232,8 +263,23 @@ contains
     integer(i8), intent(in) :: size, more
     !> Says why there is no room.
     type(error_t), allocatable, intent(out) :: error
-    integer(c_long) :: limits(2)
     integer(c_int) :: cause
+
+    call try_to_reserve(self, size, more, cause)
+    if (cause == 0) return
+    call self%release()
+    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
+  end subroutine file_reserve
+
+  !> Reserves room behind the file's end.
+  subroutine try_to_reserve(self, size, more, cause)
+    !> The file.
+    class(file_t), intent(in) :: self
+    !> Its size now, and how much it may grow.
+    integer(i8), intent(in) :: size, more
+    !> Why there is no room; 0: there is, or the file system does not tell.
+    integer(c_int), intent(out) :: cause
+    integer(c_long) :: limits(2)
 
     cause = 0
     if (posix_getrlimit(rlimit_fsize, limits) == 0) then
@@ -243,11 +289,8 @@ contains
       if (linux_fallocate(self%descriptor, keep_size, int(size, c_long), &
                           int(more, c_long)) /= 0) cause = errno()
     end if
-    if (cause == efbig .or. cause == enospc .or. cause == edquot) then
-      call self%release()
-      call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
-    end if
-  end subroutine file_reserve
+    if (cause /= efbig .and. cause /= enospc .and. cause /= edquot) cause = 0
+  end subroutine try_to_reserve
 
   !> Gives back the room that is reserved and not used.
   subroutine file_release(self)
@@ -271,6 +314,7 @@ contains
 
     if (self%descriptor < 0) return
     call self%flush(error)
+    if (self%keeps_room) call self%release()
     status = posix_close(self%descriptor)
     self%descriptor = -1
     if (status /= 0 .and. .not. self%failed) then

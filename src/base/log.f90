@@ -77,6 +77,7 @@ contains
     if (.not. allocated(self%held)) call self%start(quiet)
     self%quiet = quiet
     call self%file%create(path, error)
+    if (.not. allocated(error)) call self%file%keep_room(error)
     if (allocated(error)) return
     call self%file%put(self%held, error)
     self%held = ""

@@ -45,6 +45,7 @@ contains
     self%length = 0
     self%cells = 0
     call self%file%create(path, error)
+    if (.not. allocated(error)) call self%file%keep_room(error)
   end subroutine table_open
 
   !> Adds a cell with text, in quotes where it needs them.

@@ -83,6 +83,28 @@ def small_disk(program, directory):
     check(fields[:4] == b"\x89HDF" and 100_000 < len(fields) <= SIZE_LIMIT, "fields.vtkhdf is not whole")
 
 
+def full_disk(program, directory):
+    """A small disk that fills up: every increment that was done can be read, in both tables."""
+    inner = 'mount -t tmpfs -o size="$1" none "$2" && shift 2 && "$@"'
+    for size in ("700k", "900k"):
+        disk, copy = directory / size, directory / f"{size}.copy"
+        disk.mkdir(parents=True)
+        mounted = ["unshare", "--mount", "--map-root-user", "sh", "-c", inner, "sh", size, disk]
+        if subprocess.run(mounted + ["true"], stderr=subprocess.DEVNULL, check=False).returncode != 0:
+            print("no file system of a given size can be made here: full_disk is left out")
+            return
+        both = '"$1" --output "$2/out" "$3"; code=$?; cp -r "$2/out" "$4"; exit $code'
+        done = subprocess.run(mounted + ["sh", "-c", both, "sh", program, disk, BENDING, copy], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
+        check(done.returncode == 3 and "No space left" in done.stdout, f"{done.returncode}:\n{done.stdout}")
+        history, status = table(copy / "history.csv"), table(copy / "status.csv")
+        increments = [row["increment"] for row in history]
+        accepted = [row["increment"] for row in status if row["outcome"] == "accepted"]
+        check(increments == ["0"] + accepted, f"history.csv ends at {increments[-1]}, status.csv at {accepted[-1:]}")
+        check(len(accepted) > 20, f"no room for more than {len(accepted)} increments")
+        check("No space left" in (copy / "job.log").read_text(encoding="utf-8"), "job.log does not say why it stopped")
+
+
 def full_device(program, directory):
     """A table that cannot be written at all."""
     directory.mkdir(parents=True)
@@ -124,7 +146,7 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, small_disk, full_device, no_directory, interrupted):
+    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
