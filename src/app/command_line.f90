@@ -123,8 +123,6 @@ contains
       if (name == "--set") then
         override%s = value
         options%overrides = [options%overrides, override]
-        if (index(value, "=") < 2) call fatal_error(error, "--set asks for name=value, not '"// &
-            value//"'")
       end if
     case ("--help", "-h")
       options%help = .true.

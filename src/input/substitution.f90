@@ -54,14 +54,14 @@ contains
       binding = binding_t(overridden=.true.)
       binding%at%file = "--set "//overrides(i)%s
       binding%at%order = 0
-      if (equals < 2 .or. equals == len_trim(overrides(i)%s)) then
-        call errors%push_input(binding%at, "a parameter is set as name=value")
-        cycle
-      end if
       binding%name = lower_case(trim(adjustl(slice(overrides(i)%s, 1, equals - 1))))
       line%file = binding%at%file
       line%text = overrides(i)%s(equals + 1:)
-      call split_line(line, binding%value, continues, errors)
+      if (equals > 0) call split_line(line, binding%value, continues, errors)
+      if (binding%name == "" .or. binding%value%count == 0) then
+        call errors%push_input(binding%at, "a parameter is set as --set name=value")
+        cycle
+      end if
       if (position(self, binding%name) > 0) then
         call errors%push_input(binding%at, "parameter '"//binding%name//"' is set twice")
       else
