@@ -9,6 +9,7 @@ module dd3_input_value
   use dd3_input_block, only : entry_t, token_t
   use dd3_input_number, only : parse_real, parse_integer
   use dd3_input_table, only : axis_of
+  use dd3_input_token, only : line_t, token_list_t, add_token, split_line
   implicit none
   private
   public :: check_value, describe, split_words, word_length, not_available, is_on, form_for, &
@@ -267,6 +268,7 @@ contains
 
     integer :: i
 
+    call unfold_law(entry, errors)
     entry%value(1)%text = lower_case(entry%value(1)%text)
     if (any(split_words(row%later) == entry%value(1)%text)) then
       call errors%push_input(entry%value(1)%at, "'"//entry%value(1)%text//"' "//not_available)
@@ -295,6 +297,31 @@ contains
       i = i + 3
     end do
   end subroutine check_law
+
+  !> Cuts a whole law in one pair of quotes into its words, as a parameter may hold it.
+  subroutine unfold_law(entry, errors)
+    !> The entry.
+    type(entry_t), intent(inout) :: entry
+    !> Receives the error of a quote inside that is not closed.
+    type(error_list_t), intent(inout) :: errors
+
+    type(token_list_t) :: word
+    type(line_t) :: line
+    logical :: continues
+    integer :: i
+
+    if (.not. entry%value(1)%quoted .or. scan(entry%value(1)%text, " =") == 0) return
+    line%file = entry%value(1)%at%file
+    line%text = entry%value(1)%text
+    call split_line(line, word, continues, errors)
+    do i = 1, word%count
+      word%item(i)%at = entry%value(1)%at
+    end do
+    do i = 2, size(entry%value)
+      call add_token(word, entry%value(i)%text, entry%value(i)%quoted, entry%value(i)%at)
+    end do
+    if (word%count > 0) entry%value = word%item(:word%count)
+  end subroutine unfold_law
 
   !> Whether a word is a point `p:Y`.
   pure logical function is_point(token)
