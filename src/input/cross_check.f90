@@ -20,7 +20,7 @@ contains
     !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i
+    integer :: i, before
 
     do i = 1, size(case%blank)
       if (case%blank(i)%source%valid) call check_blank(case%blank(i), errors)
@@ -38,7 +38,9 @@ contains
       case ("limits")
         call check_limits(case%limits, case%deck%block(i), errors)
       case ("output")
+        before = errors%count
         call check_output(case, case%deck%block(i), errors)
+        if (errors%count == before) call check_travel(case, case%deck%block(i), errors)
       end select
     end do
     do i = 1, size(case%phase)
@@ -213,6 +215,35 @@ contains
       end if
     end associate
   end subroutine check_output
+
+  !> Checks that there is travel where fields are to be written by it.
+  subroutine check_travel(case, block, errors)
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The output's block.
+    type(block_t), intent(in) :: block
+    !> Receives the error.
+    type(error_list_t), intent(inout) :: errors
+
+    if (case%output%fields /= fields_every .and. case%output%fields /= fields_at) return
+    if (anything_travels(case)) return
+    call errors%push_input(block%at("fields"), &
+        "fields by travel, and in no phase of this job does a tool control: nothing travels", &
+        "fields = increments N where every phase has control = load")
+  end subroutine check_travel
+
+  !> Whether a tool controls one of the phases, as far as they can be read.
+  pure logical function anything_travels(case)
+    !> The case.
+    type(case_t), intent(in) :: case
+
+    integer :: i
+
+    anything_travels = size(case%phase) == 0
+    do i = 1, size(case%phase)
+      if (case%phase(i)%control > 0 .or. .not. case%phase(i)%source%valid) anything_travels = .true.
+    end do
+  end function anything_travels
 
   !> Reports columns of the history table that would bear a tool's name.
   subroutine check_history_names(case, errors)

@@ -325,7 +325,7 @@ contains
       form="every count"), &
       row("fields", kind_other, "", "-", &
       "fields every so many mm of travel in the phase, at given travels, or every so many "// &
-          "increments; left out: first and last state", &
+          "increments; always the first state and each phase's last", &
           form="every number [mm]/at number.../increments count"), &
       row("restart", kind_other, "", "-", "a restart file every so many increments", &
       form="every count", later="*"), &
