@@ -1,7 +1,7 @@
 #!/usr/bin/env -S uv run --script
 # /// script
 # requires-python = ">=3.11"
-# dependencies = ["numpy==2.4.6", "scipy==1.17.1"]
+# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6", "scipy==1.17.1"]
 # ///
 """Find the parameters of a yield criterion and of a hardening law from measured values.
 
@@ -14,11 +14,13 @@ surface is not convex, count as infinitely bad. The result is a file with one *M
   Yld'91 with exponent 6, also from yield stresses (over the one along rolling), the equibiaxial one with double weight:
     identify.py steel --criterion yld91 --fix m=6 --r 0:1.79 45:1.51 90:2.27 --stress 45:1.08 90:1.03 \\
         --biaxial-stress 1.18:2
-  A Voce law from a tension curve:
-    identify.py steel --hardening voce --curve tension.csv
+  A Voce law from a tension curve; with a back-stress too, from one that goes on in compression:
+    identify.py steel --hardening voce --curve tension.csv --plot steel.png
+    identify.py steel --hardening voce --backstress lemaitre_chaboche --curve reversal.csv
 
-The curve is a table: logarithmic strain and true stress (MPa) in two columns, separated by commas; lines that do not
-begin with a number are passed over.
+The curve is a table: logarithmic strain and true stress (MPa) in two columns, separated by commas, semicolons or
+blanks; lines before the first number are passed over. --data names a file that holds in each line what the options --r,
+--stress and so on give, such as `r 45 1.51` or `biaxial_stress 1.18 2`; # begins a comment.
 """
 
 import argparse
@@ -31,36 +33,44 @@ from pathlib import Path
 
 try:
     import numpy as np
-    from scipy.optimize import least_squares
+    from scipy.optimize import differential_evolution, least_squares
 except ImportError as error:
-    sys.exit(f"{error}: pip install -r utils/requirements-identify.txt")
+    sys.exit(f"{error}: run utils/install_needed.sh, or pip install -r utils/requirements.txt")
 
-ALONG, THROUGH = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
+from measurements import KEYS, TENSION, Datum, Problem, from_argument, read_curve, read_data
+
 UNIT = "perfect Y0=100"  # the flow stress with which criteria are tried
 REFUSED = 1e3  # residual of a set that the program does not take
 PULL = 1e-3  # weight of the distance from isotropy: decides what the data leave open
+ENOUGH = 1e-3  # root of the sum of squares of the data below which no other start is tried
+BORDER = 60  # generations along a border of convexity
+EVALUATIONS = 60  # of a descent, at most
+STEP = 1e-4  # of the differences, over the size of the parameter
 
-# Criterion: its parameters with start, lowest and highest value; the values of those that are not sought.
-YLD2004 = [letter + place for letter in "cd" for place in ("12", "13", "21", "23", "31", "32", "66")]
+# Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the number of
+# values it takes at least.
+NORMAL, SHEAR = ("12", "13", "21", "23", "31", "32"), ("66",)
 CRITERIA = {
-    "hill48": ({"F": (0.5, -1, 5), "G": (0.5, -1, 5), "H": (0.5, -1, 5), "N": (1.5, 0.05, 10)}, {}),
-    "hosford": ({"m": (6, 2, 100)}, {}),
-    "yld91": ({name: (1, -3, 4) for name in "abch"}, {"m": 8}),
+    "hill48": ({"F": (0.5, -1, 5), "G": (0.5, -1, 5), "H": (0.5, -1, 5), "N": (1.5, 0.05, 10)}, {}, 3),
+    "hosford": ({"m": (6, 2, 100)}, {}, 1),
+    "yld91": ({name: (1, -3, 4) for name in "abch"}, {"m": 8}, 3),
     "karafillis_boyce": ({"c": (0.3, 0, 1), "scale": (2 / 3, 0.1, 2), "alpha1": (1, 0, 3), "alpha2": (1, 0, 3),
-                          "gamma3": (1.5, 0.1, 5)}, {"k": 4}),
-    "drucker": ({"c": (0.5, -3.37, 2.24), **{name: (1, -3, 4) for name in ("C1", "C2", "C3")}, "C6": (1, 0.05, 4)}, {}),
+                          "gamma3": (1.5, 0.1, 5)}, {"k": 4}, 3),
+    "drucker": ({"c": (0.5, -3.37, 2.24), **{name: (1, -3, 4) for name in ("C1", "C2", "C3")}, "C6": (1, 0.05, 4)},
+                {}, 3),
     "cazacu_barlat2001": ({**{f"a{i}": (1, 0.05, 5) for i in (1, 2, 3, 4)},
-                           **{f"b{i}": (1, -5, 5) for i in (1, 2, 3, 4, 5, 10)}, "c": (0.5, -3.37, 2.24)}, {}),
-    "yld2004": ({name: (1, -3, 4) for name in YLD2004}, {"m": 8}),
+                           **{f"b{i}": (1, -5, 5) for i in (1, 2, 3, 4, 5, 10)}, "c": (0.5, -3.37, 2.24)}, {}, 3),
+    "yld2004": ({letter + place: (1, -3, 4) for letter in "cd" for place in NORMAL + SHEAR}, {"m": 8}, 3),
     "cpb06": ({"C12": (0, -3, 3), "C13": (0, -3, 3), "C22": (1, -4, 4), "C23": (0, -3, 3), "C33": (1, -4, 4),
-               "C66": (1, 0.05, 5), "k": (0, -0.99, 0.99)}, {"C11": 1, "m": 2}),
+               "C66": (1, 0.05, 5), "k": (0, -0.99, 0.99)}, {"C11": 1, "m": 2}, 3),
 }
-LAWS = ("linear", "swift", "voce", "ludwick", "hockett_sherby", "swift_voce")
+LAWS = ("linear", "swift", "voce", "swift_voce", "ludwick", "hockett_sherby", "table")
+BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
 
 
-def law_text(name, values):
+def law_text(name, values, digits=10):
     """A law with its parameters, as it stands in the input."""
-    return " ".join([name, *(f"{key}={value:.10g}" for key, value in values.items())])
+    return " ".join([name, *(f"{key}={value:.{digits}g}" for key, value in values.items())])
 
 
 class Points:
@@ -75,8 +85,10 @@ class Points:
         for i, laws in enumerate(materials):
             block = [f"*MATERIAL m{i}", *self.elastic.split("\n"), *(f"  {line}" for line in laws)]
             for j, (control, angle, targets) in enumerate(paths):
-                block += [f"*POINT p{i}_{j}", f"  material = m{i}", f"  angle = {angle:.10g}", f"  control = {control}"]
-                block += [f"  target = {' '.join(f'{value:.12g}' for value in values)} steps=1" for values in targets]
+                block += [f"*POINT p{i}_{j}", f"  material = m{i}", f"  angle = {angle:.10g}"]
+                block.append(f"  control = {control}")
+                block += [f"  target = {' '.join(f'{value:.12g}' for value in values)} steps={steps}"
+                          for values, steps in targets]
             lines += block
             owner += [i] * len(block)
         return "\n".join(lines) + "\n", owner
@@ -91,7 +103,8 @@ class Points:
                 done = subprocess.run([self.program, "--quiet", "--output", str(out), str(file)], capture_output=True,
                                       text=True, check=False)
             except OSError as error:
-                sys.exit(f"{self.program}: {error.strerror}")
+                raise Problem(f"{self.program}: error: {error.strerror}\n"
+                              "  expected: --program with the path of dd3imp") from None
             points = {}
             if done.returncode == 0:
                 with open(out / "history.csv", newline="", encoding="utf-8") as stream:
@@ -113,7 +126,7 @@ class Points:
             if code == 2 and refused:
                 left = [number for i, number in enumerate(left) if i not in refused]
             elif code == 2:
-                sys.exit(said)
+                raise Problem(said.strip())
             elif len(left) == 1:
                 break
             else:
@@ -123,76 +136,59 @@ class Points:
         return result
 
 
-class Datum:
-    """A measured value: kind of test, angle, stress or r, value, weight."""
-
-    def __init__(self, text, kind, quantity, weight):
-        parts = text.split(":")
-        if kind == "biaxial":
-            parts.insert(0, "0")
-        if len(parts) not in (2, 3):
-            sys.exit(f"{text}: expected {'value' if kind == 'biaxial' else 'angle:value'}, with :weight if wanted")
-        try:
-            self.angle, self.value, self.weight = (float(part) for part in [*parts, str(weight)][:3])
-        except ValueError:
-            sys.exit(f"{text}: not a number")
-        if self.value < 0 or self.weight < 0 or (quantity == "stress" and self.value == 0):
-            sys.exit(f"{text}: measured values and weights are positive")
-        self.kind, self.quantity = kind, quantity
-
-    def label(self):
-        """Its name in the table."""
-        where = "equibiaxial" if self.kind == "biaxial" else f"{self.kind} {self.angle:g}"
-        return f"{where}, {self.quantity}"
-
-    def path(self):
-        """The path at a point; equibiaxial tension is compression through the thickness, but for pressure."""
-        sign, place = (1 if self.kind == "tension" else -1), (2 if self.kind == "biaxial" else 0)
-        targets = [[sign * strain if i == place else 0.0 for i in range(6)] for strain in (0.01, 0.011)]
-        return (THROUGH if place else ALONG, self.angle, targets)
-
-    def computed(self, rows):
-        """Its value from the rows of its path; the strains between the last two are plastic."""
-        if self.quantity == "stress":
-            return abs(rows[-1]["s33" if self.kind == "biaxial" else "s11"]) / rows[-1]["flow_stress"]
-        across, through = (rows[-1][key] - rows[-2][key] for key in
-                           ("e22", "e11" if self.kind == "biaxial" else "e33"))
-        return across / through
-
-
 class Fit:
     """Least squares of values that the program computes from trial parameters."""
 
-    def __init__(self, trial, evaluate, sought, measured, weights, pull):
-        self.trial, self.evaluate, self.sought = trial, evaluate, sought
-        self.start, self.low, self.high = (np.array([row[i] for row in sought], float) for i in range(3))
+    def __init__(self, evaluate, sought, measured, weights, pull):
+        self.evaluate, self.names = evaluate, list(sought)
+        self.start, self.low, self.high = (np.array([row[i] for row in sought.values()], float) for i in range(3))
         self.measured, self.weights, self.pull = np.array(measured), np.array(weights), pull
+        self.known = {}
 
     def residuals(self, points):
-        """Residuals at several points, by one run."""
-        found = self.evaluate([self.trial(point) for point in points])
+        """Residuals at several points, by one run; None for those that the program does not take."""
+        found = self.evaluate([dict(zip(self.names, point)) for point in points])
         return [None if values is None or not np.all(np.isfinite(values)) else np.concatenate(
             [self.weights * (values - self.measured), self.pull * (point - self.start)])
             for values, point in zip(found, points)]
 
-    def value(self, point):
-        """Residuals at a point."""
-        found = self.residuals([point])[0]
-        return np.full(len(self.measured) + len(point), REFUSED) if found is None else found
+    def at(self, point):
+        """Residuals at a point, their derivatives by differences, and whether a set nearby is refused."""
+        key = point.tobytes()
+        if key not in self.known:
+            steps = STEP * np.maximum(np.abs(point), 0.1)
+            steps[point + steps > self.high] *= -1
+            here, *near = self.residuals([point, *(point + np.diag(steps))])
+            refused = [i for i, one in enumerate(near) if one is None]
+            if here is None:
+                here = np.full(len(self.measured) + len(point), REFUSED)
+                near = [here] * len(point)
+            elif refused:
+                steps[refused] *= -1
+                behind = np.clip(point + np.diag(steps)[refused], self.low, self.high)
+                for i, one in zip(refused, self.residuals(list(behind))):
+                    near[i] = here if one is None else one
+            self.known[key] = here, np.array([(one - here) / step for one, step in zip(near, steps)]).T, bool(refused)
+        return self.known[key]
 
-    def slope(self, point):
-        """Their derivatives by differences: central, one-sided beside a refused set."""
-        n = len(point)
-        steps = 1e-4 * np.maximum(np.abs(point), 0.1)
-        ahead, behind = (np.clip(point + sign * np.diag(steps), self.low, self.high) for sign in (1, -1))
-        found = self.residuals([point, *ahead, *behind])
-        slope = np.zeros((len(self.measured) + n, n))
-        for i in range(n):
-            (x1, f1), (x0, f0) = ((x, f) if f is not None else (point, found[0])
-                                  for x, f in ((ahead[i], found[1 + i]), (behind[i], found[1 + n + i])))
-            if f1 is not None and f0 is not None and x1[i] > x0[i]:
-                slope[:, i] = (f1 - f0) / (x1[i] - x0[i])
-        return slope
+    def descend(self, first):
+        """Least squares from a point."""
+        return least_squares(lambda point: self.at(point)[0], first, jac=lambda point: self.at(point)[1],
+                             bounds=(self.low, self.high), xtol=1e-8, ftol=1e-5, gtol=1e-9, max_nfev=EVALUATIONS)
+
+    def along_border(self, first, seed):
+        """From a point beside refused sets on, where least squares get stuck: a population that evolves."""
+        def costs(points):
+            found = self.residuals(list(points.T))
+            return np.array([np.inf if one is None else one @ one / 2 for one in found])
+
+        random = np.random.default_rng(seed)
+        spread = 0.05 * np.maximum(np.abs(self.start), 0.5) * random.standard_normal((32, len(first)))
+        spread[0] = 0
+        found = differential_evolution(costs, list(zip(self.low, self.high)), init=np.clip(
+            first + spread, self.low, self.high), vectorized=True, updating="deferred", maxiter=BORDER, polish=False,
+            tol=1e-4, rng=seed)
+        return found.x if found.fun < costs(first[:, None])[0] else first
 
     def best(self, starts, spread, seed):
         """The best of several starts: parameters and the root of the cost of each start."""
@@ -205,51 +201,97 @@ class Fit:
             if self.residuals([first])[0] is None:
                 costs.append(np.inf)
                 continue
-            found = least_squares(self.value, first, jac=self.slope, bounds=(self.low, self.high), x_scale="jac",
-                                  xtol=1e-9, ftol=1e-10, gtol=1e-10, max_nfev=60)
+            found = self.descend(first)
             costs.append(np.sqrt(2 * found.cost))
             if best is None or found.cost < best.cost:
                 best = found
+            if np.linalg.norm(found.fun[:len(self.measured)]) < ENOUGH:
+                break
         if best is None:
             sys.exit("no start gave a set that the program takes: more --starts, or other values of --fix?")
-        return best.x, costs
+        point = best.x
+        if self.at(point)[2]:
+            point = self.descend(self.along_border(point, seed)).x
+            costs.append(np.linalg.norm(self.at(point)[0]))
+        return point, costs
+
+    def left_open(self, point):
+        """What the data do not determine, in words."""
+        slope = self.at(point)[1][:len(self.measured)]
+        size = np.linalg.norm(slope, axis=0)
+        idle = [name for name, part in zip(self.names, size) if part < 1e-6]
+        count = int(np.sum(np.linalg.svd(slope, compute_uv=False) > PULL))
+        notes = []
+        if idle:
+            notes.append(f"the data say nothing about {', '.join(idle)}: left as in the isotropic case")
+        if count < len(point) - len(idle):
+            notes.append(f"the data determine {count} of {len(point) - len(idle)} parameters, or combinations of them; "
+                         "the rest stays as near to isotropy as they allow")
+        ends = np.minimum(point - self.low, self.high - point) < 1e-6 * (self.high - self.low)
+        return notes + [f"{name} is at the end of its range" for name, end in zip(self.names, ends) if end]
+
+
+def sought_parameters(options, data):
+    """What is sought, with start and bounds, and what is given."""
+    sought, fixed, least = CRITERIA[options.criterion]
+    sought, fixed = dict(sought), dict(fixed)
+    for name, value in options.fix.items():
+        if name not in sought and name not in fixed:
+            raise Problem(f"--fix: error: {options.criterion} has no {name}\n  expected: one of "
+                          + " ".join([*sought, *fixed]))
+        sought.pop(name, None)
+        fixed[name] = value
+    if "k" in sought and options.criterion == "cpb06" and not any("compression" in datum.kind for datum in data):
+        fixed["k"] = sought.pop("k")[0]
+    if not sought:
+        raise Problem(f"--fix: error: all parameters of {options.criterion} are given\n  expected: one to seek")
+    if len(data) < least:
+        raise Problem(f"{options.criterion}: error: {len(data)} measured value{'s' * (len(data) != 1)}\n  expected: "
+                      f"{least} or more, such as r-values at 0, 45 and 90 degrees")
+    if options.criterion == "hosford" and not any(datum.kind == "plane strain" for datum in data):
+        raise Problem("hosford: error: tension and equibiaxial tension say nothing about m\n"
+                      "  expected: --plane-strain, or no identification: m is 6 for bcc, 8 for fcc metals")
+    return sought, fixed
 
 
 def criterion(options, points, data):
-    """Identifies a criterion: its text and the table of values."""
-    sought, fixed = ({**part} for part in CRITERIA[options.criterion])
-    for name, value in options.fix.items():
-        if name not in sought and name not in fixed:
-            sys.exit(f"--fix: {options.criterion} has no {name}; it has {' '.join([*sought, *fixed])}")
-        sought.pop(name, None)
-        fixed[name] = value
-    if "k" in sought and options.criterion == "cpb06" and not any(datum.kind == "compression" for datum in data):
-        fixed["k"] = sought.pop("k")[0]
-    if not sought:
-        sys.exit("nothing is left to be sought")
-    paths = list({(d.kind, d.angle): d.path() for d in data}.items())
-    place = {key: i for i, (key, _) in enumerate(paths)}
+    """Identifies a criterion: its text, the table of values and notes."""
+    sought, fixed = sought_parameters(options, data)
+    if not any(d.same_test() == ("tension", 0) and d.quantity == "stress" for d in data):
+        data.insert(0, Datum("stress", 0.0, 1.0))
+    told = [Datum(key) for key in ("biaxial_stress", "biaxial_r")
+            if not any(d.label() == Datum(key).label() for d in data)]
+    paths = list({d.same_test(): d.path() for d in data + told}.items())
+    paths = [(test, (control, angle, [(values, 1) for values in targets])) for test, (control, angle, targets) in paths]
+    place = {test: i for i, (test, _) in enumerate(paths)}
 
-    def trial(point):
-        return law_text(options.criterion, {**dict(zip(sought, point)), **fixed})
-
-    def evaluate(texts):
+    def compute(texts):
         found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], [path for _, path in paths])
-        return [None if rows is None else np.array([d.computed(rows[place[d.kind, d.angle]]) for d in data])
+        return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + told])
                 for rows in found]
 
-    fit = Fit(trial, evaluate, list(sought.values()), [d.value for d in data], [d.weight for d in data], PULL)
+    def evaluate(sets):
+        return [None if values is None or values[ratio] <= 0 else values[:len(data)]
+                for values in compute([law_text(options.criterion, {**one, **fixed}) for one in sets])]
+
+    ratio = next(i for i, d in enumerate(data + told) if d.kind == "equibiaxial" and d.quantity == "r")
+    fit = Fit(evaluate, sought, [d.value for d in data], [d.weight for d in data], PULL)
+    if options.criterion == "yld2004":  # not where both transformations are the same: a saddle
+        fit.start = fit.start + np.array([0.02 if name[0] == "c" else -0.02 for name in fit.names])
     point, costs = fit.best(options.starts, 0.3, options.seed)
-    text, values = rounded(trial, evaluate, point)
+    text, values = rounded(lambda digits: law_text(options.criterion, {**dict(zip(sought, point)), **fixed}, digits),
+                           compute)
     report(options.criterion, costs)
-    return text, [f"{d.label():<24}{d.value:>10.4f}{value:>12.4f}{d.weight:>9g}" for d, value in zip(data, values)]
+    table = [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
+             + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
+             for d, value in zip(data + told, values)]
+    return text, table, fit.left_open(point)
 
 
-def rounded(trial, evaluate, point):
+def rounded(trial, compute):
     """The law with as few digits as the program takes, six or more, and its values."""
-    texts = [re.sub(r"=(\S+)", lambda found, n=digits: f"={float(found[1]):.{n}g}", trial(point))
-             for digits in (6, 8, 10)]
-    for text, values in zip(texts, evaluate(texts)):
+    texts = [trial(digits) for digits in (6, 8, 10)]
+    for text, values in zip(texts, compute(texts)):
         if values is not None:
             return text, values
     sys.exit("the program does not take the rounded parameters: " + texts[-1])
@@ -260,71 +302,113 @@ def report(name, costs):
     print(f"{name}: root of the sum of squares from each start: " + " ".join(f"{cost:.3g}" for cost in costs))
 
 
-def read_curve(path):
-    """Strains and stresses of a table."""
-    pairs = []
-    try:
-        with open(path, newline="", encoding="utf-8") as stream:
-            for row in csv.reader(stream):
-                try:
-                    pairs.append((float(row[0]), float(row[1])))
-                except (ValueError, IndexError):
-                    continue
-    except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
-    strain, stress = np.array(pairs).reshape(-1, 2).T
-    if len(strain) < 3 or np.any(np.diff(strain) <= 0) or np.any(stress <= 0):
-        sys.exit(f"{path}: expected three rows or more, strain,stress, the strains growing, the stresses positive")
-    return strain, stress
-
-
 def law_start(name, plastic, stress):
-    """First values of a hardening law's parameters and their upper bounds, from the curve."""
-    first, last, end = stress[0], stress.max(), max(plastic[-1], 1e-3)
+    """First values of a hardening law's parameters."""
+    first, last, end = stress[0], stress.max(), max(plastic.max(), 1e-3)
     rise = max(last - first, 0.05 * last)
     swift = {"K": last / (0.01 + end) ** 0.2, "e0": 0.01, "n": 0.2}
     voce = {"Y0": first, "Rsat": rise, "CR": 2 / end}
-    start = {"linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
-             "ludwick": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
-             "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
-             "swift_voce": {"alpha": 0.5, **swift, **voce}}[name]
-    return start, {"n": 1, "q": 1, "alpha": 1}
+    return {"linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
+            "ludwick": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
+            "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
+            "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress)}[name]
 
 
-def hardening(options, points):
-    """Identifies a hardening law: its text and the table of values."""
-    strain, stress = read_curve(options.curve)
+def table_start(plastic, stress):
+    """First points of a table: the flow stress at no plastic strain and its rise from each knot to the next."""
+    count = min(8, len(plastic) - 1)
+    knots = [float(f"{value:.4g}") for value in plastic.max() * np.linspace(0, 1, count) ** 2]
+    order = np.argsort(plastic)
+    values = np.maximum.accumulate(np.interp(knots, plastic[order], stress[order]))
+    rises = np.maximum(np.diff(values), 1e-3 * stress.max())
+    return {knots[0]: values[0], **dict(zip(knots[1:], rises))}
+
+
+def hardening_lines(name, values, digits=10):
+    """The hardening, and the back-stresses, whose keys end with a number."""
+    own = {key: value for key, value in values.items() if not isinstance(key, tuple)}
+    if name == "table":
+        knots = " ".join(f"{knot:g}:{value:.{digits}g}" for knot, value in zip(own, np.cumsum(list(own.values()))))
+        lines = [f"hardening = table {knots}"]
+    else:
+        lines = ["hardening = " + law_text(name, own, digits)]
+    for law in dict.fromkeys(key[:2] for key in values if isinstance(key, tuple)):
+        part = {key[2]: value for key, value in values.items() if isinstance(key, tuple) and key[:2] == law}
+        lines.append("backstress = " + law_text(law[0], part, digits))
+    return lines
+
+
+def measured_curve(options):
+    """Strains and stresses beyond the first elastic range, 60 at most, turning points among them."""
+    strain, stress = read_curve(options.curve, bool(options.backstress))
     if options.plastic_strain:
         strain = strain + stress / options.young
     plastic = strain - stress / options.young
-    keep = plastic > -1e-9 if options.plastic_strain else plastic > 2e-4
-    strain, stress, plastic = strain[keep], stress[keep], plastic[keep]
-    if len(strain) < 3:
-        sys.exit(f"{options.curve}: fewer than three rows beyond the elastic range of --young")
+    first = 0 if options.plastic_strain else int(np.argmax(plastic > 2e-4))
+    if not options.plastic_strain and not np.any(plastic > 2e-4):
+        first = len(strain)
+    strain, stress = strain[first:], stress[first:]
+    if len(strain) < 4:
+        raise Problem(f"{options.curve}: error: {len(strain)} rows beyond the elastic range of --young "
+                      f"{options.young:g}\n  expected: four or more")
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
+    if options.backstress and not len(turns):
+        raise Problem(f"{options.curve}: error: the strain grows throughout: it says nothing about a back-stress\n"
+                      "  expected: a curve with a reversal, such as tension and then compression")
     if len(strain) > 60:
-        chosen = np.unique(np.linspace(0, len(strain) - 1, 60).astype(int))
-        strain, stress, plastic = strain[chosen], stress[chosen], plastic[chosen]
-    start, highest = law_start(options.hardening, plastic, stress)
-    sought = [(np.log(value), np.log(value / 300), np.log(highest.get(name, value * 300)))
-              for name, value in start.items()]
-    path = (ALONG, 0, [[value, 0, 0, 0, 0, 0] for value in strain])
+        chosen = np.linspace(0, len(strain) - 1, 60).astype(int)
+        chosen = np.unique(np.concatenate([chosen, turns]))
+        strain, stress = strain[chosen], stress[chosen]
+        turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
+    return strain, stress, turns
 
-    def trial(point):
-        return law_text(options.hardening, dict(zip(start, np.exp(point))))
 
-    def evaluate(texts):
-        found = points.rows([("yield = von_mises", f"hardening = {text}") for text in texts], [path])
-        return [None if rows is None else np.array([row["s11"] for row in rows[0][1:]]) for rows in found]
+def hardening_start(options, strain, stress, turns):
+    """What is sought: logarithms of the parameters with start and bounds."""
+    forward = slice(0, turns[0] + 1 if len(turns) else None)
+    plastic = strain[forward] - stress[forward] / options.young
+    start = law_start(options.hardening, plastic, stress[forward])
+    most = stress[forward].max()
+    for number, law in enumerate(options.backstress):
+        first = {"k": most, "CX": 15 * 8**number, "Xsat": 0.15 * most}
+        start.update({(law, number, name): first[name] for name in BACKSTRESSES[law]})
+    highest = {"n": 1, "q": 1, "alpha": 1}
+    return {name: (np.log(value), np.log(value / 300), np.log(highest.get(name, value * 300)))
+            for name, value in start.items()}
 
-    weight = 1 / (stress.max() * np.sqrt(len(stress)))
-    fit = Fit(trial, evaluate, sought, stress, np.full(len(stress), weight), 1e-6)
+
+def hardening(options, points, yields):
+    """Identifies a hardening law: its lines, the table of values, notes, and the curve: strain, measured, fitted."""
+    strain, stress, turns = measured_curve(options)
+    sought = hardening_start(options, strain, stress, turns)
+    counts = np.ones(len(strain), int)
+    if options.backstress:  # the law of the back-stress is integrated step by step
+        counts = np.maximum(1, np.ceil(np.abs(np.diff(strain, prepend=0)) / 0.002)).astype(int)
+    path = (TENSION, 0, [([value, 0, 0, 0, 0, 0], count) for value, count in zip(strain, counts)])
+    ends = np.cumsum(counts)
+
+    def compute(laws):
+        found = points.rows([(f"yield = {yields}", *lines) for lines in laws], [path])
+        return [None if rows is None else np.array([rows[0][i]["s11"] for i in ends]) for rows in found]
+
+    def evaluate(sets):
+        return compute([hardening_lines(options.hardening, {key: np.exp(value) for key, value in one.items()})
+                        for one in sets])
+
+    weight = 1 / (np.abs(stress).max() * np.sqrt(len(stress)))
+    fit = Fit(evaluate, sought, stress, np.full(len(stress), weight), 1e-6)
     point, costs = fit.best(options.starts, 0.15, options.seed)
-    text, values = rounded(trial, evaluate, point)
+    found = dict(zip(sought, np.exp(point)))
+    lines, values = rounded(lambda digits: hardening_lines(options.hardening, found, digits), compute)
     report(options.hardening, costs)
     some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
-    lines = [f"{f'tension, strain {strain[i]:.4f}':<24}{stress[i]:>10.2f}{values[i]:>12.2f}" for i in some]
-    error = np.sqrt(np.mean((values - stress) ** 2))
-    return text, [*lines, f"root mean square over {len(strain)} rows: {error:.2f} MPa"]
+    table = [f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
+             for i in some]
+    table.append(f"root mean square over {len(strain)} rows: {np.sqrt(np.mean((values - stress) ** 2)):.2f} MPa")
+    ranges = {"e0": 1e-6, "alpha": 1e-2}
+    notes = [f"{name} has come to {found[name]:.2g}: another law may do with fewer parameters"
+             for name, least in ranges.items() if name in found and found[name] < least]
+    return lines, table, notes, (strain, stress, values)
 
 
 def folded(key, text):
@@ -338,14 +422,19 @@ def folded(key, text):
     return [*lines, line]
 
 
-def block(options, yields, hardens, table):
+def block(options, yields, hardens, table, notes):
     """The file: what was measured and what came out, then the *MATERIAL."""
-    lines = ["# Identified by utils/identify.py", f"# {'':<24}{'measured':>10}{'identified':>12}{'weight':>9}"]
+    lines = ["# Identified by utils/identify.py",
+             f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}{'weight':>8}"]
     lines += [f"# {line}" for line in table]
     if not options.hardening:
-        lines.append("# No hardening was given: the flow stress 100 stands for the unit.")
+        notes = [*notes, "no hardening was given: the flow stress 100 stands for the unit"]
+    lines += [f"# Note: {note}" for note in notes]
     lines += [f"*MATERIAL {options.name}", f"  young = {options.young:g}", f"  poisson = {options.poisson:g}"]
-    return "\n".join([*lines, *folded("yield", yields), *folded("hardening", hardens)]) + "\n"
+    lines += folded("yield", yields)
+    for line in hardens:
+        lines += folded(*line.split(" = "))
+    return "\n".join(lines) + "\n"
 
 
 def fixed_value(text):
@@ -365,15 +454,22 @@ def arguments():
     add("--criterion", choices=CRITERIA, help="yield criterion to identify (without it: von_mises)")
     add("--fix", type=fixed_value, action="extend", nargs="+", default=[], metavar="NAME=VALUE",
         help="parameters of the criterion that are given, such as its exponent (default: m=8, k=4; cpb06 C11=1 m=2)")
+    add("--data", metavar="FILE", help="measured values, one in a line: " + ", ".join(KEYS))
     add("--r", nargs="+", default=[], metavar="ANGLE:R[:WEIGHT]", help="r-values in tension (weight 0.5)")
     add("--stress", nargs="+", default=[], metavar="ANGLE:S[:WEIGHT]",
         help="yield stresses in tension over the one along rolling (weight 1); 0:1 is added")
     add("--compression", nargs="+", default=[], metavar="ANGLE:S[:WEIGHT]", help="the same in compression")
-    add("--biaxial-stress", nargs=1, default=[], metavar="S[:WEIGHT]", help="the same in equibiaxial tension")
-    add("--biaxial-r", nargs=1, default=[], metavar="R[:WEIGHT]", help="its ratio of strains, across over along (0.5)")
+    add("--plane-strain", nargs="+", default=[], metavar="ANGLE:S[:WEIGHT]", help="the same in plane strain tension")
+    add("--biaxial-stress", nargs="+", default=[], metavar="S[:WEIGHT]", help="the same in equibiaxial tension")
+    add("--biaxial-compression", nargs="+", default=[], metavar="S[:WEIGHT]",
+        help="the same in equibiaxial compression, or tension through the thickness")
+    add("--biaxial-r", nargs="+", default=[], metavar="R[:WEIGHT]",
+        help="its ratio of strains, across over along (0.5)")
     add("--hardening", metavar="LAW",
         help=f"law to identify from --curve ({', '.join(LAWS)}), or a law with all its values")
-    add("--curve", metavar="FILE", help="tension curve along rolling")
+    add("--backstress", nargs="+", choices=BACKSTRESSES, default=[], metavar="LAW",
+        help=f"back-stresses to identify with it ({', '.join(BACKSTRESSES)}), from a curve with a reversal")
+    add("--curve", metavar="FILE", help="tension curve along rolling; with --backstress going on in compression")
     add("--plastic-strain", action="store_true", help="the strains of the curve are the plastic parts")
     add("--young", type=float, default=2.1e5, help="Young's modulus, MPa (2.1e5)")
     add("--poisson", type=float, default=0.3, help="Poisson's ratio (0.3)")
@@ -381,13 +477,18 @@ def arguments():
     add("--seed", type=int, default=1, help="seed of the random starts (1)")
     add("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
+    add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves")
     options = parser.parse_args()
     options.fix = dict(options.fix)
-    fits = bool(options.hardening) and "=" not in options.hardening
+    fits = bool(options.hardening) and "=" not in options.hardening and ":" not in options.hardening
+    if not re.fullmatch(r"[A-Za-z][\w.-]*", options.name):
+        parser.error(f"{options.name}: a name begins with a letter and has letters, digits, _ . - only")
     if fits and options.hardening not in LAWS:
         parser.error(f"--hardening: one of {', '.join(LAWS)}, or a law with all its values")
     if fits != bool(options.curve):
         parser.error("--curve and the name of a law in --hardening go together")
+    if options.backstress and not fits:
+        parser.error("--backstress goes with --curve")
     if not options.criterion and not fits:
         parser.error("nothing to identify: --criterion, or --hardening with --curve")
     if options.young <= 0 or options.starts < 1:
@@ -397,38 +498,87 @@ def arguments():
 
 def measured(options):
     """The measured values of a criterion."""
-    kinds = ((options.stress, "tension", "stress", 1), (options.r, "tension", "r", 0.5),
-             (options.compression, "compression", "stress", 1), (options.biaxial_stress, "biaxial", "stress", 1),
-             (options.biaxial_r, "biaxial", "r", 0.5))
-    data = [Datum(text, kind, quantity, weight) for texts, kind, quantity, weight in kinds for text in texts]
+    data = read_data(options.data) if options.data else []
+    data += [from_argument(key, text) for key in KEYS for text in getattr(options, key)]
     if not data:
-        sys.exit("no measured values: --r, --stress, --compression, --biaxial-stress, --biaxial-r")
-    if not any(d.kind == "tension" and d.quantity == "stress" and d.angle == 0 for d in data):
-        data.insert(0, Datum("0:1", "tension", "stress", 1))
+        raise Problem("error: no measured values\n  expected: --data or --" + " --".join(KEYS).replace("_", "-"))
+    if not any(d.weight for d in data):
+        raise Problem("error: all weights are 0\n  expected: a positive weight")
     return data
 
 
-def main():
+def draw(options, text, data, curve):
+    """Draws the material as plot_point.py does, but for its back-stresses, and the measured values into it."""
+    import plot_point
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "material.dat"
+        path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
+        figure = plot_point.picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
+    axes = figure.axes
+    if options.backstress:
+        for line in list(axes[0].lines):
+            line.remove()
+        axes[0].set_title("Curve")
+    style = {"linestyle": "none", "marker": "s", "color": "k", "markerfacecolor": "none", "label": "measured"}
+    if curve is not None:
+        axes[0].plot(curve[0], curve[1], **{**style, "marker": ".", "zorder": 1})
+        if options.backstress:
+            axes[0].plot(curve[0], curve[2], color="C1", label="identified")
+    for part, quantity in ((axes[1], "r"), (axes[2], "stress")):
+        chosen = [d for d in data if d.kind == "tension" and d.quantity == quantity]
+        if chosen:
+            part.plot([d.angle for d in chosen], [d.value for d in chosen], **style)
+    places = [place for place in map(on_surface, data) if place]
+    if places:
+        axes[3].plot(*zip(*places), **style)
+    for part in axes:
+        part.legend(fontsize="small")
+    plot_point.save(figure, options.plot)
+
+
+def on_surface(d):
+    """The place of a measured stress in the plane of the stresses along and across, if it has one."""
+    if d.quantity != "stress" or d.angle not in (0, 90) or d.kind == "plane strain":
+        return None
+    value = d.value if d.kind in ("tension", "equibiaxial") else -d.value
+    if d.kind.startswith("equibiaxial"):
+        return value, value
+    return (value, 0) if d.angle == 0 else (0, value)
+
+
+def identify():
     """Identifies and writes."""
     options, fits = arguments()
-    points, table = Points(options.program, options.young, options.poisson), []
-    yields, hardens = "von_mises", options.hardening or UNIT
+    points, table, notes, data, curve = Points(options.program, options.young, options.poisson), [], [], [], None
+    yields, hardens = "von_mises", [f"hardening = {options.hardening or UNIT}"]
     if options.criterion:
-        yields, table = criterion(options, points, measured(options))
+        data = measured(options)
+        yields, table, notes = criterion(options, points, data)
     if fits:
-        hardens, more = hardening(options, points)
-        table = table + more
-    text = block(options, yields, hardens, table)
-    code, said, _ = points.run(text + f"*POINT p\n  material = {options.name}\n  control = {ALONG}\n"
+        hardens, more, other, curve = hardening(options, points, yields)
+        table, notes = table + more, notes + other
+    text = block(options, yields, hardens, table, notes)
+    code, said, _ = points.run(text + f"*POINT p\n  material = {options.name}\n  control = {TENSION}\n"
                                "  target = 1e-6 0 0 0 0 0 steps=1\n")
     if code != 0:
-        sys.exit(said)
+        raise Problem(said.strip())
     path = Path(options.output or f"{options.name}.dat")
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
+        raise Problem(f"{path}: error: {error.strerror}") from None
     print(f"{text}\n{points.runs} runs of the program; written to {path}")
+    if options.plot:
+        draw(options, text, data, curve)
+
+
+def main():
+    """Ends with 2 where the input cannot be used."""
+    try:
+        identify()
+    except Problem as problem:
+        print(problem, file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -170,6 +170,42 @@ def draw(axes, points, m, label, angles, ratios, colour):
     draw_surface(axes[3], ends, (np.cos(ratios), np.sin(ratios)), color=colour, label=label)
 
 
+def picture(files, program, strain=0.2, runs=()):
+    """The figure: the materials of the files, and the points of finished runs."""
+    angles = list(range(0, 91, 15))
+    ratios = np.radians(np.arange(0, 360, 5))
+    panels = (2, 2) if files else (1, 1)
+    size = (10, 9) if files else (7, 4.5)
+    figure, axes = plt.subplots(*panels, figsize=size, layout="constrained", squeeze=False)
+    axes = axes.ravel()
+    number = 0
+    for file in files:
+        path, materials = names_in(str(file))
+        points = run(program, deck(path, materials, angles, ratios, strain))
+        for m, material in enumerate(materials):
+            draw(axes, points, m, material, angles, ratios, f"C{number % 10}")
+            number += 1
+    draw_runs(axes[0], runs)
+    title = "Tension (-- at 45°, : at 90°)" if files else ""
+    axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
+    if files:
+        axes[1].set(ylabel="r-value", title="r-values")
+        axes[2].set(ylabel="stress / flow stress", title="Yield stress")
+        axes[3].set(title="Yield surface")
+    for part in axes:
+        part.grid(alpha=0.3)
+        part.legend(fontsize="small", loc="lower right" if files and part is axes[3] else "best")
+    return figure
+
+
+def save(figure, path, dpi=100):
+    """Writes the figure."""
+    try:
+        figure.savefig(path, dpi=dpi)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{path}: {error}")
+
+
 def main():
     """Draws the picture."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -182,33 +218,7 @@ def main():
     options = parser.parse_args()
     if not options.file and not options.run:
         parser.error("a file or a --run is needed")
-    angles = list(range(0, 91, 15))
-    ratios = np.radians(np.arange(0, 360, 5))
-    panels = (2, 2) if options.file else (1, 1)
-    size = (10, 9) if options.file else (7, 4.5)
-    figure, axes = plt.subplots(*panels, figsize=size, layout="constrained", squeeze=False)
-    axes = axes.ravel()
-    number = 0
-    for file in options.file:
-        path, materials = names_in(file)
-        points = run(options.program, deck(path, materials, angles, ratios, options.strain))
-        for m, material in enumerate(materials):
-            draw(axes, points, m, material, angles, ratios, f"C{number % 10}")
-            number += 1
-    draw_runs(axes[0], options.run)
-    title = "Tension (-- at 45°, : at 90°)" if options.file else ""
-    axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
-    if options.file:
-        axes[1].set(ylabel="r-value", title="r-values")
-        axes[2].set(ylabel="stress / flow stress", title="Yield stress")
-        axes[3].set(title="Yield surface")
-    for part in axes:
-        part.grid(alpha=0.3)
-        part.legend(fontsize="small", loc="lower right" if options.file and part is axes[3] else "best")
-    try:
-        figure.savefig(options.output, dpi=options.dpi)
-    except (OSError, ValueError) as error:
-        sys.exit(f"{options.output}: {error}")
+    save(picture(options.file, options.program, options.strain, options.run), options.output, options.dpi)
 
 
 if __name__ == "__main__":

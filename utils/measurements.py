@@ -1,0 +1,167 @@
+"""What identify.py is told: measured values of tests on sheets, and curves. Says what is wrong with them, and where."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+TENSION, EQUIBIAXIAL = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
+PLANE = "e11 e22 s33 s12 s23 s13"
+# Key: kind of test, quantity, weight, whether an angle is given.
+KEYS = {
+    "r": ("tension", "r", 0.5, True), "stress": ("tension", "stress", 1, True),
+    "compression": ("compression", "stress", 1, True), "plane_strain": ("plane strain", "stress", 1, True),
+    "biaxial_stress": ("equibiaxial", "stress", 1, False), "biaxial_r": ("equibiaxial", "r", 0.5, False),
+    "biaxial_compression": ("equibiaxial compression", "stress", 1, False),
+}
+# Quantity: lowest and highest value, what is meant.
+RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain across over that through the thickness"),
+          "stress": (0.1, 10, "a ratio, 0.1 to 10: yield stresses (MPa) are divided by the one along rolling")}
+
+
+class Problem(Exception):
+    """Input that cannot be used; its text is the message."""
+
+
+@dataclass
+class Line:
+    """A line of a file, or an argument of the command line: where it stands, its text."""
+    where: str
+    text: str
+
+    def words(self, pattern):
+        """Its words, each with its place; a comment after # is left out."""
+        return [(found.group(), found.start()) for found in re.finditer(pattern, self.text.partition("#")[0])]
+
+    def problem(self, word, message, expected):
+        """A message that points at a word (text and place)."""
+        text, start = word
+        return Problem(f"{self.where}: error: {message}\n  {self.text}\n  {' ' * start}{'^' * max(len(text), 1)}\n"
+                       f"  expected: {expected}")
+
+    def end(self):
+        """The place behind the last character."""
+        return "", len(self.text.rstrip())
+
+    def number(self, word, name, low, high, expected):
+        """A word as a number from low to high."""
+        try:
+            value = float(word[0])
+        except ValueError:
+            raise self.problem(word, f"'{word[0]}' is not a number", expected) from None
+        if not low <= value <= high:
+            raise self.problem(word, f"{name} = {word[0]} is out of range", expected)
+        return value
+
+
+class Datum:
+    """A measured value: kind of test, angle, quantity, value, weight. Without a value: only to be told."""
+
+    def __init__(self, key, angle=0.0, value=None, weight=None):
+        self.kind, self.quantity, usual, self.angled = KEYS[key]
+        self.angle, self.value, self.weight = angle, value, usual if weight is None else weight
+
+    def label(self):
+        """Its name in the table."""
+        return f"{self.kind}{f' {self.angle:g}' if self.angled else ''}, {self.quantity}"
+
+    def same_test(self):
+        """What tells tests apart."""
+        return self.kind, self.angle
+
+    def path(self):
+        """Control and targets at a point; equibiaxial tension is compression through the thickness plus pressure."""
+        sign = -1 if self.kind in ("compression", "equibiaxial") else 1
+        place = 2 if self.kind.startswith("equibiaxial") else 0
+        control = EQUIBIAXIAL if place else PLANE if self.kind == "plane strain" else TENSION
+        strains = (0.01, 0.02, 0.03, 0.04, 0.041) if self.kind == "plane strain" else (0.01, 0.011)
+        return control, self.angle, [[sign * strain if i == place else 0.0 for i in range(6)] for strain in strains]
+
+    def computed(self, rows):
+        """Its value from the rows of its path; the strains between the last two are plastic."""
+        through = self.kind.startswith("equibiaxial")
+        if self.quantity == "stress":
+            return abs(rows[-1]["s33" if through else "s11"]) / rows[-1]["flow_stress"]
+        across, other = (rows[-1][key] - rows[-2][key] for key in ("e22", "e11" if through else "e33"))
+        return across / other
+
+
+def datum(key, line, words):
+    """A datum from the words of its values."""
+    _, quantity, _, angled = KEYS[key]
+    expected = f"{'angle, ' if angled else ''}value and, if wanted, weight; {RANGES[quantity][2]}"
+    least = 2 if angled else 1
+    if not least <= len(words) <= least + 1:
+        place = line.end() if len(words) < least else words[-1]
+        raise line.problem(place, f"{key} has too {'few' if len(words) < least else 'many'} numbers", expected)
+    words = list(words)
+    angle = line.number(words.pop(0), "angle", 0, 90, "an angle to the rolling direction, 0 to 90 degrees") if angled \
+        else 0.0
+    low, high, meant = RANGES[quantity]
+    value = line.number(words[0], quantity, low, high, meant)
+    weight = line.number(words[1], "weight", 0, 1e6, "a weight, 0 or more") if len(words) > 1 else None
+    return Datum(key, angle, value, weight)
+
+
+def from_argument(key, text):
+    """A datum of the command line: angle:value:weight."""
+    line = Line(f"--{key.replace('_', '-')}", text)
+    return datum(key, line, line.words(r"[^:]+"))
+
+
+def lines_of(path):
+    """The lines of a file."""
+    try:
+        with open(path, encoding="utf-8") as stream:
+            return [Line(f"{path}:{i}", text) for i, text in enumerate(stream.read().splitlines(), 1)]
+    except (OSError, UnicodeDecodeError) as error:
+        raise Problem(f"{path}: error: {getattr(error, 'strerror', None) or 'not a text'}") from None
+
+
+def read_data(path):
+    """The data of a file: in each line a key and its numbers."""
+    data = []
+    for line in lines_of(path):
+        words = line.words(r"[^\s,;:=]+")
+        if words:
+            if words[0][0] not in KEYS:
+                raise line.problem(words[0], f"unknown key '{words[0][0]}'", "one of: " + " ".join(KEYS))
+            data.append(datum(words[0][0], line, words[1:]))
+    if not data:
+        raise Problem(f"{path}: error: no measured values\n  expected: lines such as: r 45 1.51")
+    return data
+
+
+def read_curve(path, reversed_too):
+    """Strains and stresses of a table: two columns; lines before the first number are a header."""
+    rows = []
+    for line in lines_of(path):
+        words = line.words(r"[^\s,;]+")
+        if not words or not rows and not re.match(r"[-+.\d]", words[0][0]):
+            continue
+        if len(words) < 2:
+            raise line.problem(line.end(), "a number is missing", "strain and stress")
+        if len(words) > 2:
+            raise line.problem(words[2], "more than two numbers",
+                               "strain and stress, with a decimal point, not a comma")
+        rows.append((line, words, line.number(words[0], "strain", -2, 2, "a logarithmic strain, not per cent"),
+                     line.number(words[1], "stress", -1e4, 1e4, "a true stress in MPa")))
+    if len(rows) < 4:
+        raise Problem(f"{path}: error: {len(rows)} rows\n  expected: strain and stress in four rows or more")
+    check_curve(rows, reversed_too)
+    return np.array([row[2:] for row in rows]).T
+
+
+def check_curve(rows, reversed_too):
+    """Refuses what no tension test gives."""
+    for (_, _, last, _), (line, words, strain, _) in zip(rows, rows[1:]):
+        if strain == last or strain < last and not reversed_too:
+            raise line.problem(words[0], f"strain = {words[0][0]} does not grow",
+                               "growing strains; reversals with --backstress only")
+    for line, words, strain, stress in rows:
+        if (stress < 0 or stress == 0 and strain > 0) and not reversed_too:
+            raise line.problem(words[1], f"stress = {words[1][0]} is not positive",
+                               "tension; reversals with --backstress only")
+    line, words, _, most = max(rows, key=lambda row: row[3])
+    if most < 5:
+        raise line.problem(words[1], f"the largest stress is {words[1][0]}", "stresses in MPa")
