@@ -4,7 +4,7 @@ module dd3_app_job
   use dd3_app_command_line, only : options_t
   use dd3_base_clock, only : section_names
   use dd3_base_error, only : error_list_t, error_t
-  use dd3_base_file, only : make_directory
+  use dd3_base_file, only : make_directory, remove_file
   use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text, slice
   use dd3_base_version, only : version => program_version
@@ -26,6 +26,9 @@ module dd3_app_job
   integer, parameter :: exit_end = 0, exit_usage = 1, exit_input = 2, exit_stopped = 3
   !> Most errors shown.
   integer, parameter :: most_errors = 100
+  !> Files that a run may leave beside job.log.
+  character(len=14), parameter :: result_file(3) = [character(len=14) :: "history.csv", &
+      "status.csv", "fields.vtkhdf"]
 
 contains
 
@@ -76,6 +79,7 @@ contains
     if (.not. allocated(error)) call log%open(directory//"/job.log", options%quiet, error)
     if (.not. allocated(error)) then
       call introduce(log, case, model)
+      call clear_directory(log, directory)
       call watch_interrupts()
       if (size(model%point) > 0) then
         call run_points(model, directory, log, summary%increments, error)
@@ -96,6 +100,25 @@ contains
     if (exit_code == exit_end) write (error_unit, '(a)') "dd3imp: "//error%message
     exit_code = exit_stopped
   end subroutine run_checked
+
+  !> Removes the results of an earlier run, so that nothing old lies beside the new.
+  subroutine clear_directory(log, directory)
+    !> Where it is said.
+    type(log_t), intent(inout) :: log
+    !> The folder of the results.
+    character(len=*), intent(in) :: directory
+
+    character(len=:), allocatable :: names
+    logical :: removed
+    integer :: i
+
+    names = ""
+    do i = 1, size(result_file)
+      call remove_file(directory//"/"//trim(result_file(i)), removed)
+      if (removed) names = names//" "//trim(result_file(i))
+    end do
+    if (names /= "") call log%note("removed from an earlier run:"//names)
+  end subroutine clear_directory
 
   !> Says what is run: version, title, sizes, laws; the echo of all values goes into the file.
   subroutine introduce(log, case, model)

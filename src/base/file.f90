@@ -10,7 +10,7 @@ module dd3_base_file
   use dd3_base_clock, only : wall_time
   implicit none
   private
-  public :: file_t, make_directory, system_message, standard_output
+  public :: file_t, make_directory, remove_file, system_message, standard_output
 
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
@@ -106,6 +106,18 @@ module dd3_base_file
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function posix_mkdir
+    !> unlink(2).
+    integer(c_int) function posix_unlink(path) bind(c, name="unlink")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function posix_unlink
+    !> readlink(2).
+    integer(c_size_t) function posix_readlink(path, buffer, size) bind(c, name="readlink")
+      import :: c_char, c_int, c_size_t
+      character(kind=c_char), intent(in) :: path(*)
+      character(kind=c_char), intent(out) :: buffer(*)
+      integer(c_size_t), value :: size
+    end function posix_readlink
     !> Address of the last error number.
     type(c_ptr) function errno_location() bind(c, name="__errno_location")
       import :: c_ptr
@@ -341,6 +353,19 @@ contains
                                               //system_message(errno()))
     end if
   end subroutine make_directory
+
+  !> Removes a file. A symbolic link is left: what it leads to was chosen by the user.
+  subroutine remove_file(path, removed)
+    !> Its name.
+    character(len=*), intent(in) :: path
+    !> Whether it was there and is there no more.
+    logical, intent(out) :: removed
+    character(kind=c_char) :: target(1)
+
+    removed = .false.
+    if (posix_readlink(path//c_null_char, target, 1_c_size_t) >= 0) return
+    removed = posix_unlink(path//c_null_char) == 0
+  end subroutine remove_file
 
   !> The number of the last system error.
   integer(c_int) function errno()

@@ -17,6 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BENDING = ROOT / "input_files" / "bending" / "bending.dat"
 BEGINNING = ROOT / "tests" / "cases" / "bending_start" / "case.dat"
 SLIDING = ROOT / "tests" / "cases" / "friction_above" / "case.dat"
+POINT = ROOT / "tests" / "cases" / "point_tension" / "case.dat"
 TENSION = ROOT / "tests" / "cases" / "tension_00" / "case.dat"
 SIZE_LIMIT = 750_000
 
@@ -121,6 +122,19 @@ def no_directory(program, directory):
     check("cannot make the directory" in said and str(directory) in said, f"the directory is not named:\n{said}")
 
 
+def next_to_old(program, directory):
+    """A run into the folder of another: nothing of the other is left, and job.log tells of it."""
+    run(program, directory, SLIDING)
+    check((directory / "status.csv").exists(), "there is no status.csv")
+    (directory / "own.txt").write_text("the user's", encoding="utf-8")
+    done = subprocess.run([program, "--quiet", "--output", directory, POINT], timeout=300, check=False)
+    check(done.returncode == 0, f"exit code {done.returncode} in place of 0")
+    left = sorted(path.name for path in directory.iterdir())
+    check(left == ["history.csv", "job.log", "own.txt"], f"there are {left}")
+    said = (directory / "job.log").read_text(encoding="utf-8")
+    check("removed from an earlier run: history.csv status.csv fields.vtkhdf" in said, f"job.log says:\n{said}")
+
+
 def interrupted(program, directory):
     """Control-C ends the run after the increment in hand."""
     with subprocess.Popen([program, "--output", directory, BENDING], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -146,7 +160,7 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, interrupted):
+    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, next_to_old, interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
