@@ -16,6 +16,9 @@ module dd3_output_status
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_at,worst,solver,"// &
     "r_force,force_at"
 
+  !> No factor on a trial increment is as large.
+  real(wp), parameter :: unlimited = 1.0e99_wp
+
   !> What is said of one attempted increment.
   type :: status_row_t
     !> Number of the increment, and of the attempt at it, from 1.
@@ -24,7 +27,8 @@ module dd3_output_status
     character(len=64) :: phase = ""
     !> Path of the controlling tools at the end of the increment, mm.
     real(wp) :: travel = 0.0_wp
-    !> Factor on the trial increment.
+    !> Factor on the trial increment; the largest number there is where nothing limited it, as the
+    !> prediction failed.
     real(wp) :: r = 0.0_wp
     !> The limit that set it.
     character(len=16) :: limiter = ""
@@ -110,20 +114,18 @@ contains
     type(status_row_t), intent(in) :: row
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
+    logical :: limited
 
+    limited = row%r < unlimited
     associate (table => self%table)
       call table%add_integer(row%increment)
       call table%add_integer(row%attempt)
       call table%add_text(row%phase)
-      call table%add_real(row%travel)
-      call table%add_real(row%r)
-      call table%add_text(row%limiter)
+      call add_known(table, row%travel, limited)
+      call add_known(table, row%r, limited)
+      call table%add_text(merge(row%limiter, repeat(" ", len(row%limiter)), limited))
       call table%add_integer(row%iterations)
-      if (row%criterion < 0.0_wp) then
-        call table%add_text("")
-      else
-        call table%add_real(row%criterion)
-      end if
+      call add_known(table, row%criterion, row%criterion >= 0.0_wp)
       call table%add_integer(row%solver_iterations)
       call table%add_integer(row%gap)
       call table%add_integer(row%stick)
@@ -131,18 +133,31 @@ contains
       call table%add_text(row%outcome)
       call table%add_text(row%reason)
       call table%add_real(row%seconds)
-      call table%add_text(row%limiter_at)
+      call table%add_text(merge(row%limiter_at, repeat(" ", len(row%limiter_at)), limited))
       call table%add_text(row%worst)
       call table%add_text(row%solver)
-      if (len_trim(row%force_at) > 0) then
-        call table%add_real(row%r_force)
-      else
-        call table%add_text("")
-      end if
-      call table%add_text(row%force_at)
+      limited = limited .and. len_trim(row%force_at) > 0
+      call add_known(table, row%r_force, limited)
+      call table%add_text(merge(row%force_at, repeat(" ", len(row%force_at)), limited))
       call table%end_row(error)
     end associate
   end subroutine status_add
+
+  !> Adds a cell with a real number, or an empty one.
+  subroutine add_known(table, value, known)
+    !> The table.
+    type(table_t), intent(inout) :: table
+    !> The number.
+    real(wp), intent(in) :: value
+    !> Whether there is one.
+    logical, intent(in) :: known
+
+    if (known) then
+      call table%add_real(value)
+    else
+      call table%add_text("")
+    end if
+  end subroutine add_known
 
   !> Writes what waits and closes the file.
   subroutine status_close(self, error)
