@@ -236,7 +236,7 @@ contains
     key = [ &
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
       lower=zero, lower_open=.true.), &
-      row("iterations", kind_integer, "", "30", "most iterations of an increment", lower=1.0_wp, &
+      row("iterations", kind_integer, "", "30", "most iterations of an increment", lower=2.0_wp, &
       upper=1.0e6_wp), &
       row("cutback", kind_logical, "", "off", &
       "on: try a failed increment again with a smaller r; off: the run ends there"), &
