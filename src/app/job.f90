@@ -2,11 +2,12 @@
 module dd3_app_job
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : options_t
+  use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
   use dd3_base_error, only : error_list_t, error_t
   use dd3_base_file, only : make_directory, remove_file
   use dd3_base_log, only : log_t
-  use dd3_base_text, only : to_text, slice
+  use dd3_base_text, only : text_t, to_text, slice
   use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
@@ -49,13 +50,30 @@ contains
       call report_errors(errors, options%file)
       exit_code = exit_input
     else if (options%check) then
-      if (.not. options%quiet) write (output_unit, '(a)', advance="no") echo_case(case)
-      if (.not. options%quiet) write (output_unit, '(a)') "checked: "//options%file
+      if (.not. options%quiet) call show_checked(case, model)
       exit_code = exit_end
     else
       call run_checked(options, case, model, exit_code)
     end if
   end subroutine run_job
+
+  !> Shows all values, and what is unusual among them.
+  subroutine show_checked(case, model)
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    type(text_t), allocatable :: warnings(:)
+    integer :: i
+
+    write (output_unit, '(a)', advance="no") echo_case(case)
+    call unit_warnings(case, model, warnings)
+    do i = 1, size(warnings)
+      write (output_unit, '(a)') warnings(i)%s
+    end do
+    write (output_unit, '(a)') "checked: "//case%file
+  end subroutine show_checked
 
   !> Runs a job whose input is in order.
   subroutine run_checked(options, case, model, exit_code)
@@ -129,6 +147,7 @@ contains
     !> The model.
     type(model_t), intent(in) :: model
 
+    type(text_t), allocatable :: warnings(:)
     character(len=12) :: date, time
     integer :: i
 
@@ -144,6 +163,10 @@ contains
         trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
         to_text(model%n_contact)//" candidates for contact with "//to_text(model%n_tool)//" tools")
     end if
+    call unit_warnings(case, model, warnings)
+    do i = 1, size(warnings)
+      call log%say(warnings(i)%s)
+    end do
     call log%note(echo_case(case))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
