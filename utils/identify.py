@@ -227,8 +227,13 @@ class Fit:
         if count < len(point) - len(idle):
             notes.append(f"the data determine {count} of {len(point) - len(idle)} parameters, or combinations of them; "
                          "the rest stays as near to isotropy as they allow")
+        return notes + self.at_ends(point)
+
+    def at_ends(self, point):
+        """The parameters that are at the end of their range, in words."""
         ends = np.minimum(point - self.low, self.high - point) < 1e-6 * (self.high - self.low)
-        return notes + [f"{name} is at the end of its range" for name, end in zip(self.names, ends) if end]
+        return [f"{name[-1] if isinstance(name, tuple) else name} is at the end of its range: "
+                "another law may follow the data better" for name, end in zip(self.names, ends) if end]
 
 
 def sought_parameters(options, data):
@@ -405,10 +410,7 @@ def hardening(options, points, yields):
     table = [f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
              for i in some]
     table.append(f"root mean square over {len(strain)} rows: {np.sqrt(np.mean((values - stress) ** 2)):.2f} MPa")
-    ranges = {"e0": 1e-6, "alpha": 1e-2}
-    notes = [f"{name} has come to {found[name]:.2g}: another law may do with fewer parameters"
-             for name, least in ranges.items() if name in found and found[name] < least]
-    return lines, table, notes, (strain, stress, values)
+    return lines, table, fit.at_ends(point), (strain, stress, values)
 
 
 def folded(key, text):
