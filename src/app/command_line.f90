@@ -61,6 +61,7 @@ contains
     !> What is wrong with them.
     type(error_t), allocatable, intent(out) :: error
 
+    logical :: plain
     integer :: i
 
     options%file = ""
@@ -68,8 +69,11 @@ contains
     options%topic = ""
     allocate (options%overrides(0))
     i = 1
+    plain = .false.
     do while (i <= size(argument) .and. .not. allocated(error))
-      if (index(argument(i)%s, "-") == 1 .and. len(argument(i)%s) > 1) then
+      if (argument(i)%s == "--" .and. .not. plain) then
+        plain = .true.
+      else if (index(argument(i)%s, "-") == 1 .and. len(argument(i)%s) > 1 .and. .not. plain) then
         call read_option(options, argument, i, error)
       else if (options%file /= "") then
         call fatal_error(error, "one input file is asked for, not '"//options%file//"' and '"// &
@@ -117,6 +121,8 @@ contains
         call fatal_error(error, name//" needs a value")
         return
       end if
+      if (name == "--output" .and. options%output /= "") call fatal_error(error, &
+          "--output is given twice")
       if (name == "--output") options%output = value
       if (name == "--threads") call read_threads(options%threads, value, error)
       if (name == "--restart") call fatal_error(error, "--restart is not available in this version")

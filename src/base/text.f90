@@ -128,7 +128,7 @@ contains
     best = max(1, (len_trim(name) + 1)/3) + 1
     do i = 1, size(known)
       distance = edit_distance(lower_case(trim(name)), lower_case(trim(known(i))))
-      if (distance < best) then
+      if (distance < min(best, len_trim(name))) then
         best = distance
         nearest = trim(known(i))
       end if

@@ -92,8 +92,8 @@ contains
         if (deck%block(j)%keyword /= block%keyword) cycle
         if (row%repeatable .and. (deck%block(j)%name /= block%name .or. block%name == "")) cycle
         call errors%push_input(block%named, trim(title//" "//block%name)// &
-                               merge(" is given twice        ", " may be given only once", &
-                               row%repeatable))
+                               trim(merge(" is given twice        ", &
+                               " may be given only once", row%repeatable)))
         exit
       end do
     end associate
@@ -222,8 +222,7 @@ contains
       if (.not. table(i)%required .or. has_block(deck, trim(table(i)%keyword))) cycle
       if (table(i)%keyword == "phase" .and. has_block(deck, "point")) cycle
       call errors%push_input(whole_file, "the block *"//upper_case(trim(table(i)%keyword))// &
-          " is missing", &
-                             trim(table(i)%help))
+          " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help))
     end do
     if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. has_block(deck, &
         "point"))) then

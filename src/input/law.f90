@@ -37,9 +37,29 @@ contains
     position = 0
     nearest = nearest_name(spec%name, known)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
+    if (nearest == "") nearest = beginning_with(spec%name, known)
     call errors%push_input(spec%at, "there is no "//what//" '"//spec%name//"'"//nearest, &
         "one of: "//join(known, " "))
   end subroutine check_law_name
+
+  !> The known names that hold a name, as a question; empty where there is none.
+  pure function beginning_with(name, known) result(text)
+    !> What was written.
+    character(len=*), intent(in) :: name
+    !> The names there are.
+    character(len=*), intent(in) :: known(:)
+    character(len=:), allocatable :: text
+
+    integer :: i
+
+    text = ""
+    do i = 1, size(known)
+      if (len(name) < 3 .or. index(known(i), name) == 0) cycle
+      if (text /= "") text = text//" or"
+      text = text//" '"//trim(known(i))//"'"
+    end do
+    if (text /= "") text = "; did you mean"//text//"?"
+  end function beginning_with
 
   !> The law's parameters checked against the rows: unknown, doubled, missing, no number, out of
   !> range. Rows with the

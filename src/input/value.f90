@@ -129,6 +129,9 @@ contains
       call errors%push_input(token%at, "'"//token%text// &
           "' is not a number: decimals take a point, values are "// &
                              "separated by blanks", expected)
+    else if (verify(token%text, "+-.0123456789eEdD") == 0 .and. scan(token%text, "eEdD") > 1) then
+      call errors%push_input(token%at, "'"//token%text//"' is not a number that can be held", &
+          expected)
     else
       call errors%push_input(token%at, "'"//token%text//"' is not a number", expected)
     end if

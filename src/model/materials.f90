@@ -67,6 +67,7 @@ contains
       call choose(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
     if (errors%count > found .or. .not. spec%source%valid) return
+    if (yield%name == "" .or. hardening%name == "") return
     call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, &
         error)
     if (allocated(error)) call errors%push_input(spec%source%opened, error%message)
