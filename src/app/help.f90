@@ -3,7 +3,7 @@ module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
   use dd3_app_job, only : exit_end, exit_usage
-  use dd3_base_text, only : same_name
+  use dd3_base_text, only : lower_case, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
   use dd3_model_law_help, only : help_law, help_laws, law_reference_markdown
@@ -33,12 +33,33 @@ contains
     end if
     if (text == "") then
       write (error_unit, '(a)') "there is no help on '"//topic// &
-          "'; dd3imp --help lists blocks and laws"
+          "'; dd3imp --help lists blocks and laws"//lines_with(lower_case(topic))
       exit_code = exit_usage
     else
       write (output_unit, '(a)', advance="no") text
     end if
   end subroutine show_help
+
+  !> The lines of the list of laws that hold a word, each on a line of its own.
+  function lines_with(word) result(text)
+    !> The word, in small letters.
+    character(len=*), intent(in) :: word
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: all_lines
+    integer :: start, last
+
+    text = ""
+    all_lines = help_laws()
+    start = 1
+    do while (start <= len(all_lines))
+      last = index(all_lines(start:)//achar(10), achar(10)) + start - 2
+      if (index(lower_case(all_lines(start:last)), word) > 0) then
+        text = text//achar(10)//all_lines(start:last)
+      end if
+      start = last + 2
+    end do
+  end function lines_with
 
   !> Shows the version.
   subroutine show_version()

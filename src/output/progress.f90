@@ -1,5 +1,6 @@
 !> How far the run is: on a terminal one line, rewritten in place at most ten times a second; else,
-!> and always in job.log, a plain line for every twentieth of a phase.
+!> and always in job.log, a plain line for every twentieth of a phase. The last state of a phase
+!> stays on a terminal too.
 module dd3_output_progress
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : wall_time
@@ -92,7 +93,7 @@ contains
     line = int(view%progress*lines_per_phase + 1.0e-9_wp)
     if (line > self%lines) then
       self%lines = line
-      if (log%terminal) then
+      if (log%terminal .and. view%progress < 1.0_wp) then
         call log%note(plain_line(self, view))
       else
         call log%say(plain_line(self, view))
