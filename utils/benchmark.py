@@ -20,6 +20,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from scripts import program_at, run
+
 BENDING = Path(__file__).resolve().parent.parent / "input_files" / "bending" / "bending.dat"
 SECTIONS = ["assembly", "material", "contact", "factorisation", "solve", "output"]
 
@@ -93,11 +95,15 @@ def main():
     parser.add_argument("--repeat", type=int, default=3, help="runs of each, the fastest counts (3)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of the jobs")
     arguments = parser.parse_args()
+    if arguments.repeat < 1:
+        parser.error("--repeat takes 1 or more")
     arguments.threads = arguments.threads or [1]
+    for path in arguments.program:
+        program_at(path)
     for job in arguments.job:
         print(f"\n{job}, fastest of {arguments.repeat}\n")
         print_tables(best_runs(arguments, job))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -20,6 +20,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import scripts
+
 FOLDER = Path(__file__).resolve().parent.parent / "input_files" / "bending"
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
 MESHES = {"a": "0", "b": "1"}
@@ -234,7 +236,11 @@ def main():
     parser.add_argument("--reuse", action="store_true")
     parser.add_argument("--write", type=Path, metavar="DOCUMENT")
     options = parser.parse_args()
-    program = options.program.resolve()
+    if options.jobs < 1:
+        parser.error("--jobs takes 1 or more")
+    program = scripts.program_at(options.program)
+    if options.write and not options.write.is_file():
+        sys.exit(f"{options.write}: no such file")
     with ThreadPoolExecutor(options.jobs) as pool:
         for result in [pool.submit(run, program, options.work, *job, options.reuse) for job in jobs()]:
             result.result()
@@ -246,4 +252,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

@@ -20,7 +20,10 @@ import re
 import sys
 from pathlib import Path
 
-import matplotlib
+import scripts
+
+scripts.need("matplotlib", "numpy", "PIL")
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -227,6 +230,7 @@ def main():
     for law in options.law:
         if law not in PICTURES:
             sys.exit(f"no law {law}; there are: {', '.join(PICTURES)}")
+    options.output.mkdir(parents=True, exist_ok=True)
     for law in options.law or PICTURES:
         draw, settings = PICTURES[law]
         with plt.rc_context(STYLE):
@@ -237,4 +241,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

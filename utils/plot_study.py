@@ -9,10 +9,12 @@ forces. A figure whose cases are not there is left out. Needs utils/requirements
 """
 
 import argparse
-import sys
 from pathlib import Path
 
-import matplotlib
+import scripts
+
+scripts.need("h5py", "matplotlib", "numpy")
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import h5py  # noqa: E402
@@ -140,11 +142,9 @@ def main():
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of the study's results")
     parser.add_argument("--output", type=Path, help="folder of the pictures (default: the same)")
     options = parser.parse_args()
-    try:
-        results = {row["case"]: row for row in read_table(options.work / "results.csv")}
-    except OSError as error:
-        sys.exit(f"{options.work}/results.csv: {error.strerror}")
+    results = {row["case"]: row for row in read_table(options.work / "results.csv")}
     folder = options.output or options.work
+    folder.mkdir(parents=True, exist_ok=True)
     for number in BARS:
         if bars(results, number, folder / f"study_fig{number}.png"):
             print(folder / f"study_fig{number}.png")
@@ -154,4 +154,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

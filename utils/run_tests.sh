@@ -7,6 +7,14 @@
 # JOBS=<n> sets the number of tests and compilers at a time (default: the number of cores).
 set -uo pipefail
 cd "$(dirname "$0")/.."
+case ${1:-} in
+  "" | --slow) ;;
+  *)
+    sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/run_tests.sh
+    [ "$1" = --help ] || [ "$1" = -h ] && exit
+    echo "error: unknown argument $1" >&2
+    exit 2 ;;
+esac
 jobs=${JOBS:-$(nproc)}
 passed=0
 failed=0

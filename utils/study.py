@@ -25,6 +25,8 @@ import sys
 import time
 from pathlib import Path
 
+from scripts import program_at, run
+
 ROOT = Path(__file__).resolve().parent.parent
 LIMITERS = ["rotation", "strain", "stress", "force", "first contact", "r_max", "r_min"]
 # Travel at which the punch force is noted, mm.
@@ -49,6 +51,13 @@ def read_cases(path):
     if len(cases) != len(rows):
         sys.exit(f"{path}: a case stands there twice")
     return cases
+
+
+def row_of(cases, options):
+    """The row of the case that is asked for."""
+    if options.case not in cases:
+        sys.exit(f"{options.cases}: no case '{options.case}'")
+    return cases[options.case]
 
 
 def parameters(row):
@@ -78,11 +87,11 @@ def deck_files(options):
 def run_case(options):
     """Runs a case; the note that it is done comes last, in one piece."""
     cases = read_cases(options.cases)
-    if options.case not in cases:
-        sys.exit(f"{options.cases}: no case '{options.case}'")
+    row = row_of(cases, options)
+    program_at(options.program)
     folder = options.work / options.case
     note = folder / "run.json"
-    words, deck = command(cases[options.case], options, folder), digest(*deck_files(options))
+    words, deck = command(row, options, folder), digest(*deck_files(options))
     if note.exists():
         done = json.loads(note.read_text(encoding="utf-8"))
         if done["command"] == shlex.join(words) and done["deck"] == deck:
@@ -165,6 +174,9 @@ def gather(options):
     """Writes results.csv: a row for each case that is done."""
     cases = read_cases(options.cases)
     names = [name for name in (options.only or cases) if (options.work / name / "run.json").exists()]
+    unknown = [name for name in names if name not in cases]
+    if unknown:
+        sys.exit(f"{options.cases}: no case '{unknown[0]}'")
     if not names:
         sys.exit(f"{options.work}: no case is done")
     rows = []
@@ -203,7 +215,7 @@ def main():
     options.program, options.cases, options.work = (
         path.resolve() for path in (options.program, options.cases, options.work))
     if options.step == "command":
-        print(shlex.join(command(read_cases(options.cases)[options.case], options, options.work / options.case)))
+        print(shlex.join(command(row_of(read_cases(options.cases), options), options, options.work / options.case)))
     elif options.step == "case":
         run_case(options)
     elif options.step == "table":
@@ -214,4 +226,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -12,19 +12,31 @@
 #   --program FILE  a program that is built already; nothing is built then
 #   -- ...          further options of snakemake, such as --dry-run or --profile utils/study_slurm
 set -euo pipefail
+from=$PWD
 cd "$(dirname "$0")/.."
+self=utils/$(basename "$0")
 cores=$(nproc) sets="" work="" program="" quick=no
+usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$self"; }
+fail() { echo "error: $*" >&2; exit 2; }
 while [ $# -gt 0 ]; do
+  case $1 in
+    --cores | --sets | --work | --program) [ $# -gt 1 ] || fail "$1 needs a value" ;;
+  esac
   case $1 in
     --cores) cores=$2; shift 2 ;;
     --sets) sets=$2; shift 2 ;;
     --work) work=$2; shift 2 ;;
-    --program) program=$(realpath "$2"); shift 2 ;;
+    --program)
+      program=$(cd "$from" && command -v "$2") || fail "$2: no such program"
+      program=$(cd "$from" && realpath "$program")
+      shift 2 ;;
     --quick) quick=yes; shift ;;
     --) shift; break ;;
-    *) sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0"; exit 1 ;;
+    -h | --help) usage; exit ;;
+    *) usage >&2; fail "unknown argument $1" ;;
   esac
 done
+[[ $cores =~ ^([1-9][0-9]*|all)$ ]] || fail "--cores takes a number, not $cores"
 
 python=${PYTHON:-.venv/bin/python}
 if ! "$python" -c "import snakemake, matplotlib" 2>/dev/null; then
@@ -54,5 +66,8 @@ mkdir -p "$work"
 # The engine's own lock would stay behind when it is killed; this one goes with the process.
 exec 9>"$work/.lock"
 flock --nonblock 9 || { echo "error: another study.sh works in $work" >&2; exit 1; }
+found=("$work"/*/run.json)
+[ -e "${found[0]}" ] || found=()
+echo "== ${#found[@]} cases are done in $work; running those that are missing"
 exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going --nolock \
   --rerun-incomplete --rerun-triggers mtime params input --quiet all "$@"

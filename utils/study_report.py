@@ -1,5 +1,6 @@
 """The tables of docs/bending_study.md, from the results of the bending study; `study.py report` writes them."""
 
+import sys
 from functools import cache
 
 from bending_tables import FIRST, Run, differences, table
@@ -24,12 +25,19 @@ SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e
                "iterations100": "at most 100 iterations", "cgs": "solver `cgs` alone", "umfpack": "solver `umfpack`"}
 
 
+class Rows(dict):
+    """The rows of the table of results by their cases."""
+
+    def __missing__(self, case):
+        sys.exit(f"results.csv: the case {case} is missing; utils/study.sh runs what is not done")
+
+
 class Results:
     """The table of results, and the runs behind it."""
 
     def __init__(self, work):
         self.work = work
-        self.row = {row["case"]: row for row in read_table(work / "results.csv")}
+        self.row = Rows((row["case"], row) for row in read_table(work / "results.csv"))
         self.run = cache(lambda case: Run(work / case))
 
     def number(self, case, column):
@@ -81,6 +89,8 @@ def costs(results):
     """Cost of the runs of mesh (b) that reached the end, against those without force control."""
     def mean(ending, column):
         cases = results.finished(ending)
+        if not cases:
+            sys.exit(f"results.csv: no run b-*{ending} reached {END:g} mm")
         return sum(results.number(case, column) for case in cases) / len(cases)
 
     columns = ["increments", "newton_iterations", "linear_iterations", "seconds"]
@@ -189,5 +199,7 @@ def write(work, document):
     results = Results(work)
     tables = {make.__name__: make(results) for make in TABLES}
     seconds = sum(float(row["seconds"]) for row in results.row.values())
-    tables["size"] = f"{len(results.row)} runs, {seconds:.0f} s of processor time together."
+    programs = sorted({row["program"] for row in results.row.values()})
+    tables["size"] = f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program {', '.join(programs)} "\
+                     "(the first digits of its SHA-256)."
     fill(document, tables)

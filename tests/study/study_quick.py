@@ -50,7 +50,7 @@ def by_steps(program, work):
     stamp = (work / "b-1e3" / "run.json").stat().st_mtime_ns
     assert "done before" in call(sys.executable, ROOT / "utils" / "study.py", "case", "b-1e3", *tail)
     assert (work / "b-1e3" / "run.json").stat().st_mtime_ns == stamp
-    call(sys.executable, ROOT / "utils" / "study.py", "case", "none", *tail, expect=1)
+    call(sys.executable, ROOT / "utils" / "study.py", "case", "none", *tail, expect=2)
     call(sys.executable, ROOT / "utils" / "study.py", "table", *tail)
     check_table(work / "results.csv")
 
