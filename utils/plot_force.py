@@ -10,7 +10,8 @@
 
 A run is a folder of results or its history.csv. The tool is the one that controls the last phase; its
 displacement is counted from the start of the phases drawn, along its motion, and so is its force: positive
-where the sheet resists. A cross marks a run that stopped before the end of its last phase.
+where the sheet resists. Of another tool, such as one that is pressed, the size of the force is drawn over the
+displacement of the one that controls. A cross marks a run that stopped before the end of its last phase.
 """
 
 import argparse
@@ -18,7 +19,10 @@ import csv
 import sys
 from pathlib import Path
 
-import matplotlib
+import scripts
+
+scripts.need("matplotlib", "numpy")
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -85,7 +89,8 @@ def controlling_tool(history):
 def curve(history, tool, phases, component):
     """Displacement (mm) and force (N) of the tool."""
     rows = history.rows_of(phases)
-    displacement = history.vector(tool, "u")[rows]
+    leader = controlling_tool(history) if component == "motion" else tool
+    displacement = history.vector(leader, "u")[rows]
     force = history.vector(tool, "f")[rows]
     displacement = displacement - displacement[0]
     step = np.diff(displacement, axis=0)
@@ -98,7 +103,13 @@ def curve(history, tool, phases, component):
     if not direction.any():
         return path, np.linalg.norm(force, axis=1)
     direction = direction / np.linalg.norm(direction)
-    return displacement @ direction, -force @ direction
+    along = displacement @ direction
+    return along, np.linalg.norm(force, axis=1) if leader != tool else -force @ direction
+
+
+def common(tools):
+    """The one name of all tools, else `Tool`."""
+    return tools[0].replace("_", " ").capitalize() if len(set(tools)) == 1 else "Tool"
 
 
 def arguments():
@@ -131,26 +142,27 @@ def main():
         displacement, force = curve(history, tool, phases, options.component)
         name = history.path.parent.resolve().name.removesuffix(".out")
         label = options.label[number] if number < len(options.label) else name
-        curves.append((tool, label, displacement, options.factor * force, history.column("progress")[-1] < 1.0))
+        leader = controlling_tool(history) if options.component == "motion" else tool
+        curves.append((tool, leader, label, displacement, options.factor * force, history.column("progress")[-1] < 1.0))
 
-    largest = max(np.abs(force).max() for _, _, _, force, _ in curves)
+    largest = max(np.abs(force).max() for *_, force, _ in curves)
     unit, scale = ("kN", 1000.0) if largest >= 1000.0 else ("N", 1.0)
     figure, axes = plt.subplots(figsize=options.size, layout="constrained")
-    for _, label, displacement, force, stopped in curves:
+    for _, _, label, displacement, force, stopped in curves:
         line, = axes.plot(displacement, force / scale, linewidth=1.4, label=label)
         if stopped:
             axes.plot(displacement[-1], force[-1] / scale, "x", color=line.get_color(), markersize=8,
                       markeredgewidth=2, clip_on=False, zorder=5)
-    tools = list(dict.fromkeys(tool.replace("_", " ") for tool, *_ in curves))
-    name = tools[0].capitalize() if len(tools) == 1 else "Tool"
+    name, leader = (common(names) for names in list(zip(*curves))[:2])
     part = {"motion": "", "magnitude": ", magnitude"}.get(options.component, f", along {options.component}")
-    axes.set_xlabel(f"{name} displacement (mm)")
+    axes.set_xlabel(f"{leader} displacement (mm)")
     axes.set_ylabel(f"{name} force{part} ({unit})")
     axes.set_title(options.title)
+    axes.ticklabel_format(useOffset=False)
     axes.grid(True, color="0.88", linewidth=0.7)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_xlim(left=0.0)
-    if min(force.min() for _, _, _, force, _ in curves) >= -0.02 * largest:
+    if min(force.min() for *_, force, _ in curves) >= -0.02 * largest:
         axes.set_ylim(bottom=0.0)
     if len(curves) > 1 or options.label:
         axes.legend(frameon=False)
@@ -162,4 +174,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

@@ -21,8 +21,12 @@ import re
 import sys
 from pathlib import Path
 
+import scripts
+
+scripts.need("h5py", "matplotlib", "numpy", "pyvista")
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
 import h5py  # noqa: E402
+import matplotlib  # noqa: E402
 import numpy as np  # noqa: E402
 import pyvista as pv  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkLogger  # noqa: E402
@@ -53,8 +57,10 @@ class Run:
             self.grid = self.file["VTKHDF"]
             self.steps = self.grid["Steps"]
             self.count = int(self.steps.attrs["NSteps"])
-        except (OSError, KeyError) as error:
-            sys.exit(f"{path}: {error}")
+        except FileNotFoundError:
+            sys.exit(f"{path}: No such file")
+        except (OSError, KeyError):
+            sys.exit(f"{path}: not the field file of a run")
         if self.count == 0:
             sys.exit(f"{path}: no steps")
         self.path = path
@@ -63,6 +69,8 @@ class Run:
 
     def step_at(self, travel):
         """The last step whose travel is nearest."""
+        if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
+            sys.exit(f"{self.path}: no travel {travel:g} mm; there is {self.travel.min():g} to {self.travel.max():g}")
         distance = np.abs(self.travel - travel)
         return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
 
@@ -201,7 +209,8 @@ def draw(plotter, run, step, options, tools, limits, box):
     """One picture."""
     mesh, label = run.mesh(step, options.field, options.cells)
     bar = {"title": label + "\n", "vertical": False, "position_x": 0.3, "width": 0.4, "position_y": 0.03,
-           "height": 0.1, "title_font_size": 20, "label_font_size": 17, "fmt": "%.3g", "color": "black"}
+           "height": 0.1, "title_font_size": 20, "label_font_size": 17, "fmt": "%.3g", "color": "black", "fill": True,
+           "background_color": "white"}
     for number, part in enumerate(reflected(mesh, options.mirror)):
         skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
@@ -263,6 +272,15 @@ def aim(plotter, box, options):
     plotter.reset_camera_clipping_range()
 
 
+def direction(text):
+    """Whether a text is three numbers, not all zero and not along z, which is up."""
+    try:
+        place = [float(word) for word in text.split()]
+    except ValueError:
+        return False
+    return len(place) == 3 and any(place[:2])
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
@@ -276,7 +294,8 @@ def arguments():
     parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
     parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
-    parser.add_argument("--mirror", default="", help="planes of symmetry to complete the model at: x, y or xy")
+    parser.add_argument("--mirror", action="append", default=[], choices=["x", "y", "z", "xy"],
+                        help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
     parser.add_argument("--deck", type=Path, help="input file of the job (default: beside the folder of results)")
     parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
     parser.add_argument("--hide", action="append", default=[], metavar="NAME", help="tool to leave out, or 'all'")
@@ -287,10 +306,17 @@ def arguments():
                         help="size of one picture in pixels")
     parser.add_argument("--list", action="store_true", help="list the steps and fields, draw nothing")
     options = parser.parse_args()
-    if set(options.mirror) - set(VECTOR):
-        parser.error("--mirror takes x, y or xy")
-    if options.view not in VIEWS and not re.fullmatch(r"\s*(\S+\s+){2}\S+\s*", options.view):
+    options.mirror = sorted(set("".join(options.mirror)))
+    if options.view not in VIEWS and not direction(options.view):
         parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
+    if options.limits and not options.limits[0] < options.limits[1]:
+        parser.error("--limits takes the lower one first")
+    if options.colours not in matplotlib.colormaps:
+        parser.error(f"no colour map '{options.colours}'; some are viridis, plasma, cividis, turbo, coolwarm")
+    if min(options.size) < 1 or not options.zoom > 0:
+        parser.error("--size and --zoom take positive numbers")
+    if any("=" not in item for item in options.tool):
+        parser.error("--tool takes NAME=FILE")
     return options
 
 
@@ -311,6 +337,10 @@ def find_tools(run, options):
         files[name.lower()] = Path(file)
     if not files:
         print("no input file beside the results: the tools are left out (see --deck)", file=sys.stderr)
+    options.hide = [name.lower() for name in options.hide]
+    unknown = [name for name in options.hide if name not in files]
+    if unknown:
+        sys.exit(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
     return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
 
 
@@ -348,4 +378,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

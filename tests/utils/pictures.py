@@ -65,6 +65,29 @@ def call(script, *arguments, expect=0):
     return done.stdout + done.stderr
 
 
+def check_refusals(run, folder):
+    """What is asked for and cannot be: one plain line each."""
+    top = ("--field", "stress", "--view", "top", "--size", 300, 200)
+    call("plot_sheet.py", run, "--mirror", "x", "--mirror", "y", *top, "--output", folder / "mirrored.png")
+    call("plot_sheet.py", run, "--mirror", "xy", *top, "--output", folder / "both.png")
+    assert (folder / "mirrored.png").read_bytes() == (folder / "both.png").read_bytes()
+    (folder / "text.vtkhdf").write_text("no fields")
+    for arguments, said in (
+            ((run, "--hide", "nosuch"), "no tool 'nosuch' to hide; there are: punch"),
+            ((run, "--at", 100), "no travel 100 mm; there is 0 to 2"), ((run, "--limits", 3, 1), "the lower one first"),
+            ((run, "--colours", "nosuch"), "no colour map 'nosuch'"), ((run, "--view", "1 a 2"), "--view takes one of"),
+            ((folder / "none.out",), "none.out: No such file"),
+            ((folder / "text.vtkhdf",), "text.vtkhdf: not the field file of a run")):
+        message = call("plot_sheet.py", *arguments, "--output", folder / "none.png", expect=2)
+        assert said in message and "Traceback" not in message, message
+    listed = subprocess.run(f"'{sys.executable}' '{UTILS / 'plot_sheet.py'}' '{run}' --list | :", shell=True,
+                            capture_output=True, text=True, check=False)
+    assert not listed.stderr, listed.stderr
+    pathless = subprocess.run([sys.executable, "-S", "-s", UTILS / "plot_force.py", run], capture_output=True,
+                              text=True, check=False)
+    assert pathless.returncode == 2 and pathless.stderr.startswith("error: no package"), pathless.stderr
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -78,9 +101,10 @@ def main():
         call("plot_sheet.py", run, "--field", "thickness", "--cells", "--at", 0, "--at", 2, "--mirror", "x", "--view",
              "front", "--size", 300, 200, "--output", folder / "two.png")
         assert size_of(folder / "two.png") == (300, 400)
-        assert "no field 'strain'" in call("plot_sheet.py", run, "--field", "strain", expect=1)
-        assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=1)
-        assert "No such file" in call("plot_force.py", folder / "none.out", expect=1)
+        assert "no field 'strain'" in call("plot_sheet.py", run, "--field", "strain", expect=2)
+        assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=2)
+        assert "No such file" in call("plot_force.py", folder / "none.out", expect=2)
+        check_refusals(run, folder)
     print("pictures drawn")
 
 
