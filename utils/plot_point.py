@@ -24,7 +24,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
+import scripts
+
+scripts.need("matplotlib", "numpy")
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -91,9 +94,11 @@ def run(program, text):
         try:
             done = subprocess.run(command, capture_output=True, text=True, check=False)
         except OSError as error:
-            sys.exit(f"{program}: {error.strerror}")
+            sys.exit(f"{program}: {error.strerror}; give --program FILE")
         if done.returncode != 0:
-            sys.exit(done.stderr.strip() or f"{program} failed")
+            # The paths at a point stand in a file of ours; what the user has is the files it includes.
+            said = re.sub(re.escape(str(file)) + r"(:\d+)?", ", ".join(INCLUDE.findall(text)), done.stderr.strip())
+            sys.exit(said or f"{program} failed")
         return read_points(Path(folder) / "out")
 
 
@@ -183,19 +188,25 @@ def picture(files, program, strain=0.2, runs=()):
         path, materials = names_in(str(file))
         points = run(program, deck(path, materials, angles, ratios, strain))
         for m, material in enumerate(materials):
-            draw(axes, points, m, material, angles, ratios, f"C{number % 10}")
+            draw(axes, points, m, material, angles, ratios, colour_of(number))
             number += 1
     draw_runs(axes[0], runs)
     title = "Tension (-- at 45°, : at 90°)" if files else ""
     axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
     if files:
         axes[1].set(ylabel="r-value", title="r-values")
-        axes[2].set(ylabel="stress / flow stress", title="Yield stress")
-        axes[3].set(title="Yield surface")
+        axes[2].set(ylabel="stress / flow stress", title=f"Yield stress at strain {strain:g}")
+        axes[3].set(title="Yield surface at strain 0.05")
     for part in axes:
         part.grid(alpha=0.3)
-        part.legend(fontsize="small", loc="lower right" if files and part is axes[3] else "best")
+    handles, names = axes[0].get_legend_handles_labels()
+    figure.legend(handles, names, fontsize="small", loc="outside right upper", frameon=False)
     return figure
+
+
+def colour_of(number):
+    """One of twenty colours, the dark ones first."""
+    return plt.get_cmap("tab20")((2 * number + number // 10 % 2) % 20)
 
 
 def save(figure, path, dpi=100):
@@ -216,10 +227,12 @@ def main():
     parser.add_argument("--output", default="materials.png", help="picture (materials.png)")
     parser.add_argument("--dpi", type=int, default=100, help="dots per inch (100)")
     options = parser.parse_args()
+    if options.strain <= 0 or options.dpi < 1:
+        parser.error("--strain and --dpi take positive numbers")
     if not options.file and not options.run:
         parser.error("a file or a --run is needed")
     save(picture(options.file, options.program, options.strain, options.run), options.output, options.dpi)
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

@@ -83,9 +83,8 @@ def check_pictures(program, folder):
     figure = call(plot_point, *files, "--program", program, "--output", picture)
     assert picture.read_bytes()[:4] == b"\x89PNG"
     tension, r_values, stresses, surface = figure.axes
-    for axes in figure.axes:
-        labels = [text.get_text() for text in axes.get_legend().get_texts()]
-        assert labels == ["steel", "round"], labels
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["steel", "round"], labels
     assert (len(tension.lines), len(r_values.lines), len(stresses.lines)) == (6, 2, 2)
     assert len(surface.lines) == len(surface.collections) == 2
     close(max(r_values.lines[0].get_ydata()), H / F)
@@ -126,7 +125,9 @@ def check_messages(program, folder):
         call(plot_point, *arguments, expect=said)
     assert not (folder / "none.png").exists()
     call(law_pictures, "hill84", expect="no law hill84; there are: von_mises")
-    call(law_pictures, "swift", "--program", program, "--output", folder / "no", expect="No such file")
+    call(plot_point, steel, "--strain", -1, expect="positive numbers")
+    call(law_pictures, "swift", "--program", program, "--output", folder / "made")
+    assert (folder / "made" / "swift.png").is_file()
 
 
 def main():
