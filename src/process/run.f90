@@ -180,7 +180,9 @@ contains
     type(phase_t) :: phase
     real(wp), allocatable :: strain_before(:, :)
     character(len=:), allocatable :: warning
+    type(error_t), allocatable :: late
     real(wp) :: next_output
+    integer :: done
 
     strain_before = run%committed%internal(1, :, :)
     call begin_phase(model, number, phase, run%committed)
@@ -188,9 +190,12 @@ contains
         //"' has no increment: its early end is there from the start")
     do while (.not. phase_is_over(phase, run%committed))
       next_output = next_output_progress(model, phase, run%committed)
+      done = run%committed%increment
       call run_increment(run, model, phase, next_output, error)
-      if (allocated(error)) return
-      call write_increment(run, model, phase, next_output, log, error)
+      if (run%committed%increment > done) then
+        call write_increment(run, model, phase, next_output, log, late)
+        call keep_first(error, late)
+      end if
       if (allocated(error)) return
       if (interrupted()) then
         call fatal_error(error, "interrupted by the user after increment " &
@@ -203,7 +208,8 @@ contains
     call run%fields%write(model, run%committed, error)
   end subroutine run_phase
 
-  !> One increment with as many attempts as it takes.
+  !> One increment with as many attempts as it takes. One that converged is done, even where its row
+  !> of status.csv cannot be written any more.
   subroutine run_increment(run, model, phase, next_output, error)
     !> The run.
     type(run_t), intent(inout) :: run
@@ -246,11 +252,10 @@ contains
       if (allocated(error) .or. .not. again) exit
       run%summary%retries = run%summary%retries + 1
     end do
-    if (allocated(error)) return
     if (verdict%outcome == verdict_converged) then
       call accept_increment(run%stepper, run%trial, run%committed)
       run%summary%increments = run%committed%increment
-    else
+    else if (.not. allocated(error)) then
       call fatal_error(error, failure_message(run, model, phase, verdict))
     end if
   end subroutine run_increment
