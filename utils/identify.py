@@ -516,6 +516,7 @@ def draw(options, text, data, curve):
         path = Path(folder) / "material.dat"
         path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
         figure = plot_point.picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
+    figure.legends[0].remove()  # each part gets one of its own
     axes = figure.axes
     if options.backstress:
         for line in list(axes[0].lines):
