@@ -7,11 +7,11 @@ string(APPEND CMAKE_Fortran_FLAGS_DEBUG_INIT " -finit-real=snan -finit-derived -
 
 # Of the project's own code, not of what pFUnit generates. Off are warnings that are wrong too often: about the bounds of
 # allocatable arrays, about thirds of whole numbers, about subscripts behind an `if` (the checks of the debug build see the true
-# ones). -Wconversion-extra takes issue with bounds of substrings, so it is never an error.
+# ones).
 option(DD3_WARNINGS_ARE_ERRORS "Stop the build at the first warning" OFF)
 set(DD3_WARNINGS -std=f2008 -pedantic -Wall -Wextra -Wimplicit-interface -Wimplicit-procedure -Wno-maybe-uninitialized
   -Wno-integer-division -Wno-do-subscript
   $<$<CONFIG:Debug>:-Wconversion-extra>)
 if(DD3_WARNINGS_ARE_ERRORS)
-  list(APPEND DD3_WARNINGS -Werror -Wno-error=conversion-extra)
+  list(APPEND DD3_WARNINGS -Werror)
 endif()

@@ -15,7 +15,7 @@ module dd3_base_file
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
   !> Characters gathered before they are handed to the system.
-  integer, parameter :: buffer_size = 16384
+  integer(i8), parameter :: buffer_size = 16384
   !> Room kept on the disk: for a full buffer, and for what is added while a run comes to its end.
   integer(i8), parameter :: room_kept = 2*buffer_size
   !> Longest time a line waits in the buffer while others follow, s.
@@ -36,7 +36,7 @@ module dd3_base_file
     !> Text not written yet: `buffer(1:used)`.
     character(len=:), allocatable :: buffer
     !> Characters waiting in the buffer.
-    integer :: used = 0
+    integer(i8) :: used = 0
     !> Length of the file up to the end of its last whole line, and of all that is written.
     integer(i8) :: whole = 0, length = 0
     !> When the buffer was written last, s.
@@ -183,17 +183,17 @@ contains
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
-    integer :: first, n
+    integer(i8) :: first, n
 
     if (self%failed) return
     first = 1
-    do while (first <= len(text))
+    do while (first <= len(text, i8))
       if (self%used == buffer_size) then
         call self%flush(late)
         if (allocated(late)) call move_alloc(late, error)
         if (self%failed) return
       end if
-      n = min(len(text) - first + 1, buffer_size - self%used)
+      n = min(len(text, i8) - first + 1, buffer_size - self%used)
       self%buffer(self%used + 1:self%used + n) = text(first:first + n - 1)
       self%used = self%used + n
       first = first + n
@@ -210,7 +210,7 @@ contains
     class(file_t), intent(inout) :: self
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
-    integer :: first
+    integer(i8) :: first
     integer(c_size_t) :: n
     integer(c_int) :: status, cause
 
@@ -234,8 +234,8 @@ contains
         end if
         exit
       end if
-      call count_written(self, self%buffer(first:first + int(n) - 1))
-      first = first + int(n)
+      call count_written(self, self%buffer(first:first + n - 1))
+      first = first + n
     end do
     self%used = 0
     if (self%failed .or. cause == 0) return
@@ -259,11 +259,11 @@ contains
     class(file_t), intent(inout) :: self
     !> What was written.
     character(len=*), intent(in) :: text
-    integer :: end_of_line
+    integer(i8) :: end_of_line
 
-    end_of_line = index(text, new_line("a"), back=.true.)
+    end_of_line = index(text, new_line("a"), back=.true., kind=i8)
     if (end_of_line > 0) self%whole = self%length + end_of_line
-    self%length = self%length + len(text)
+    self%length = self%length + len(text, i8)
   end subroutine count_written
 
   !> Reserves room on the disk for what another library is about to write behind the file's end. On
@@ -388,7 +388,7 @@ contains
     address = c_strerror(number)
     if (.not. c_associated(address)) return
     call c_f_pointer(address, letter, [c_strlen(address)])
-    message = repeat(" ", size(letter))
+    message = repeat(" ", size(letter, kind=i8))
     do i = 1, size(letter)
       message(i:i) = letter(i)
     end do

@@ -12,6 +12,6 @@ module dd3_base_kinds
   !> Long integers: clocks and hashes.
   integer, parameter :: i8 = int64
   !> Ratio of a circle's circumference to its diameter.
-  real(wp), parameter :: pi = 3.14159265358979323846_wp
+  real(wp), parameter :: pi = 3.141592653589793_wp
 
 end module dd3_base_kinds

@@ -10,6 +10,8 @@ module dd3_output_csv
 
   !> Significant digits of a real number.
   integer, parameter :: digits = 10
+  !> The least whole number with one digit more.
+  integer(i8), parameter :: full = 10_i8**int(digits, i8)
 
   !> A table open for writing.
   type :: table_t
@@ -17,8 +19,10 @@ module dd3_output_csv
     type(file_t) :: file
     !> The row begun: `row(1:length)`.
     character(len=:), allocatable, private :: row
-    !> Characters and cells in the row.
-    integer, private :: length = 0, cells = 0
+    !> Characters in the row.
+    integer(i8), private :: length = 0
+    !> Number of its cells.
+    integer, private :: cells = 0
   contains
     procedure :: open => table_open
     procedure :: add_text => table_add_text
@@ -106,10 +110,10 @@ contains
     class(table_t), intent(inout) :: self
     !> The cell as it is to stand in the file.
     character(len=*), intent(in) :: text
-    integer :: n
+    integer(i8) :: n
 
-    n = len(text)
-    if (self%length + n + 2 > len(self%row)) then
+    n = len(text, i8)
+    if (self%length + n + 2 > len(self%row, i8)) then
       self%row = self%row(:self%length)//repeat(" ", self%length + n + 1024)
     end if
     if (self%cells > 0) then
@@ -206,8 +210,8 @@ contains
     if (length > 0) return
     e = floor(log10(magnitude))
     mantissa = scaled(magnitude, e)
-    if (mantissa >= 10_i8**digits .or. mantissa < 10_i8**(digits - 1)) then
-      e = e + merge(1, -1, mantissa >= 10_i8**digits)
+    if (mantissa >= full .or. mantissa < full/10_i8) then
+      e = e + merge(1, -1, mantissa >= full)
       mantissa = scaled(magnitude, e)
     end if
     call put_number(mantissa, e, value < 0.0_wp, text, length)
@@ -255,7 +259,7 @@ contains
     if (e < -4 .or. e >= digits) then
       text(i + 1:) = digit(1:1)//"."//digit(2:max(2, n))//"e"//exponent_text(e)
     else if (e < 0) then
-      text(i + 1:) = "0."//repeat("0", -e - 1)//digit(:n)
+      text(i + 1:) = "0."//repeat("0", int(-e - 1, i8))//digit(:n)
     else if (n > e + 1) then
       text(i + 1:) = digit(:e + 1)//"."//digit(e + 2:n)
     else

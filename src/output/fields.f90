@@ -85,7 +85,7 @@ contains
     self%last_time = -huge(1.0_wp)
     call self%guard%create(path, error)
     if (allocated(error)) return
-    call self%guard%reserve(0_i8, first_room + 8_i8*size(model%connectivity), error)
+    call self%guard%reserve(0_i8, first_room + 8*size(model%connectivity, kind=i8), error)
     if (allocated(error)) return
     call start_hdf5(ok)
     if (ok) then

@@ -234,7 +234,7 @@ contains
     !> Number of rows to come.
     integer, intent(in) :: more
 
-    series_room = ((more - 1)/self%chunk + 2)*self%chunk*self%components*8 + 4096
+    series_room = ((int(more, i8) - 1)/self%chunk + 2)*self%chunk*int(self%components, i8)*8 + 4096
   end function series_room
 
   !> Closes a dataset.
@@ -285,7 +285,7 @@ contains
     ok = ok .and. status >= 0
     if (ok) call h5acreate_f(object, name, type, space, attribute, status)
     ok = ok .and. status >= 0
-    if (ok) call h5awrite_f(attribute, type, text//repeat(" ", merge(1, 0, len(text) == 0)), &
+    if (ok) call h5awrite_f(attribute, type, text//repeat(" ", merge(1_i8, 0_i8, len(text) == 0)), &
                             [1_hsize_t], status)
     ok = ok .and. status >= 0
     if (.not. ok) return
