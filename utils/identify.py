@@ -78,6 +78,7 @@ class Points:
 
     def __init__(self, program, young, poisson):
         self.program, self.elastic, self.runs = program, f"  young = {young:g}\n  poisson = {poisson:g}", 0
+        self.refusal = ""
 
     def deck(self, materials, paths):
         """The input, and the number of the material to which each of its lines belongs."""
@@ -124,6 +125,7 @@ class Points:
                 break
             refused = {owner[int(line) - 1] for line in re.findall(r"points\.dat:(\d+): error", said)}
             if code == 2 and refused:
+                self.refusal = re.search(r": error: (.*)", said).group(1)
                 left = [number for i, number in enumerate(left) if i not in refused]
             elif code == 2:
                 raise Problem(said.strip())
@@ -134,6 +136,10 @@ class Points:
                     result[number] = self.rows([materials[number]], paths)[0]
                 break
         return result
+
+
+class NoStart(Exception):
+    """The program takes none of the sets from which the search was to begin."""
 
 
 class Fit:
@@ -208,7 +214,7 @@ class Fit:
             if np.linalg.norm(found.fun[:len(self.measured)]) < ENOUGH:
                 break
         if best is None:
-            sys.exit("no start gave a set that the program takes: more --starts, or other values of --fix?")
+            raise NoStart
         point = best.x
         if self.at(point)[2]:
             point = self.descend(self.along_border(point, seed)).x
@@ -554,12 +560,17 @@ def identify():
     options, fits = arguments()
     points, table, notes, data, curve = Points(options.program, options.young, options.poisson), [], [], [], None
     yields, hardens = "von_mises", [f"hardening = {options.hardening or UNIT}"]
-    if options.criterion:
-        data = measured(options)
-        yields, table, notes = criterion(options, points, data)
-    if fits:
-        hardens, more, other, curve = hardening(options, points, yields)
-        table, notes = table + more, notes + other
+    try:
+        if options.criterion:
+            data = measured(options)
+            yields, table, notes = criterion(options, points, data)
+        if fits:
+            hardens, more, other, curve = hardening(options, points, yields)
+            table, notes = table + more, notes + other
+    except NoStart:
+        raise Problem("error: no start gave a set that the program takes; it said: "
+                      f"{points.refusal or 'the points did not converge'}\n"
+                      "  expected: more --starts, or other values of --fix") from None
     text = block(options, yields, hardens, table, notes)
     code, said, _ = points.run(text + f"*POINT p\n  material = {options.name}\n  control = {TENSION}\n"
                                "  target = 1e-6 0 0 0 0 0 steps=1\n")

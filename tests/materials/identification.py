@@ -66,6 +66,7 @@ ALLOY = "\n".join(["# AA2090-T3", *(f"stress {15 * i} {value}" for i, value in e
 # Words of the command line, and what is said.
 MISTAKES = (
     ("--criterion hill48", "error: no measured values"),
+    ("--criterion yld91 --fix m=1 --r 0:1.79 45:1.51 90:2.27", "it said: m = 1 is out of range"),
     ("--criterion hill48 --r 0:1.79", "1 measured value\n  expected: 3 or more"),
     ("--criterion hill48 --r 0:1.79 45:1.51 90:2.27 --fix Q=1", "hill48 has no Q"),
     ("--criterion hill48 --r 0:-1.79 45:1.51", "--r: error: r = -1.79 is out of range\n  0:-1.79\n    ^^^^^\n"),
