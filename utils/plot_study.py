@@ -39,6 +39,13 @@ COLOURS = {"a": ["#c2571a", "#e08a4f", "#f2bd94"], "b": ["#1f5f99", "#5a95c9", "
 STATUS = [("gap", "0.75", "o"), ("stick", "#1f5f99", "s"), ("slip", "#c2571a", "D")]
 
 
+def reach_between(results, case):
+    """Least and largest travel of a case and of those that differ from it by round-off alone."""
+    ways = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
+    travel = [float(results[case + way]["travel"]) for way in ways if case + way in results]
+    return min(travel), max(travel)
+
+
 def bars(results, number, path):
     """Travel reached by each case of a set; the paper's Figs 3, 6, 8 and 9."""
     groups = [(mesh, *ending) for mesh in MESHES for ending in BARS[number]]
@@ -50,8 +57,12 @@ def bars(results, number, path):
         place = np.arange(len(PENALTIES)) + (i - 0.5 * (len(groups) - 1)) * width
         travel = [float(results[f"{mesh}-{p}{ending}"]["travel"]) for p in PENALTIES]
         shade = COLOURS[mesh][i % len(BARS[number])]
-        drawn = axes.bar(place, travel, 0.94 * width, color=shade, label=f"mesh ({mesh}), {label}")
-        axes.bar_label(drawn, ["40" if t > END - 0.05 else f"{t:.1f}" for t in travel], fontsize=6, padding=1)
+        axes.bar(place, travel, 0.94 * width, color=shade, label=f"mesh ({mesh}), {label}")
+        spread = np.array([reach_between(results, f"{mesh}-{p}{ending}") for p in PENALTIES]).T
+        axes.errorbar(place, travel, np.abs(spread - travel), fmt="none", ecolor="0.15", elinewidth=0.8, capsize=1.5)
+        for x, reached, top in zip(place, travel, spread[1]):
+            axes.annotate("40" if reached > END - 0.05 else f"{reached:.1f}", (x, top), (0, 2), fontsize=6, ha="center",
+                          textcoords="offset points")
     axes.axhline(END, color="0.5", linewidth=0.8, linestyle="--", zorder=0)
     axes.set_xticks(range(len(PENALTIES)), [f"p = {float(p):.0f}" for p in PENALTIES])
     axes.set_ylabel("punch travel reached (mm)")

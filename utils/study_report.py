@@ -19,6 +19,16 @@ VARIANTS = {"": "as in Fig. 3", "-c1": "c = 1", "-held": "u_y = 0", "-held-c1": 
             "-half_holder": "blank-holder 11.3 kN", "-c1-floor0": "c = 1, no floor of B",
             "-umfpack": "solver `umfpack`"}
 MAX8 = {"-max8": "off", "-c1-max8": "c = 1", "-c1000-max8": "c = 1000", "-held-max8": "off, u_y = 0"}
+SCATTER = {("a", "", "30"): "off", ("a", "-c0.1", "30"): "0.1, 0.1, 0.1", ("a", "-c1", "30"): "1, 1, 1",
+           ("a", "-normal", "30"): "1, 1000, 1000", ("a", "-tangential", "30"): "1000, 1, 1",
+           ("a", "-half_holder", "30"): "off, blank-holder 11.3 kN",
+           ("a", "-max8", "8"): "off", ("a", "-c1-max8", "8"): "1, 1, 1", ("a", "-held-max8", "8"): "off, u_y = 0",
+           ("b", "-max8", "8"): "off", ("b", "-c1-max8", "8"): "1, 1, 1",
+           ("a", "-c1-alone", "30"): "1, 1, 1 alone, trial 1 mm", ("b", "-c1-alone", "30"): "1, 1, 1 alone, trial 1 mm",
+           ("a", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm",
+           ("b", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm"}
+# Endings of the cases that must not differ from the plain one but by round-off.
+PERTURBED = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
 PAPER_COST = {"-c0.1": "+150 %", "-c1": "+7 %", "-c1000": "-2 %", "-normal": "+3 %", "-tangential": "-8 %"}
 SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e-6", "trial0.1": "trial 0.1 mm",
                "trial0.5": "trial 0.5 mm", "halved": "halved limits", "iterations10": "at most 10 iterations",
@@ -83,6 +93,20 @@ def eight(results):
 def variants(results):
     """Travel reached in the variants, mm."""
     return travel_table(results, VARIANTS, "variant", ["a", "b", "b05"])
+
+
+def scatter(results):
+    """Least and largest travel of the runs that differ by round-off alone, mm."""
+    def cell(case):
+        names = [case + ending for ending in PERTURBED if case + ending in results.row]
+        if len(names) < 2:
+            return ""
+        ends = [results.travel(end(names, key=lambda name: results.number(name, "travel"))) for end in (min, max)]
+        return " - ".join(dict.fromkeys(ends))
+
+    rows = [[f"({mesh})", label, iterations] + [cell(f"{mesh}-{p}{ending}") for p in PENALTIES]
+            for (mesh, ending, iterations), label in SCATTER.items()]
+    return table(["mesh", "c, d, e", "iterations at most"] + [f"p = {p}" for p in PENALTIES], rows)
 
 
 def costs(results):
@@ -191,7 +215,8 @@ def stops(results):
     return table(["iterations at most", "mesh", "p", "reached, mm", "gap, stick, slip", "reason"], rows)
 
 
-TABLES = [travels, alone, eight, variants, costs, equal_travel, control, limiters, sensitivity, agreement, stops]
+TABLES = [travels, scatter, alone, eight, variants, costs, equal_travel, control, limiters, sensitivity, agreement,
+          stops]
 
 
 def write(work, document):
