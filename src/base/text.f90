@@ -115,25 +115,40 @@ contains
     same_name = lower_case(trim(a)) == lower_case(trim(b))
   end function same_name
 
-  !> The known name closest to a misspelt one; empty when none is close.
+  !> The known name closest to a misspelt one; empty when none is close. Of those that are equally
+  !> close, a name with another last character goes first, as C6 for C7, the nearest of them.
   pure function nearest_name(name, known) result(nearest)
     !> What was written.
     character(len=*), intent(in) :: name
     !> The names there are.
     character(len=*), intent(in) :: known(:)
     character(len=:), allocatable :: nearest
-    integer :: i, distance, best
+    integer :: i, most, distance, step, best(2)
 
     nearest = ""
-    best = max(1, (len_trim(name) + 1)/3) + 1
+    most = min(max(1, (len_trim(name) + 1)/3), len_trim(name) - 1)
+    best = huge(1)
     do i = 1, size(known)
       distance = edit_distance(lower_case(trim(name)), lower_case(trim(known(i))))
-      if (distance < min(best, len_trim(name))) then
-        best = distance
-        nearest = trim(known(i))
-      end if
+      if (distance > most .or. distance > best(1)) cycle
+      step = last_step(lower_case(trim(name)), lower_case(trim(known(i))))
+      if (distance == best(1) .and. step >= best(2)) cycle
+      best = [distance, step]
+      nearest = trim(known(i))
     end do
   end function nearest_name
+
+  !> How far apart in the alphabet the last characters are of two words that are alike before them;
+  !> a large number for other words.
+  pure integer function last_step(a, b)
+    !> The two words.
+    character(len=*), intent(in) :: a, b
+
+    last_step = huge(1)
+    if (len(a) /= len(b)) return
+    if (a(:len(a) - 1) /= b(:len(b) - 1)) return
+    last_step = abs(iachar(a(len(a):)) - iachar(b(len(b):)))
+  end function last_step
 
   !> Number of insertions, deletions, replacements and exchanges of neighbours between two words
   !> (optimal string alignment; Damerau 1964).
