@@ -165,7 +165,7 @@ contains
       row("yield", kind_law, "", "", "yield criterion and its parameters"), &
       row("hardening", kind_law, "", "", "hardening law and its parameters"), &
       row("backstress", kind_law, "", "none", &
-      "back-stress law and its parameters; several add up", repeatable=.true.), &
+      "back-stress law and its parameters, or none; several add up", repeatable=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
       count=3), &
       row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3)]

@@ -18,6 +18,8 @@ module dd3_model_materials
   character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", &
       "hardening law", &
                                                   "back-stress law"]
+  !> What may be given in place of a back-stress.
+  character(len=24), parameter :: no_law = "none"
 
 contains
 
@@ -92,6 +94,7 @@ contains
 
     found = errors%count
     call known_laws(kind, names)
+    if (kind == law_backstress) names = [names, no_law]
     call check_law_name(spec, trim(kind_name(kind)), names, position, errors)
     if (position == 0) return
     choice%name = names(position)
