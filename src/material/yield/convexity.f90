@@ -6,7 +6,7 @@
 !> the additive sequence of M. Roberts (2018) inside the unit ball.
 module dd3_material_yield_convexity
   use dd3_base_kinds, only : wp
-  use dd3_material_description, only : problem_t, add_problem
+  use dd3_material_description, only : description_t, problem_t, add_problem
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   use dd3_material_yield_transformation, only : deviator_of
@@ -47,11 +47,24 @@ contains
         call criterion%second_derivative(stress, at)
         if (at%equivalent > 0.0_wp .and. semidefinite(at%second)) cycle
         call add_problem(problems, 0, "the yield surface is not convex at the stress "// &
-                         components(stress), "a convex surface")
+                         components(stress), "a convex surface"//waiver(criterion))
         return
       end do
     end do
   end subroutine check_convexity
+
+  !> How a surface that is not convex may be taken all the same; empty where the law takes none.
+  function waiver(criterion) result(text)
+    !> The criterion.
+    class(yield_criterion_t), intent(in) :: criterion
+    character(len=:), allocatable :: text
+    type(description_t) :: description
+
+    call criterion%describe(description)
+    text = ""
+    if (.not. any(description%rows%name == "nonconvex")) return
+    text = "; nonconvex=1 takes this one all the same, with a warning, and stress updates may fail"
+  end function waiver
 
   !> Adds a problem where a stress has no equivalent stress.
   subroutine check_closed(criterion, problems)
@@ -142,10 +155,16 @@ contains
     !> The stress.
     real(wp), intent(in) :: stress(6)
     character(len=:), allocatable :: text
-    character(len=60) :: line
+    character(len=5) :: number
+    real(wp) :: component(6)
+    integer :: k
 
-    write (line, '(6(1x, f5.2))') stress(1:3), stress([6, 4, 5])/sqrt(2.0_wp)
-    text = "(11 22 33 12 23 13) ="//trim(line)
+    component = [stress(1:3), stress([6, 4, 5])/sqrt(2.0_wp)]
+    text = "(11 22 33 12 23 13) ="
+    do k = 1, 6
+      write (number, '(f5.2)') component(k)
+      text = text//" "//trim(adjustl(number))
+    end do
   end function components
 
 end module dd3_material_yield_convexity
