@@ -38,6 +38,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     integer :: unit, status, length
+    character(len=1) :: byte
     logical :: there
 
     inquire (file=path//"/.", exist=there)
@@ -64,6 +65,9 @@ contains
       allocate (character(len=max(0, length)) :: content)
       if (length > 0) read (unit, iostat=status) content
       if (status /= 0) call fatal_error(error, "reading it failed")
+      if (length <= 0) read (unit, iostat=status) byte
+      if (length <= 0 .and. status == 0) call fatal_error(error, &
+          "it is a pipe or a device; a file on a disk is asked for")
     end if
     close (unit, iostat=status)
   end subroutine read_content
