@@ -17,6 +17,7 @@ module dd3_model_build
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
   use dd3_model_points, only : new_points
+  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   implicit none
   private
   public :: new_model
@@ -59,6 +60,7 @@ contains
     call new_phases(model, case, mesh, errors)
     call take_output(model, case, mesh)
     call check_start(model, case, errors)
+    call check_supports(model, case, errors)
   end subroutine new_model
 
   !> Joins the lines of the title.
@@ -279,5 +281,32 @@ contains
           "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
     end do
   end subroutine check_start
+
+  !> Refuses the first phase in which the sheet is free to move as a rigid body and no tool is there to
+  !> hold it.
+  subroutine check_supports(model, case, errors)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> Receives what is wrong.
+    type(error_list_t), intent(inout) :: errors
+
+    type(rigid_motion_t) :: body
+    character(len=:), allocatable :: motion
+    integer :: i
+
+    do i = 1, size(model%phase)
+      if (any(model%phase(i)%active)) cycle
+      call new_rigid_motion(body, model%x0)
+      call body%hold_prescribed(model%x0, model%phase(i)%prescribed)
+      motion = body%free_motion()
+      if (len(motion) == 0) cycle
+      call errors%push_input(case%phase(i)%source%opened, "nothing holds the sheet in phase '"// &
+          model%phase(i)%name//"': it is free to "//motion, &
+          "supports by *BOUNDARY or displace, or a tool that is not released")
+      return
+    end do
+  end subroutine check_supports
 
 end module dd3_model_build

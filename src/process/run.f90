@@ -21,8 +21,8 @@ module dd3_process_run
   use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
       shrink_increment, stepper_t, &
                                     try_increment
-  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over, &
-      release_warning
+  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
+  use dd3_process_stage_warnings, only : press_warning, release_warning, support_warning
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -179,13 +179,14 @@ contains
 
     type(phase_t) :: phase
     real(wp), allocatable :: strain_before(:, :)
-    character(len=:), allocatable :: warning
     type(error_t), allocatable :: late
     real(wp) :: next_output
     integer :: done
 
     strain_before = run%committed%internal(1, :, :)
     call begin_phase(model, number, phase, run%committed)
+    call say_if_any(log, press_warning(model, phase, run%committed))
+    call say_if_any(log, support_warning(model, phase, run%committed))
     if (phase_is_over(phase, run%committed)) call log%say("phase '"//phase%name &
         //"' has no increment: its early end is there from the start")
     do while (.not. phase_is_over(phase, run%committed))
@@ -203,10 +204,19 @@ contains
         return
       end if
     end do
-    warning = release_warning(phase, strain_before, run%committed)
-    if (len(warning) > 0) call log%say(warning)
+    call say_if_any(log, release_warning(phase, strain_before, run%committed))
     call run%fields%write(model, run%committed, error)
   end subroutine run_phase
+
+  !> Says a text that is not empty.
+  subroutine say_if_any(log, text)
+    !> Where it is said.
+    type(log_t), intent(inout) :: log
+    !> The text.
+    character(len=*), intent(in) :: text
+
+    if (len(text) > 0) call log%say(text)
+  end subroutine say_if_any
 
   !> One increment with as many attempts as it takes. One that converged is done, even where its row
   !> of status.csv cannot be written any more.

@@ -1,27 +1,22 @@
 !> The start of a phase: what only the state at that moment can tell.
 module dd3_process_stage
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement, until_force
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_process_stage_warnings, only : look_along, reach
   implicit none
   private
-  public :: begin_phase, next_output_progress, phase_is_over, release_warning
+  public :: begin_phase, next_output_progress, phase_is_over
 
-  !> How far a pressed tool that touches nothing is looked for along its line, mm.
-  real(wp), parameter :: reach = 1.0e3_wp
   !> Advances of a pressed tool towards the sheet; each covers at least the smallest gap left.
   integer, parameter :: most_advances = 200
   !> A gap this small counts as touch, mm.
   real(wp), parameter :: closed = 1.0e-9_wp
   !> Share of a phase by which an end is met.
   real(wp), parameter :: sharp = 1.0e-9_wp
-  !> Plastic strain in a release that is more than a little yielding backwards.
-  real(wp), parameter :: notable_strain = 1.0e-3_wp
 
 contains
 
@@ -134,24 +129,14 @@ contains
     !> The committed state.
     type(state_t), intent(inout) :: state
 
-    type(hint_t) :: hint
-    type(hit_t) :: hit
     real(wp) :: smallest
-    integer :: c, k
+    logical :: faces
+    integer :: k
 
     if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
     do k = 1, most_advances
-      smallest = huge(1.0_wp)
-      do c = 1, model%n_contact
-        if (.not. model%candidate(tool, c)) cycle
-        hint = hint_t()
-        call find_contact(model%tool(tool)%surface, &
-                          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), &
-                          hint, reach, &
-                          model%contact_depth, hit)
-        if (hit%found) smallest = min(smallest, hit%distance)
-      end do
-      if (smallest <= closed .or. smallest > reach) return
+      call look_along(model, phase, tool, state, smallest, faces)
+      if (smallest <= closed .or. smallest > reach .or. .not. faces) return
       state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
           + smallest*phase%direction(:, tool)
     end do
@@ -184,29 +169,6 @@ contains
     end if
     if (progress > 1.0_wp) progress = huge(1.0_wp)
   end function next_output_progress
-
-  !> What the user is told where the sheet yields while the forces of released tools fade: as loads of
-  !> fixed direction they may lead it on where withdrawn tools would not. Empty elsewhere.
-  function release_warning(phase, strain_before, state) result(text)
-    !> The phase.
-    type(phase_t), intent(in) :: phase
-    !> Equivalent plastic strains at its start, `(n_point, n_element)`.
-    real(wp), intent(in) :: strain_before(:, :)
-    !> The state at its end.
-    type(state_t), intent(in) :: state
-    character(len=:), allocatable :: text
-
-    integer :: place(2)
-
-    text = ""
-    if (all(abs(phase%fading) <= 0.0_wp)) return
-    place = maxloc(state%internal(1, :, :) - strain_before)
-    associate (growth => state%internal(1, place(1), place(2)) - strain_before(place(1), place(2)))
-      if (growth > notable_strain) text = "warning: in phase '"//phase%name &
-        //"' the plastic strain of element "//to_text(place(2))//" grew by "//to_text(growth, 3) &
-        //" while the forces of released tools faded; compare with tools withdrawn by `move`"
-    end associate
-  end function release_warning
 
   !> Whether the phase has come to its end, or met its early end.
   logical function phase_is_over(phase, state)

@@ -1,0 +1,179 @@
+!> Which motions of the sheet as a rigid body nothing holds. A node held along a direction d takes
+!> from u = t + w x (x - c) the motions with u . d /= 0; those left are the null space of the sum of
+!> the products of all such conditions, found by elimination with pivots on the diagonal,
+!> translations first.
+module dd3_model_rigid_motion
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_linalg_tensor, only : cross
+  implicit none
+  private
+  public :: rigid_motion_t, new_rigid_motion
+
+  !> A pivot below this part of the trace is round-off.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+  !> A component of a direction below this counts as none.
+  real(wp), parameter :: aligned = 1.0e-4_wp
+  !> Names of the axes.
+  character(len=1), parameter :: axis(3) = ["x", "y", "z"]
+
+  !> What holds a body.
+  type :: rigid_motion_t
+    !> The middle of its nodes, mm.
+    real(wp) :: centre(3) = 0.0_wp
+    !> The distance of the farthest node from it, mm.
+    real(wp) :: size = 1.0_wp
+    !> Sum of the products of the conditions on translation and rotation times size, `(6, 6)`.
+    real(wp) :: product(6, 6) = 0.0_wp
+  contains
+    procedure :: hold
+    procedure :: hold_prescribed
+    procedure :: free_motion
+  end type rigid_motion_t
+
+contains
+
+  !> A body that nothing holds.
+  pure subroutine new_rigid_motion(self, x)
+    !> The body.
+    type(rigid_motion_t), intent(out) :: self
+    !> Positions of its nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+
+    integer :: n
+
+    self%centre = sum(x, dim=2)/real(max(1, size(x, 2)), wp)
+    self%size = maxval([(norm2(x(:, n) - self%centre), n=1, size(x, 2))])
+  end subroutine new_rigid_motion
+
+  !> Holds a point along a direction.
+  pure subroutine hold(self, x, direction)
+    !> The body.
+    class(rigid_motion_t), intent(inout) :: self
+    !> The point, mm.
+    real(wp), intent(in) :: x(3)
+    !> The direction.
+    real(wp), intent(in) :: direction(3)
+
+    real(wp) :: condition(6)
+
+    condition(:3) = direction
+    condition(4:) = cross((x - self%centre)/self%size, direction)
+    self%product = self%product + spread(condition, 2, 6)*spread(condition, 1, 6)
+  end subroutine hold
+
+  !> Holds the nodes where their displacement is prescribed.
+  pure subroutine hold_prescribed(self, x, prescribed)
+    !> The body.
+    class(rigid_motion_t), intent(inout) :: self
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Whether a displacement is prescribed, `(3, n_node)`.
+    logical, intent(in) :: prescribed(:, :)
+
+    real(wp) :: direction(3)
+    integer :: n, d
+
+    do n = 1, size(x, 2)
+      do d = 1, 3
+        if (.not. prescribed(d, n)) cycle
+        direction = 0.0_wp
+        direction(d) = 1.0_wp
+        call self%hold(x(:, n), direction)
+      end do
+    end do
+  end subroutine hold_prescribed
+
+  !> The motions left, in words: `move along y, turn about x`; empty where there is none.
+  pure function free_motion(self) result(text)
+    !> The body.
+    class(rigid_motion_t), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: turns
+    real(wp) :: motion(6, 6)
+    integer :: n, k
+
+    call null_space(self%product, motion, n)
+    text = ""
+    turns = ""
+    do k = 1, n
+      if (norm2(motion(4:, k)) < aligned*norm2(motion(:, k))) then
+        call add(text, "move along "//name_of(motion(:3, k)))
+      else
+        call add(turns, "turn about "//name_of(motion(4:, k)))
+      end if
+    end do
+    if (len(turns) > 0) call add(text, turns)
+  end function free_motion
+
+  !> Adds words to others.
+  pure subroutine add(text, words)
+    !> The others.
+    character(len=:), allocatable, intent(inout) :: text
+    !> The words.
+    character(len=*), intent(in) :: words
+
+    if (len(text) > 0) text = text//", "
+    text = text//words
+  end subroutine add
+
+  !> A direction in words: the axis, or its components.
+  pure function name_of(direction) result(name)
+    !> The direction.
+    real(wp), intent(in) :: direction(3)
+    character(len=:), allocatable :: name
+
+    real(wp) :: unit(3)
+    integer :: k
+
+    unit = direction/norm2(direction)
+    k = maxloc(abs(unit), dim=1)
+    name = axis(k)
+    if (norm2(unit) - abs(unit(k)) < aligned**2) return
+    where (abs(unit) < aligned) unit = 0.0_wp
+    name = "("//to_text(unit(1), 3)//" "//to_text(unit(2), 3)//" "//to_text(unit(3), 3)//")"
+  end function name_of
+
+  !> The null space of a symmetric matrix without negative eigenvalues (Gauss and Jordan).
+  pure subroutine null_space(matrix, motion, n)
+    !> The matrix.
+    real(wp), intent(in) :: matrix(6, 6)
+    !> Vectors that span the null space, `motion(:, 1:n)`.
+    real(wp), intent(out) :: motion(6, 6)
+    !> Their number.
+    integer, intent(out) :: n
+
+    real(wp) :: a(6, 6), smallest
+    logical :: taken(6)
+    integer :: step, last, k, i
+
+    a = matrix
+    smallest = round_off*sum([(a(i, i), i=1, 6)])
+    taken = .false.
+    last = 3
+    do step = 1, 7
+      k = maxloc([(a(i, i), i=1, last)], dim=1, mask=.not. taken(:last))
+      if (k > 0) then
+        if (a(k, k) <= smallest) k = 0
+      end if
+      if (k == 0 .and. last == 6) exit
+      last = merge(6, last, k == 0)
+      if (k == 0) cycle
+      taken(k) = .true.
+      a(k, :) = a(k, :)/a(k, k)
+      do i = 1, 6
+        if (i /= k) a(i, :) = a(i, :) - a(i, k)*a(k, :)
+      end do
+    end do
+    n = 0
+    motion = 0.0_wp
+    do k = 1, 6
+      if (taken(k)) cycle
+      n = n + 1
+      where (taken) motion(:, n) = -a(:, k)
+      motion(k, n) = 1.0_wp
+    end do
+  end subroutine null_space
+
+end module dd3_model_rigid_motion
