@@ -42,6 +42,7 @@ VIEWS = {  # where the camera stands, seen from the sheet, and what is up
     "bottom": ((0, 0, -1), (0, 1, 0)),
     "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
 }
+BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 
@@ -207,15 +208,12 @@ def reflected(mesh, axes):
 
 def draw(plotter, run, step, options, tools, limits, box):
     """One picture."""
-    mesh, label = run.mesh(step, options.field, options.cells)
-    bar = {"title": label + "\n", "vertical": False, "position_x": 0.3, "width": 0.4, "position_y": 0.03,
-           "height": 0.1, "title_font_size": 20, "label_font_size": 17, "fmt": "%.3g", "color": "black", "fill": True,
-           "background_color": "white"}
-    for number, part in enumerate(reflected(mesh, options.mirror)):
+    mesh = run.mesh(step, options.field, options.cells)[0]
+    for part in reflected(mesh, options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
-                         edge_color="#333333", line_width=1, scalar_bar_args=bar, show_scalar_bar=number == 0,
-                         smooth_shading=False, lighting=True, ambient=0.25)
+                         edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
+                         lighting=True, ambient=0.25)
     # Tools are drawn a little farther from the eye than they are: where they touch the sheet, its colours show.
     behind = -0.006 * diagonal(box) * eye(options)[0]
     displacement = run.tool_displacement(step)
@@ -231,7 +229,18 @@ def draw(plotter, run, step, options, tools, limits, box):
                                                    non_manifold_edges=False)
                 plotter.add_mesh(edges, color="#444444", line_width=1.5)
     aim(plotter, box, options)
-    plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
+    text = plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
+    text.prop.SetBackgroundColor(1, 1, 1)
+    text.prop.SetBackgroundOpacity(1)
+
+
+def draw_bar(plotter, label, options, limits):
+    """The colour bar, in a strip of its own."""
+    table = pv.LookupTable(options.colours, scalar_range=limits)
+    mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
+    mapper.lookup_table = table
+    plotter.add_scalar_bar(title=label + "\n", mapper=mapper, vertical=False, position_x=0.3, width=0.4, position_y=0.2,
+                           height=0.7, title_font_size=20, label_font_size=17, fmt="%.3g", color="black")
 
 
 def diagonal(box):
@@ -265,10 +274,10 @@ def aim(plotter, box, options):
     right = np.cross(up, place)
     right /= np.linalg.norm(right)
     over = np.cross(place, right)
-    width, height = plotter.window_size[0], plotter.window_size[1] / plotter.shape[0]
+    width, height = np.subtract(plotter.renderer.viewport[2:], plotter.renderer.viewport[:2]) * plotter.window_size
     half_width = np.abs(right) @ (high - low) / 2
     half_height = np.abs(over) @ (high - low) / 2
-    plotter.camera.parallel_scale = max(1.35 * half_height, 1.1 * half_width * height / width, 1e-3) / options.zoom
+    plotter.camera.parallel_scale = max(1.15 * half_height, 1.1 * half_width * height / width, 1e-3) / options.zoom
     plotter.reset_camera_clipping_range()
 
 
@@ -363,13 +372,17 @@ def main():
     box = box_of(run, steps, options)
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     pv.OFF_SCREEN = True
-    plotter = pv.Plotter(shape=(len(steps), 1), off_screen=True, border=False,
-                         window_size=[options.size[0], options.size[1] * len(steps)])
+    window = [options.size[0], options.size[1] * len(steps)]
+    bar = min(BAR_HEIGHT, window[1] / 2)
+    plotter = pv.Plotter(shape=(len(steps) + 1, 1), row_weights=[(window[1] - bar) / len(steps)] * len(steps) + [bar],
+                         off_screen=True, border=False, window_size=window)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
     for row, step in enumerate(steps):
         plotter.subplot(row, 0)
         draw(plotter, run, step, options, tools, limits, box)
+    plotter.subplot(len(steps), 0)
+    draw_bar(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits)
     try:
         plotter.screenshot(options.output)
     except (OSError, ValueError) as error:
