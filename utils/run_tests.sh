@@ -22,6 +22,7 @@ failed=0
 # Counts what ctest says: "98% tests passed, 1 tests failed out of 50".
 run_tests() {
   local log=build/$1/tests.log run good=0 bad=1
+  mkdir -p "build/$1"
   echo "== testing: $1"
   ctest --preset "$1" -j "$jobs" --no-tests=error >"$log" 2>&1
   sed -n '/tests passed/,$p' "$log"
