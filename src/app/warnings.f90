@@ -1,5 +1,5 @@
-!> Warnings of magnitudes that nearly always mean a wrong unit or a slip of the pen. Nothing is refused:
-!> a unit cube of a model material is a fair case.
+!> Warnings of magnitudes that nearly always mean a wrong unit or a slip of the pen. Nothing is
+!> refused: a unit cube of a model material is a fair case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
@@ -16,7 +16,7 @@ module dd3_app_warnings
   real(wp), parameter :: largest_strain = 0.1_wp
   !> Thicknesses of sheets lie well between these, mm.
   real(wp), parameter :: least_thickness = 1.0e-2_wp, largest_thickness = 1.0e2_wp
-  !> Equivalent stress of unit tension along rolling: 1 in most published sets, near it in the others.
+  !> Equivalent stress of unit tension along rolling: 1 in most published sets, near it in others.
   real(wp), parameter :: least_tension = 0.8_wp, largest_tension = 1.25_wp
   !> What is said of a magnitude.
   character(len=*), parameter :: about_units = "unusual; units are N, mm and MPa"
@@ -39,7 +39,7 @@ contains
       associate (material => case%material(i))
         if (outside(material%young, least_young, largest_young)) then
           call add(warnings, material%source%at("young"), "young = "//to_text(material%young)// &
-              " MPa of material '"//material%name//"'", about_units)
+              " MPa of material '"//material%source%called()//"'", about_units)
         end if
         call look_at_criterion(case, model, i, warnings)
         call look_at_flow_stress(case, model, i, warnings)
@@ -49,7 +49,7 @@ contains
       associate (blank => case%blank(i))
         if (.not. outside(blank%size(3), least_thickness, largest_thickness)) cycle
         call add(warnings, blank%source%at("size"), "thickness = "//to_text(blank%size(3))// &
-            " mm of blank '"//blank%name//"'", about_units)
+            " mm of blank '"//blank%source%called()//"'", about_units)
       end associate
     end do
   end subroutine unit_warnings
@@ -70,7 +70,7 @@ contains
 
     equivalent = model%material(i)%laws%criterion%value(tension)
     if (.not. outside(equivalent, least_tension, largest_tension)) return
-    call add(warnings, case%material(i)%yield%at, "material '"//case%material(i)%name// &
+    call add(warnings, case%material(i)%yield%at, "material '"//case%material(i)%source%called()// &
         "' yields along rolling at "//to_text(1/equivalent, 3)//" times the flow stress of its "// &
         "hardening law", "unusual; are these the parameters of "//case%material(i)%yield%name//"?")
   end subroutine look_at_criterion
@@ -92,7 +92,8 @@ contains
     stress = model%material(i)%flow_stress(start)
     if (stress <= largest_strain*case%material(i)%young) return
     call add(warnings, case%material(i)%hardening%at, "first flow stress = "// &
-        to_text(stress, 4)//" MPa of material '"//case%material(i)%name//"', young = "// &
+        to_text(stress, 4)//" MPa of material '"//case%material(i)%source%called()// &
+        "', young = "// &
         to_text(case%material(i)%young)//" MPa", about_units)
   end subroutine look_at_flow_stress
 

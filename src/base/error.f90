@@ -2,9 +2,10 @@
 !> together.
 module dd3_base_error
   use dd3_base_kinds, only : i8
+  use dd3_base_text, only : same_name
   implicit none
   private
-  public :: location_t, error_t, error_list_t, fatal_error, input_error
+  public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written
 
   !> Where a piece of input was written.
   type :: location_t
@@ -55,6 +56,29 @@ contains
     allocate (error)
     error%message = message
   end subroutine fatal_error
+
+  !> A name in the letters, capital or not, that the user wrote it with; as it is where another text
+  !> stands at the place.
+  pure function as_written(name, at) result(text)
+    !> The name.
+    character(len=*), intent(in) :: name
+    !> Where it was written.
+    type(location_t), intent(in) :: at
+    character(len=:), allocatable :: text
+
+    integer :: first, last
+
+    text = name
+    if (.not. allocated(at%text) .or. at%column < 1) return
+    first = at%column
+    last = min(len(at%text), first + at%width - 1)
+    if (first > last) return
+    if (scan(at%text(first:first), "'""") > 0) then
+      first = first + 1
+      last = last - 1
+    end if
+    if (same_name(at%text(first:last), name)) text = at%text(first:last)
+  end function as_written
 
   !> Makes an error that shows the place in the input: file, line, text, caret, what was expected.
   subroutine input_error(error, location, message, expected)

@@ -3,7 +3,7 @@
 !> Every word remembers where it was written.
 module dd3_input_block
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : location_t
+  use dd3_base_error, only : as_written, location_t
   use dd3_base_text, only : same_name
   implicit none
   private
@@ -63,6 +63,7 @@ module dd3_input_block
     procedure :: number
     procedure :: numbers
     procedure :: at
+    procedure :: called
     procedure :: add_entry
   end type block_t
 
@@ -171,6 +172,15 @@ contains
     if (.not. allocated(self%entry(i)%value)) return
     if (size(self%entry(i)%value) > 0) at = self%entry(i)%value(1)%at
   end function at
+
+  !> The block's own name as the user wrote it.
+  pure function called(self)
+    !> The block.
+    class(block_t), intent(in) :: self
+    character(len=:), allocatable :: called
+
+    called = as_written(self%name, self%named)
+  end function called
 
   !> Appends an entry.
   subroutine add_entry(self, entry)

@@ -1,6 +1,6 @@
 !> Checks the blocks of an input against the keyword tables and fills in the defaults.
 module dd3_input_check
-  use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_error, only : as_written, error_list_t, location_t
   use dd3_base_text, only : upper_case, same_name, nearest_name, join
   use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t, token_t, deck_t
@@ -85,13 +85,13 @@ contains
       else if (.not. row%named .and. block%name /= "") then
         call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
       else if (row%named .and. .not. is_name(block%name)) then
-        call errors%push_input(block%named, "'"//block%name//"' cannot be a name", &
+        call errors%push_input(block%named, "'"//block%called()//"' cannot be a name", &
                                "a letter, then letters, digits, _ - or ., at most 60 characters")
       end if
       do j = 1, i - 1
         if (deck%block(j)%keyword /= block%keyword) cycle
         if (row%repeatable .and. (deck%block(j)%name /= block%name .or. block%name == "")) cycle
-        call errors%push_input(block%named, trim(title//" "//block%name)// &
+        call errors%push_input(block%named, trim(title//" "//block%called())// &
                                trim(merge(" is given twice        ", &
                                " may be given only once", row%repeatable)))
         exit
@@ -131,8 +131,9 @@ contains
         cycle
       end if
       if (.not. key(k)%repeatable .and. block%find(block%entry(i)%key) < i) then
-        call errors%push_input(block%entry(i)%at, "'"//block%entry(i)%key// &
-            "' is given twice in "//title_of(block))
+        call errors%push_input(block%entry(i)%at, "'"// &
+            as_written(block%entry(i)%key, block%entry(i)%at)//"' is given twice in "// &
+            title_of(block))
       end if
       call check_value(block%entry(i), key(k), errors)
     end do
@@ -145,7 +146,7 @@ contains
     type(block_t), intent(in) :: block
     character(len=:), allocatable :: title
 
-    title = trim("*"//upper_case(block%keyword)//" "//block%name)
+    title = trim("*"//upper_case(block%keyword)//" "//block%called())
   end function title_of
 
   !> Reports a key that is not in the table.
@@ -163,9 +164,8 @@ contains
 
     nearest = nearest_name(entry%key, key%name)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
-    call errors%push_input(entry%at, "unknown key '"//entry%key//"' in "//title_of(block)// &
-        nearest, &
-                           "one of: "//join(key%name, " "))
+    call errors%push_input(entry%at, "unknown key '"//as_written(entry%key, entry%at)//"' in "// &
+        title_of(block)//nearest, "one of: "//join(key%name, " "))
   end subroutine unknown_key
 
   !> Adds the keys that were left out: an error where there is no default.

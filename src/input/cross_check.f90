@@ -127,8 +127,8 @@ contains
     i = count([set%source%has("plane"), set%source%has("box"), set%source%has("nodes"), &
         set%source%has("near")])
     if (i /= 1) then
-      call errors%push_input(set%source%opened, "set '"//set%name//"' is chosen in "//to_text(i)// &
-          " ways", &
+      call errors%push_input(set%source%opened, "set '"//set%source%called()//"' is chosen in "// &
+          to_text(i)//" ways", &
                              "one of plane, box, nodes, near; 'of' keeps another set's members")
     end if
     if (.not. set%source%has("box")) return
@@ -258,7 +258,7 @@ contains
       do j = 1, size(case%tool)
         if (case%history(i)%name /= case%tool(j)%name) cycle
         call errors%push_input(case%history(i)%source%named, "a tool is called '"// &
-            case%tool(j)%name//"' already: two columns "// &
+            case%tool(j)%source%called()//"' already: two columns "// &
                                "would have one name", "another name")
       end do
     end do

@@ -1,7 +1,7 @@
 !> Checks a law as written in the input against a registry's table of laws and parameters.
 module dd3_input_law
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_error, only : as_written, error_list_t, error_t
   use dd3_base_parameter, only : parameter_t, law_value_t, kind_text, pair_name
   use dd3_base_text, only : text_t, same_name, nearest_name, join, to_text
   use dd3_input_case, only : law_spec_t, law_parameter_t
@@ -38,7 +38,8 @@ contains
     nearest = nearest_name(spec%name, known)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
     if (nearest == "") nearest = beginning_with(spec%name, known)
-    call errors%push_input(spec%at, "there is no "//what//" '"//spec%name//"'"//nearest, &
+    call errors%push_input(spec%at, "there is no "//what//" '"// &
+        as_written(spec%name, spec%at)//"'"//nearest, &
         "one of: "//join(known, " "))
   end subroutine check_law_name
 

@@ -92,7 +92,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     if (named(tool)) then
-      call errors%push_input(at, "tool '"//case%tool(tool)%name// &
+      call errors%push_input(at, "tool '"//case%tool(tool)%source%called()// &
           "' is told two things in one phase", &
                              "one of hold, move and press for each tool")
     end if
@@ -162,9 +162,9 @@ contains
       return
     end do
     call errors%push_input(phase%source%at("control"), "the controlling tool '"// &
-        case%tool(phase%control)%name// &
+        case%tool(phase%control)%source%called()// &
                            "' has no move in this phase", "move = "// &
-                           case%tool(phase%control)%name//" dx dy dz, or control = load")
+                           case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
   end subroutine check_control
 
   !> Checks what ends the phase early.
@@ -183,8 +183,8 @@ contains
       call errors%push_input(phase%until%at, "until asks for a magnitude", "a number > 0")
     end if
     if (motion(phase%until%tool) == held) then
-      call errors%push_input(phase%until%at, "tool '"//case%tool(phase%until%tool)%name// &
-          "' stands still in this phase: "// &
+      call errors%push_input(phase%until%at, "tool '"// &
+          case%tool(phase%until%tool)%source%called()//"' stands still in this phase: "// &
                              "it has no line of motion", "a tool that is moved or pressed")
     end if
   end subroutine check_until

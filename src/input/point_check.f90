@@ -61,7 +61,7 @@ contains
         call errors%push_input(block%at("target"), "control is missing: what do the values mean?", &
             "control = e11 s22 s33 s12 s23 s13")
       else if (.not. (block%has("target") .or. block%has("gradient"))) then
-        call errors%push_input(block%opened, "nothing leads the point '"//point%name//"'", &
+        call errors%push_input(block%opened, "nothing leads the point '"//block%called()//"'", &
             "control and target, or gradient")
       end if
       if (block%has("control")) call check_control(point, errors)

@@ -1,6 +1,6 @@
 !> Checks that the sets, tools and materials an input names exist.
 module dd3_input_reference
-  use dd3_base_error, only : error_list_t
+  use dd3_base_error, only : as_written, error_list_t
   use dd3_base_text, only : nearest_name, same_name, upper_case
   use dd3_base_parameter, only : parameter_t, kind_name, kind_other
   use dd3_input_block, only : block_t, entry_t, token_t, deck_t
@@ -54,7 +54,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     if (block%keyword == "set" .and. any(blank_sets == block%name)) then
-      call errors%push_input(block%named, "the blank has a set '"//block%name//"' already", &
+      call errors%push_input(block%named, "the blank has a set '"//block%called()//"' already", &
           "another name")
     end if
     if (block%keyword == "tool" .and. block%name == "load") then
@@ -127,7 +127,8 @@ contains
     expected = "a *"//upper_case(what)//" of this name, but there is none at all"
     if (size(known) > 0) expected = "one of: "//listed(known)
     if (last < deck%n_block) expected = expected//"; a set is made from sets that stand above it"
-    call errors%push_input(token%at, "there is no "//what//" '"//token%text//"'"//nearest, expected)
+    call errors%push_input(token%at, "there is no "//what//" '"// &
+        as_written(token%text, token%at)//"'"//nearest, expected)
   end subroutine check_reference
 
   !> The first names of a list.
@@ -161,7 +162,7 @@ contains
     if (what == "set") name = [character(len=name_length) :: blank_sets]
     do i = 1, last
       if (deck%block(i)%keyword == what) name = [character(len=name_length) :: name, &
-          deck%block(i)%name]
+          deck%block(i)%called()]
     end do
   end function names_of
 

@@ -1,6 +1,6 @@
 !> Parameters of the input: `name = value` in `*PARAMETER`, used as `${name}` in later values.
 module dd3_input_substitution
-  use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_error, only : as_written, error_list_t, location_t
   use dd3_base_text, only : text_t, same_name, lower_case, nearest_name, join, slice
   use dd3_input_block, only : token_t
   use dd3_input_token, only : token_list_t, line_t, split_line, add_token
@@ -90,7 +90,7 @@ contains
       self%item = [self%item, binding]
       i = size(self%item)
     else if (self%item(i)%defined) then
-      call errors%push_input(name%at, "parameter '"//self%item(i)%name//"' is defined twice")
+      call errors%push_input(name%at, "parameter '"//name%text//"' is defined twice")
       return
     end if
     self%item(i)%at = name%at
@@ -208,7 +208,8 @@ contains
 
     allocate (known(0))
     do i = 1, size(self%item)
-      if (self%item(i)%defined) known = [character(len=64) :: known, self%item(i)%name]
+      if (self%item(i)%defined) known = [character(len=64) :: known, &
+          as_written(self%item(i)%name, self%item(i)%at)]
     end do
     if (size(known) == 0) then
       text = "a parameter defined above in a *PARAMETER block (none is)"

@@ -1,7 +1,7 @@
 !> Checks the value of one key against its row: form, type, range, known words.
 module dd3_input_value
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_error, only : as_written, error_list_t, location_t
   use dd3_base_text, only : to_text, lower_case, same_name, nearest_name
   use dd3_base_parameter, only : parameter_t, kind_real, kind_integer, kind_logical, kind_name, &
       kind_text, &
@@ -216,7 +216,7 @@ contains
       entry%value(i)%text = lower_case(entry%value(i)%text)
       call check_choice(entry%value(i), row, errors)
       if (word_before(entry, i)) call errors%push_input(entry%value(i)%at, "'"// &
-          entry%value(i)%text//"' is given twice")
+          as_written(entry%value(i)%text, entry%value(i)%at)//"' is given twice")
     end do
   end subroutine check_words
 
@@ -249,7 +249,8 @@ contains
 
     known = split_words(row%later)
     if (any(known == token%text) .and. len(token%text) <= word_length) then
-      call errors%push_input(token%at, "'"//token%text//"' "//not_available, describe(row))
+      call errors%push_input(token%at, "'"//as_written(token%text, token%at)//"' "// &
+          not_available, describe(row))
       return
     end if
     known = split_words(row%choices)
@@ -257,7 +258,8 @@ contains
     if (any(known == token%text) .and. len(token%text) <= word_length) return
     nearest = nearest_name(token%text, known)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
-    call errors%push_input(token%at, "unknown word '"//token%text//"'"//nearest, describe(row))
+    call errors%push_input(token%at, "unknown word '"//as_written(token%text, token%at)//"'"// &
+        nearest, describe(row))
   end subroutine check_choice
 
   !> Checks the outline of a law: a name, then `key = value` pairs, or points `p:Y`.
@@ -410,8 +412,8 @@ contains
       end if
     case ("axis")
       entry%number = [entry%number, real(axis_of(text), wp)]
-      if (axis_of(text) == 0) call errors%push_input(entry%value(i)%at, "'"//text// &
-          "' is no axis: x, y or z", describe(row))
+      if (axis_of(text) == 0) call errors%push_input(entry%value(i)%at, "'"// &
+          as_written(text, entry%value(i)%at)//"' is no axis: x, y or z", describe(row))
     case ("range")
       call take_range(entry, entry%value(i), row, errors)
     case ("set", "tool", "material")
@@ -448,7 +450,8 @@ contains
     end do
     nearest = nearest_name(token%text, known)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
-    call errors%push_input(token%at, "unknown word '"//token%text//"'"//nearest, describe(row))
+    call errors%push_input(token%at, "unknown word '"//as_written(token%text, token%at)//"'"// &
+        nearest, describe(row))
   end subroutine check_literal
 
   !> Takes `n` or `n-m` as a range of node numbers: two numbers.

@@ -52,8 +52,8 @@ contains
     set%name = wanted%name
     set%node = pack([(i, i=1, mesh%n_node)], member)
     if (size(set%node) == 0 .and. errors%count == before) then
-      call errors%push_input(wanted%source%opened, "set '"//wanted%name//"' holds no node", &
-          "at least one node")
+      call errors%push_input(wanted%source%opened, "set '"//wanted%source%called()// &
+          "' holds no node", "at least one node")
     end if
     mesh%set = [mesh%set, set]
   end subroutine add_set

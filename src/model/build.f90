@@ -269,21 +269,22 @@ contains
         worst = node
       end do
       if (worst == 0 .and. nearest < -start_depth) then
-        call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name &
-            //"' turns away from the sheet, "//to_text(-nearest, 4)//" mm off", &
+        call errors%push_input(case%tool(t)%source%opened, "tool '" &
+            //case%tool(t)%source%called()//"' turns away from the sheet, "// &
+            to_text(-nearest, 4)//" mm off", &
             "patches whose normals (the cross product of their u and v) point to the sheet")
       end if
       if (worst == 0) cycle
-      call errors%push_input(case%tool(t)%source%opened, "tool '"//model%tool(t)%name &
-          //"' starts inside the sheet: "// &
+      call errors%push_input(case%tool(t)%source%opened, "tool '" &
+          //case%tool(t)%source%called()//"' starts inside the sheet: "// &
                              "node "//to_text(worst)//" is "//to_text(-deepest, 4) &
                              //" mm deep in it", &
           "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
     end do
   end subroutine check_start
 
-  !> Refuses the first phase in which the sheet is free to move as a rigid body and no tool is there to
-  !> hold it.
+  !> Refuses the first phase in which the sheet is free to move as a rigid body and no tool is there
+  !> to hold it.
   subroutine check_supports(model, case, errors)
     !> The model.
     type(model_t), intent(in) :: model
@@ -303,7 +304,7 @@ contains
       motion = body%free_motion()
       if (len(motion) == 0) cycle
       call errors%push_input(case%phase(i)%source%opened, "nothing holds the sheet in phase '"// &
-          model%phase(i)%name//"': it is free to "//motion, &
+          case%phase(i)%source%called()//"': it is free to "//motion, &
           "supports by *BOUNDARY or displace, or a tool that is not released")
       return
     end do
