@@ -1,5 +1,5 @@
-!> What the user is told at the start and at the end of a phase: a pressed tool that does not meet the
-!> sheet, a sheet that nothing holds, yielding in a release.
+!> What the user is told at the start and at the end of a phase: a pressed tool that does not meet
+!> the sheet, a sheet that nothing holds, yielding in a release.
 module dd3_process_stage_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -24,8 +24,8 @@ module dd3_process_stage_warnings
 
 contains
 
-  !> What the user is told where a pressed tool does not come to touch: its force has the wrong sign,
-  !> or nothing lies ahead of it. Empty elsewhere.
+  !> What the user is told where a pressed tool does not come to touch: its force has the wrong
+  !> sign, or nothing lies ahead of it. Empty elsewhere.
   function press_warning(model, phase, state) result(text)
     !> The model.
     type(model_t), intent(in) :: model
@@ -48,14 +48,14 @@ contains
       text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
         "' does not meet the sheet along its force"
       if (smallest <= reach .and. .not. faces) text = "warning: in phase '"//phase%name// &
-        "' the force on tool '"//model%tool(tool)%name//"' points away from the sheet; is its sign" &
-        //" wrong?"
+        "' the force on tool '"//model%tool(tool)%name//"' points away from the sheet; is its "// &
+        "sign wrong?"
       return
     end do
   end function press_warning
 
-  !> How far a pressed tool is from the sheet, and whether it faces the sheet with the side its force
-  !> pushes ahead.
+  !> How far a pressed tool is from the sheet, and whether it faces the sheet with the side its
+  !> force pushes ahead.
   subroutine look_along(model, phase, tool, state, smallest, faces)
     !> The model.
     type(model_t), intent(in) :: model
@@ -88,8 +88,8 @@ contains
     end do
   end subroutine look_along
 
-  !> What the user is told where neither supports nor tools that touch hold the sheet at the start of
-  !> a phase. Empty elsewhere.
+  !> What the user is told where neither supports nor tools that touch hold the sheet at the start
+  !> of a phase. Empty elsewhere.
   function support_warning(model, phase, state) result(text)
     !> The model.
     type(model_t), intent(in) :: model
