@@ -1,16 +1,12 @@
 !> A material: elasticity, yield criterion, hardening law and back-stresses, and what the rest of
 !> the program asks of it at a point. All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
-  use dd3_base_error, only : error_t, fatal_error
   use dd3_base_kinds, only : wp
-  use dd3_base_parameter, only : law_value_t
   use dd3_base_verdict, only : verdict_t
-  use dd3_material_backstress_law, only : backstress_slot_t
   use dd3_material_backstress_registry, only : find_backstress
-  use dd3_material_check, only : check_law, law_backstress, law_hardening, law_yield
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
                                        flow_response_of
-  use dd3_material_description, only : law_choice_t, problem_t
+  use dd3_material_description, only : law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_slot_t
@@ -44,32 +40,20 @@ module dd3_material_material
 
 contains
 
-  !> Makes a material of its laws.
-  subroutine new_material(self, young, poisson, criterion, hardening, backstress, error)
+  !> Makes a material of its laws, which have been checked.
+  subroutine new_material(self, young, poisson, criterion, hardening, backstress)
     !> The material.
     type(material_t), intent(out) :: self
-    !> Young's modulus, MPa; Poisson's ratio.
+    !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
     !> Yield criterion and hardening law.
     type(law_choice_t), intent(in) :: criterion, hardening
     !> Back-stresses; may be of size zero.
     type(law_choice_t), intent(in) :: backstress(:)
-    !> Says what is wrong with them.
-    type(error_t), allocatable, intent(out) :: error
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
     integer :: i
 
-    if (.not. (young > 0.0_wp .and. poisson > -1.0_wp .and. poisson < 0.5_wp)) then
-      call fatal_error(error, "Young's modulus must be positive, Poisson's ratio from -1 to 0.5")
-      return
-    end if
-    call refuse(law_yield, criterion, error)
-    if (.not. allocated(error)) call refuse(law_hardening, hardening, error)
-    do i = 1, size(backstress)
-      if (.not. allocated(error)) call refuse(law_backstress, backstress(i), error)
-    end do
-    if (allocated(error)) return
     self%young = young
     self%poisson = poisson
     call new_elasticity(self%laws%elasticity, young, poisson)
@@ -87,25 +71,6 @@ contains
     call complete(self%laws)
     self%n_internal = self%laws%n_internal
   end subroutine new_material
-
-  !> Makes an error of the first problem of a law.
-  subroutine refuse(kind, choice, error)
-    !> One of the `law_*` values.
-    integer, intent(in) :: kind
-    !> The law and its parameters.
-    type(law_choice_t), intent(in) :: choice
-    !> The error, where there is a problem.
-    type(error_t), allocatable, intent(out) :: error
-    type(problem_t), allocatable :: problems(:)
-    type(law_value_t), allocatable :: values(:)
-
-    allocate (values(0))
-    if (allocated(choice%values)) values = choice%values
-    call check_law(kind, choice%name, values, problems)
-    if (size(problems) == 0) return
-    call fatal_error(error, trim(choice%name)//": "//trim(problems(1)%message)//"; expected "// &
-                     trim(problems(1)%expected))
-  end subroutine refuse
 
   !> Brings a point to the end of a strain increment. Where that fails the state of the start comes
   !> back with the elastic tangent, and the verdict says why.

@@ -1,7 +1,7 @@
 !> Materials from the case: the laws as written, checked against the registries, every problem shown
 !> where it stands.
 module dd3_model_materials
-  use dd3_base_error, only : error_list_t, error_t, location_t
+  use dd3_base_error, only : error_list_t, location_t
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
@@ -58,7 +58,6 @@ contains
 
     type(law_choice_t) :: yield, hardening
     type(law_choice_t), allocatable :: backstress(:)
-    type(error_t), allocatable :: error
     integer :: found, i
 
     found = errors%count
@@ -70,9 +69,7 @@ contains
     end do
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
-    call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress, &
-        error)
-    if (allocated(error)) call errors%push_input(spec%source%opened, error%message)
+    call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress)
   end subroutine make_material
 
   !> Checks a law as written and takes its values.

@@ -71,7 +71,7 @@ contains
     allocate (criterion%values(0))
     hardening%values = [law_value_t("Y0", 200.0_wp)]
     allocate (model%material(1))
-    call new_material(model%material(1), 2.1e5_wp, 0.3_wp, criterion, hardening, none, error)
+    call new_material(model%material(1), 2.1e5_wp, 0.3_wp, criterion, hardening, none)
     model%material_of = [1, 1]
     model%contact_node = [1, 3]
     model%candidate_of = [1, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]
