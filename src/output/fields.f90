@@ -431,11 +431,11 @@ contains
     real(wp), intent(in) :: values(:)
     !> Whether all went well so far; nothing is done where not.
     logical, intent(inout) :: ok
-    integer :: first
+    integer(i8) :: first
 
-    first = int(place%data%rows)
+    first = int(place%data%rows, i8)
     call place%data%append_reals(values, ok)
-    call place%offset%append_integers([first], ok)
+    call place%offset%append_long(first, ok)
   end subroutine append
 
   !> Adds what is known of the step itself.

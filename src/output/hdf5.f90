@@ -1,7 +1,7 @@
 !> Growing datasets of an HDF5 file. The default library version is the one whose files outlive a
 !> killed program when data, flush, number of steps, flush follow each other in this order.
 module dd3_output_hdf5
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_null_char
   use dd3_base_kinds, only : wp, i8
   use hdf5, only : hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5screate_simple_f, &
                    h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, &
@@ -10,7 +10,7 @@ module dd3_output_hdf5
                    h5tclose_f, h5gcreate_f, h5fflush_f, H5S_SELECT_SET_F, H5S_UNLIMITED_F, &
                    H5S_SCALAR_F, H5P_DATASET_CREATE_F, H5T_FORTRAN_S1, H5T_NATIVE_DOUBLE, &
                    H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, H5T_STD_I64LE, H5T_STD_I32LE, &
-                   H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F
+                   H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
   implicit none
   private
   public :: series_t, start_hdf5, make_group, flush_hdf5
@@ -36,6 +36,7 @@ module dd3_output_hdf5
     procedure :: create => series_create
     procedure :: append_reals => series_append_reals
     procedure :: append_integers => series_append_integers
+    procedure :: append_long => series_append_long
     procedure :: describe => series_describe
     procedure :: room => series_room
     procedure :: close => series_close
@@ -170,6 +171,25 @@ contains
     ok = status >= 0
     call close_spaces(memory, file)
   end subroutine series_append_integers
+
+  !> Adds a row of one whole number that may be large.
+  subroutine series_append_long(self, value, ok)
+    !> The dataset.
+    class(series_t), intent(inout) :: self
+    !> The number.
+    integer(i8), intent(in), target :: value
+    !> Whether all went well so far; nothing is done where not.
+    logical, intent(inout) :: ok
+    integer(hid_t) :: memory, file
+    integer :: status
+
+    call grow(self, 1, memory, file, ok)
+    if (.not. ok) return
+    call h5dwrite_f(self%id, h5kind_to_type(i8, H5_INTEGER_KIND), c_loc(value), status, memory, &
+                    file)
+    ok = status >= 0
+    call close_spaces(memory, file)
+  end subroutine series_append_long
 
   !> Makes room for new rows.
   subroutine grow(self, count, memory, file, ok)
