@@ -12,7 +12,6 @@ module dd3_output_fields
   use dd3_output_hdf5, only : series_t, start_hdf5, make_group, text_attribute, integer_attribute, &
                               rewrite_attribute, flush_hdf5, kind_real, kind_long, kind_int, &
                               kind_byte
-  use dd3_output_record, only : record_t
   use hdf5, only : hid_t, hsize_t, h5fcreate_f, h5fclose_f, h5fget_filesize_f, h5gclose_f, &
                    h5aclose_f, H5F_ACC_TRUNC_F
   implicit none
@@ -36,7 +35,7 @@ module dd3_output_fields
   end type target_t
 
   !> The field file of a run.
-  type, extends(record_t) :: field_record_t
+  type :: field_record_t
     !> The table of the fields.
     type(field_t), allocatable, private :: field(:)
     !> Their places at the nodes and at the cells.

@@ -7,7 +7,6 @@ module dd3_output_history
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
-  use dd3_output_record, only : record_t
   implicit none
   private
   public :: history_record_t
@@ -18,7 +17,7 @@ module dd3_output_history
   character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
   !> The history of a run.
-  type, extends(record_t) :: history_record_t
+  type :: history_record_t
     !> The table.
     type(table_t), private :: table
     !> A row that has not been written, because it is not its turn.

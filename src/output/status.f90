@@ -3,10 +3,7 @@
 module dd3_output_status
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
-  use dd3_model_model, only : model_t
-  use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
-  use dd3_output_record, only : record_t
   implicit none
   private
   public :: status_record_t, status_row_t
@@ -57,14 +54,11 @@ module dd3_output_status
   end type status_row_t
 
   !> The status table of a run.
-  type, extends(record_t) :: status_record_t
-    !> The row that `write` adds.
-    type(status_row_t) :: row
+  type :: status_record_t
     !> The table.
     type(table_t), private :: table
   contains
     procedure :: open => status_open
-    procedure :: write => status_write
     procedure :: add => status_add
     procedure :: close => status_close
   end type status_record_t
@@ -72,39 +66,19 @@ module dd3_output_status
 contains
 
   !> Makes the file with its heading.
-  subroutine status_open(self, model, directory, error)
+  subroutine status_open(self, directory, error)
     !> The record.
     class(status_record_t), intent(inout) :: self
-    !> The model.
-    type(model_t), intent(in) :: model
     !> The directory.
     character(len=*), intent(in) :: directory
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    self%row = status_row_t()
-    if (allocated(model%phase)) self%row%phase = model%phase(1)%name
     call self%table%open(directory//"/status.csv", error)
     if (allocated(error)) return
     call self%table%file%put(names//new_line("a"), error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine status_open
-
-  !> Adds the row the record holds; what the row shares with the state is taken from there.
-  subroutine status_write(self, model, state, error)
-    !> The record.
-    class(status_record_t), intent(inout) :: self
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The state at the end of the attempt.
-    type(state_t), intent(in) :: state
-    !> Says why it cannot be written.
-    type(error_t), allocatable, intent(out) :: error
-
-    self%row%phase = model%phase(state%phase)%name
-    self%row%travel = state%travel
-    call self%add(self%row, error)
-  end subroutine status_write
 
   !> Adds a row.
   subroutine status_add(self, row, error)

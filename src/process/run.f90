@@ -127,7 +127,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call run%history%open(model, directory, error)
-    if (.not. allocated(error)) call run%status%open(model, directory, error)
+    if (.not. allocated(error)) call run%status%open(directory, error)
     if (.not. allocated(error)) call run%fields%open(model, directory, error)
     if (.not. allocated(error)) call run%history%write(model, run%committed, error)
     if (.not. allocated(error)) call run%fields%write(model, run%committed, error)

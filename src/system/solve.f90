@@ -15,7 +15,7 @@ module dd3_system_solve
   type :: solve_info_t
     !> Sum of its iterations.
     integer :: iterations = 0
-    !> Which solver ran; `cgs>umfpack` where the one stood in for the other.
+    !> The solver that ran; where one stood in for another, that one.
     character(len=24) :: solver = ""
     !> Why the iterative solver gave up, empty where it did not.
     character(len=160) :: reason = ""
