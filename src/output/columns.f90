@@ -1,7 +1,6 @@
 !> Columns of nodes through the thickness of the sheet, found from the pairs of nodes that face each
 !> other in the elements.
 module dd3_output_columns
-  use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -32,7 +31,6 @@ contains
       column(1, i) = last_of(next(1, :), i)
       column(2, i) = last_of(next(2, :), i)
     end do
-    call join_middle_nodes(model, column)
   end subroutine sheet_columns
 
   !> The last node of the chain that begins at a node.
@@ -49,29 +47,5 @@ contains
       last_of = next(last_of)
     end do
   end function last_of
-
-  !> Nodes half-way through an element belong to the column of the pair they lie between.
-  subroutine join_middle_nodes(model, column)
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The columns.
-    integer, intent(inout) :: column(:, :)
-    integer :: e, p, a, node
-    real(wp) :: apart
-
-    associate (element => model%element)
-      do a = 1, element%n_node
-        if (any(element%pair == a)) cycle
-        do p = 1, element%n_pair
-          apart = norm2(element%node(1:2, a) - element%node(1:2, element%pair(1, p)))
-          if (apart > 0.1_wp) cycle
-          do e = 1, model%n_element
-            node = model%connectivity(a, e)
-            column(:, node) = column(:, model%connectivity(element%pair(1, p), e))
-          end do
-        end do
-      end do
-    end associate
-  end subroutine join_middle_nodes
 
 end module dd3_output_columns
