@@ -9,7 +9,7 @@ module dd3_output_field_table
   use dd3_output_columns, only : sheet_columns
   implicit none
   private
-  public :: field_t, field_table, at_nodes, at_nodes_and_cells, at_points
+  public :: field_t, field_table, at_nodes_and_cells, at_points
 
   !> The field has a value at each node.
   integer, parameter :: at_nodes = 1
