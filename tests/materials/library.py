@@ -7,6 +7,7 @@
 - Each passes `dd3imp --check` when a file with a *POINT includes it.
 - Tension, compression and equibiaxial tension at a point give the stresses (over the flow stress) and r-values that
   its header states, to the digits printed there (0.6 of a unit of the last).
+- r-values in tension and compression are positive every 15 degrees, as those of any sheet.
 """
 import argparse
 import csv
@@ -20,6 +21,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "input_files" / "material
 ALONG, THROUGH = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
 KINDS = {"tension": (ALONG, 1), "compression": (ALONG, -1), "biaxial": (THROUGH, -1), "thickness": (THROUGH, 1),
          "thickness_compression": (THROUGH, -1)}
+SHEET = [(kind, str(angle), "-", "-") for kind in ("tension", "compression") for angle in range(0, 91, 15)]
 CHECK = re.compile(rf"^#\s+({'|'.join(KINDS)})\s+(?:(\d+)\s+)?([-\d.]+)\s+([-\d.]+)\s*$", re.MULTILINE)
 
 
@@ -79,11 +81,13 @@ def check(program, path):
     if len(checks) < 4:
         wrong.append("fewer than four check values")
     for options in (("--check",), ()):
-        code, said, points = run(program, deck(path, checks), *options)
+        code, said, points = run(program, deck(path, checks + SHEET), *options)
         if code != 0:
             return wrong + [f"exit code {code}: {said}"]
-    for i, (kind, angle, *wanted) in enumerate(checks):
+    for i, (kind, angle, *wanted) in enumerate(checks + SHEET):
         found = measure(kind, points[f"p{i}"])
+        if angle and not found[1] > 0:
+            wrong.append(f"{kind} {angle}: r = {found[1]:.4f}")
         if any(map(off, wanted, found)):
             wrong.append(f"{kind} {angle}: {found[0]:.4f} {found[1]:.4f}, stated {wanted[0]} {wanted[1]}")
     return wrong

@@ -66,6 +66,8 @@ CRITERIA = (
         *(value / 2.1 for value in (0.7, 0.8, 1.3, 3.3, 3.6, 2.7)))),
     (ones("yld2004", NORMAL, "m=8"), "hosford m=8"), (two_of_barlat(6), f"yld91 {BARLAT} m=6"),
     (f"{ISOTROPIC} k=0 m=2", "von_mises"), (f"{ISOTROPIC} k=0 m=4", "von_mises"),
+    ("cpb06 C11=1.2 C12=0.7 C13=0.7 C22=1.2 C23=0.7 C33=1.2 C44=0.5 C55=0.5 C66=0.5 k=0.2 m=2",
+     f"{ISOTROPIC} k=0.2 m=2"),
 )
 STRUCTURES = "Ssat=200 CSL=1 nL=1 CP=2 nP=20 r=2"
 HARDENING = (
