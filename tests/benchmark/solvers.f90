@@ -13,7 +13,7 @@ program benchmark_solvers
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_ilu, only : level_of_fill
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
-  use dd3_linalg_matrix_market, only : read_matrix_market
+  use matrix_market, only : read_matrix_market
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_solver_registry, only : new_linear_solver

@@ -1,7 +1,7 @@
 !> Linear systems as text files, in the coordinate and array forms of Matrix Market (Boisvert, Pozo
 !> and Remington 1996): a run's own tangents can be looked at with other programs, and read back by
 !> the solvers' benchmark.
-module dd3_linalg_matrix_market
+module matrix_market
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern_from_rows, position_of
@@ -226,4 +226,4 @@ contains
     end do
   end subroutine stable_order
 
-end module dd3_linalg_matrix_market
+end module matrix_market
