@@ -1,7 +1,7 @@
 !> Incomplete LU factorisation by level of fill, ILU(k), on 3x3 blocks.
 !>
 !> Symbolic phase, once per pattern (Watts 1981; Saad, Iterative Methods for Sparse Linear Systems,
-!> 2nd ed. 2003, alg. 10.6 and eq. 10.18): a member of the matrix has level 0, fill at (i,j) through
+!> 2nd ed. 2003, section 10.3.3): a member of the matrix has level 0, fill at (i,j) through
 !> row k the level lev(i,k) + lev(k,j) + 1; the smallest counts, and what is above k is left out.
 !> The numeric phase goes row by row (IKJ), the diagonal blocks are kept inverted. A diagonal block
 !> near to singular is replaced by a shifted one.
