@@ -6,16 +6,14 @@
 !> failure a longer rest.
 module dd3_linalg_combined_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_cgs, only : cgs_t, dot, true_residual
+  use dd3_linalg_ilu, only : ilu_t, new_ilu
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
-  use dd3_linalg_preconditioner, only : preconditioner_t
-  use dd3_linalg_preconditioner_registry, only : new_preconditioner
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_umfpack, only : direct_factors_t
@@ -37,7 +35,7 @@ module dd3_linalg_combined_solver
     !> Copy of the system.
     type(scaled_system_t) :: system
     !> Approximate inverse of the iteration.
-    class(preconditioner_t), allocatable :: preconditioner
+    type(ilu_t) :: preconditioner
     !> The iteration.
     type(cgs_t) :: iteration
     !> Factors of the direct solver.
@@ -57,8 +55,6 @@ module dd3_linalg_combined_solver
     !> Right-hand side, solution, the direct solution and its residual in the copy's numbering,
     !> `(3n)`.
     real(wp), allocatable :: b(:), x(:), y(:), r(:)
-    !> Time of the factorisations of the present matrix, s.
-    real(wp) :: setup_seconds = 0.0_wp
   contains
     procedure :: setup => combined_setup
     procedure :: factor => combined_factor
@@ -69,21 +65,18 @@ module dd3_linalg_combined_solver
 contains
 
   !> Makes a solver.
-  subroutine new_combined_solver(self, options, iterative, direct, error)
+  subroutine new_combined_solver(self, options, iterative, direct)
     !> The solver made.
     type(combined_solver_t), intent(out) :: self
     !> The choices.
     type(solver_options_t), intent(in) :: options
     !> Which of the two are used.
     logical, intent(in) :: iterative, direct
-    !> An unknown preconditioner.
-    type(error_t), allocatable, intent(out) :: error
 
     self%options = options
     self%has_iterative = iterative
     self%has_direct = direct
-    call new_preconditioner(self%preconditioner, trim(options%preconditioner), options%ilu_level, &
-                            iterative .and. direct, error)
+    call new_ilu(self%preconditioner, options%ilu_level, may_raise=iterative .and. direct)
   end subroutine new_combined_solver
 
   !> Prepares for matrices of one pattern.
@@ -128,14 +121,11 @@ contains
     type(block_matrix_t), intent(in) :: matrix
     !> Retry for a matrix that cannot be solved with.
     type(verdict_t), intent(out) :: verdict
-    real(wp) :: began
 
-    began = wall_time()
     self%iterative_ready = .false.
     self%direct_ready = .false.
     self%failed = .false.
     self%reason = ""
-    self%setup_seconds = 0.0_wp
     call self%system%fill(matrix, verdict)
     if (verdict%outcome /= verdict_converged) return
     if (self%has_iterative .and. self%rest == 0) then
@@ -146,7 +136,6 @@ contains
       self%rest = self%rest - 1
       self%reason = "CGS rests after "//to_text(self%failures)//" failures in a row"
     end if
-    self%setup_seconds = wall_time() - began
     if (self%has_direct .and. .not. self%iterative_ready) call factor_directly(self, verdict)
   end subroutine combined_factor
 
@@ -156,14 +145,11 @@ contains
     type(combined_solver_t), intent(inout) :: self
     !> Retry for a singular matrix.
     type(verdict_t), intent(out) :: verdict
-    real(wp) :: began
 
-    began = wall_time()
     if (.not. self%direct_set_up) call self%factors%setup(self%system%matrix)
     self%direct_set_up = .true.
     call self%factors%factor(self%system%matrix, verdict)
     self%direct_ready = verdict%outcome == verdict_converged
-    self%setup_seconds = self%setup_seconds + wall_time() - began
   end subroutine factor_directly
 
   !> Remembers that the iteration failed with the present matrix.
@@ -192,10 +178,8 @@ contains
     real(wp), intent(out) :: x(:)
     !> What it took.
     type(solver_report_t), intent(out) :: report
-    real(wp) :: began, length, setup_before
+    real(wp) :: length
 
-    began = wall_time()
-    setup_before = self%setup_seconds
     x = 0.0_wp
     report%method = merge("cgs    ", "umfpack", self%iterative_ready)
     call self%system%scale_rhs(b, self%b)
@@ -216,8 +200,6 @@ contains
     if (self%has_direct .and. .not. report%converged) call solve_directly(self, report)
     self%x = length*self%x
     call self%system%give_back(self%x, x)
-    report%setup_seconds = self%setup_seconds
-    report%solve_seconds = wall_time() - began - (self%setup_seconds - setup_before)
   end subroutine combined_solve
 
   !> Solves by the iteration.

@@ -12,8 +12,6 @@ module dd3_linalg_solver
   type :: solver_options_t
     !> Name of the solver: cgs, umfpack or auto.
     character(len=24) :: method = "auto"
-    !> Name of the preconditioner of cgs and auto.
-    character(len=24) :: preconditioner = "ilu"
     !> Level of fill of the incomplete factorisation; any level from the number of rows on is a
     !> complete one. `auto` may take a complete one where it costs no more than the iterations it
     !> saves.
@@ -40,8 +38,6 @@ module dd3_linalg_solver
     logical :: fallback = .false.
     !> Why it did, or why the solution failed; empty when all went well.
     character(len=160) :: reason = ""
-    !> Time of the factorisations this solution rests on, and of the solution, s.
-    real(wp) :: setup_seconds = 0.0_wp, solve_seconds = 0.0_wp
   end type solver_report_t
 
   !> A solver of A x = b.

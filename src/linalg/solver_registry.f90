@@ -9,8 +9,20 @@ module dd3_linalg_solver_registry
   private
   public :: new_linear_solver, solver_names
 
-  !> Names of the solvers.
-  character(len=7), parameter :: solver_names(3) = [character(len=7) :: "cgs", "umfpack", "auto"]
+  !> One row: a solver's name, and which of the two ways to solve it uses.
+  type :: row_t
+    !> Name as written in the input.
+    character(len=7) :: name
+    !> Whether it iterates, and whether it has direct factors (to fall back on, where it iterates).
+    logical :: iterative, direct
+  end type row_t
+
+  !> The solvers.
+  type(row_t), parameter :: rows(3) = [row_t("cgs", .true., .false.), &
+                                       row_t("umfpack", .false., .true.), &
+                                       row_t("auto", .true., .true.)]
+  !> Their names.
+  character(len=*), parameter :: solver_names(size(rows)) = rows%name
 
 contains
 
@@ -23,29 +35,24 @@ contains
     !> An unknown name or a value out of range.
     type(error_t), allocatable, intent(out) :: error
     type(combined_solver_t), allocatable :: combined
+    integer :: i
 
-    if (.not. any(ordering_names == options%ordering)) then
+    i = findloc(solver_names, options%method, 1)
+    if (i == 0) then
+      call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &
+        //join(solver_names, ", "))
+    else if (.not. any(ordering_names == options%ordering)) then
       call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: " &
         //join(ordering_names, ", "))
     else if (options%ilu_level < 0 .or. options%iterations < 1 &
       .or. .not. options%tolerance > 0) then
-      call fatal_error(error, &
-        "level of fill, iterations and tolerance of the linear solver must be positive")
+      call fatal_error(error, "level of fill of the linear solver must not be negative, its "// &
+        "iterations and tolerance must be positive")
     end if
     if (allocated(error)) return
     allocate (combined)
-    select case (options%method)
-    case ("cgs")
-      call new_combined_solver(combined, options, iterative=.true., direct=.false., error=error)
-    case ("umfpack")
-      call new_combined_solver(combined, options, iterative=.false., direct=.true., error=error)
-    case ("auto")
-      call new_combined_solver(combined, options, iterative=.true., direct=.true., error=error)
-    case default
-      call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &
-        //join(solver_names, ", "))
-    end select
-    if (.not. allocated(error)) call move_alloc(combined, solver)
+    call new_combined_solver(combined, options, rows(i)%iterative, rows(i)%direct)
+    call move_alloc(combined, solver)
   end subroutine new_linear_solver
 
 end module dd3_linalg_solver_registry
