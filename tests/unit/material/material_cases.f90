@@ -3,6 +3,7 @@
 module material_cases
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
+  use dd3_base_text, only : same_name
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_backstress_registry, only : fill_backstresses
@@ -95,23 +96,23 @@ contains
   end function mild_steel
 
   !> The values, each changed at random by up to a fifth (of one, where it is zero) and still
-  !> without problems; exponents become even numbers, without which a law is not smooth.
+  !> without problems. A parameter that may not be below 1 is an exponent, or half of one: it becomes
+  !> two, three or four times its lowest value, 2 or 1, since a law is smooth for even exponents only.
   function perturbed(kind, description) result(values)
     integer, intent(in) :: kind
     type(description_t), intent(in) :: description
     type(law_value_t), allocatable :: values(:)
     type(problem_t), allocatable :: problems(:)
-    real(wp) :: change
+    real(wp) :: change, lowest
     integer :: i
 
     do
       values = description%example
       do i = 1, size(values)
         call random_number(change)
-        if (values(i)%name == "m") then
-          values(i)%value = 4.0_wp + 2*int(3*change)
-        else if (description%name == "karafillis_boyce" .and. values(i)%name == "k") then
-          values(i)%value = 2.0_wp + int(3*change)
+        lowest = lower_bound(description, values(i)%name)
+        if (lowest >= 1.0_wp) then
+          values(i)%value = lowest*(2 + int(3*change))
         else if (values(i)%value == 0.0_wp) then
           values(i)%value = 0.4_wp*change - 0.2_wp
         else
@@ -122,6 +123,18 @@ contains
       if (size(problems) == 0) exit
     end do
   end function perturbed
+
+  !> The lowest value of a parameter.
+  real(wp) function lower_bound(description, name)
+    type(description_t), intent(in) :: description
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    do i = 1, size(description%rows)
+      if (same_name(description%rows(i)%name, name)) exit
+    end do
+    lower_bound = description%rows(i)%lower
+  end function lower_bound
 
   !> Every criterion of the registry, with its example and with perturbed values.
   subroutine make_criteria(criteria, isotropic)
