@@ -17,7 +17,8 @@ A case is a folder with a case.json:
     status      per column of status.csv [lowest, highest]: every row lies between
     contains    texts that the program's output must hold, a list
     files       files that must lie in the results, default ["history.csv", "status.csv", "job.log"]
-    variants    lists of further arguments: the case is run once for each, and each must pass
+    variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
+                `arguments` and keys that take the place of the case's, such as a reference of its own
     labels      CTest labels, a list; `slow` keeps it out of the daily run, `debug` lets it run in the debug build too
     timeout     seconds, default 300
 """
@@ -129,6 +130,14 @@ def compare_ends(case, history, path, results):
     return compared
 
 
+def variants(case):
+    """The case once for each of its variants, with the further arguments."""
+    for variant in case.get("variants", [[]]):
+        own = dict(variant) if isinstance(variant, dict) else {"arguments": variant}
+        further = own.pop("arguments", [])
+        yield {**case, **own}, further
+
+
 def run(case, folder, program, results, arguments):
     """Runs the case once; returns how many values were compared."""
     shutil.rmtree(results, ignore_errors=True)
@@ -165,14 +174,14 @@ def main():
     options = parser.parse_args()
     folder = options.case.resolve()
     case = json.loads((folder / "case.json").read_text(encoding="utf-8"))
-    unknown = set(case) - KNOWN
+    unknown = {key for own in (case, *case.get("variants", [])) if isinstance(own, dict) for key in own} - KNOWN
     if unknown:
         sys.exit(f"case.json: unknown: {', '.join(sorted(unknown))}")
     compared = 0
-    for i, arguments in enumerate(case.get("variants", [[]])):
+    for i, (one, arguments) in enumerate(variants(case)):
         results = options.work.resolve() / (folder.name + (f"-{i + 1}" if i else "") + ".out")
         try:
-            compared += run(case, folder, options.program.resolve(), results, arguments)
+            compared += run(one, folder, options.program.resolve(), results, arguments)
         except (Mismatch, OSError, subprocess.TimeoutExpired) as error:
             sys.exit(f"FAILED {folder.name} {' '.join(arguments)}\n{error}")
     if compared == 0 and case.get("exit_code", 0) == 0:

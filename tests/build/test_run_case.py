@@ -67,6 +67,15 @@ class RunCase(unittest.TestCase):
     def test_every_variant_counts(self):
         self.refuse("FAILED case --factor 2", tolerance={"*": {"absolute": 1}}, variants=[[], ["--factor", "2"]])
 
+    def test_variant_with_keys_of_its_own(self):
+        (self.folder / "double.csv").write_text(REFERENCE.replace("10", "20").replace("30", "60").replace("40", "80"))
+        double = {"arguments": ["--factor", "2"], "reference": "double.csv"}
+        code, output = self.run_case(tolerance={"*": {"absolute": 1}}, variants=[[], double])
+        self.assertEqual(code, 0, output)
+        self.refuse("FAILED case --factor 2", tolerance={"*": {"absolute": 1}},
+                    variants=[{**double, "reference": "reference.csv"}])
+        self.refuse("unknown: referenz", tolerance={"*": {"absolute": 1}}, variants=[{"referenz": "double.csv"}])
+
     def test_exit_code(self):
         self.refuse("exit code 3 in place of 0", tolerance={"*": {}}, arguments=["--stop"])
         code, output = self.run_case(tolerance={"*": {}}, arguments=["--stop"], exit_code=3)
