@@ -8,13 +8,16 @@ module dd3_linalg_tensor
   use dd3_base_kinds, only : wp
   implicit none
   private
+  public :: root2, half_root, kelvin_factor
   public :: identity, kelvin_identity, kelvin_deviator_projector
   public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_deviator
-  public :: deviator, determinant, inverse, symmetric_eigen
-  public :: cross, norm, solve_small
+  public :: determinant, inverse, symmetric_eigen
+  public :: cross, solve_small
 
   !> Square root of two and its inverse.
-  real(wp), parameter :: root = sqrt(2.0_wp), half_root = 1.0_wp/sqrt(2.0_wp)
+  real(wp), parameter :: root2 = sqrt(2.0_wp), half_root = 1.0_wp/sqrt(2.0_wp)
+  !> What makes a Kelvin component of a tensor's, in any order with the shears last.
+  real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, root2, root2, root2]
   !> One third.
   real(wp), parameter :: third = 1.0_wp/3.0_wp
 
@@ -79,8 +82,8 @@ contains
       do i = 1, 3
         associate (a => first(i), b => second(i), c => first(j), d => second(j))
           r(i, j) = q(i, j)**2
-          r(i, 3 + j) = root*q(i, c)*q(i, d)
-          r(3 + i, j) = root*q(a, j)*q(b, j)
+          r(i, 3 + j) = root2*q(i, c)*q(i, d)
+          r(3 + i, j) = root2*q(a, j)*q(b, j)
           r(3 + i, 3 + j) = q(a, c)*q(b, d) + q(a, d)*q(b, c)
         end associate
       end do
@@ -97,19 +100,6 @@ contains
     s(1:3) = v(1:3) - mean
     s(4:6) = v(4:6)
   end function kelvin_deviator
-
-  !> Deviator of a tensor.
-  pure function deviator(t) result(s)
-    !> The tensor.
-    real(wp), intent(in) :: t(3, 3)
-    real(wp) :: s(3, 3), mean
-
-    mean = third*(t(1, 1) + t(2, 2) + t(3, 3))
-    s = t
-    s(1, 1) = t(1, 1) - mean
-    s(2, 2) = t(2, 2) - mean
-    s(3, 3) = t(3, 3) - mean
-  end function deviator
 
   !> Determinant of a 3x3 matrix.
   pure real(wp) function determinant(a)
@@ -221,14 +211,6 @@ contains
     c(2) = a(3)*b(1) - a(1)*b(3)
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross
-
-  !> Length of a 3-vector.
-  pure real(wp) function norm(a)
-    !> The vector.
-    real(wp), intent(in) :: a(3)
-
-    norm = sqrt(a(1)*a(1) + a(2)*a(2) + a(3)*a(3))
-  end function norm
 
   !> Solves a x = b for several right-hand sides by elimination with row pivoting, in place. A pivot
   !> that has shrunk to round-off against its column makes the matrix singular: `regular` is then

@@ -3,6 +3,7 @@
 module dd3_model_points
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, point_spec_t, point_goal_t
+  use dd3_linalg_tensor, only : kelvin_factor
   use dd3_model_model, only : model_t
   use dd3_model_point, only : point_t, point_stage_t
   implicit none
@@ -11,9 +12,6 @@ module dd3_model_points
 
   !> Where the components 11 22 33 23 31 12 stand in the input.
   integer, parameter :: place(6) = [1, 2, 3, 5, 6, 4]
-  !> What makes a Kelvin component of a plain one.
-  real(wp), parameter :: factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, sqrt(2.0_wp), sqrt(2.0_wp), &
-                                      sqrt(2.0_wp)]
 
 contains
 
@@ -66,7 +64,7 @@ contains
     if (by_gradient) then
       stage%gradient = transpose(reshape(goal%value, [3, 3]))
     else
-      stage%goal = factor*goal%value(place)
+      stage%goal = kelvin_factor*goal%value(place)
     end if
   end subroutine take_stage
 

@@ -4,6 +4,7 @@
 module dd3_output_point_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
+  use dd3_linalg_tensor, only : kelvin_factor
   use dd3_output_csv, only : table_t
   implicit none
   private
@@ -11,9 +12,6 @@ module dd3_output_point_history
 
   !> Where the components 11 22 33 12 23 13 of the table stand in a Kelvin vector.
   integer, parameter :: place(6) = [1, 2, 3, 6, 4, 5]
-  !> What makes a plain component of a Kelvin one, in the order of the table.
-  real(wp), parameter :: factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, sqrt(0.5_wp), sqrt(0.5_wp), &
-                                      sqrt(0.5_wp)]
 
   !> A row of the table.
   type :: point_row_t
@@ -67,8 +65,8 @@ contains
 
     call self%table%add_integer(row%increment)
     call self%table%add_text(row%point)
-    call self%table%add_reals(factor*row%strain(place))
-    call self%table%add_reals(factor*row%stress(place))
+    call self%table%add_reals(row%strain(place)/kelvin_factor)
+    call self%table%add_reals(row%stress(place)/kelvin_factor)
     call self%table%add_real(row%plastic)
     call self%table%add_real(row%flow_stress)
     call self%table%end_row(error)

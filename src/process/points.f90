@@ -8,8 +8,8 @@ module dd3_process_points
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_increment, only : polar_increment
-  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_from_tensor, &
-      symmetric_eigen
+  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
+      kelvin_from_tensor, symmetric_eigen
   use dd3_material_material, only : material_t
   use dd3_material_point, only : point_state_t, global_stress, lead_point, new_point_state, &
       strain_point
@@ -20,10 +20,6 @@ module dd3_process_points
   implicit none
   private
   public :: run_points
-
-  !> What makes a Kelvin component of a plain one.
-  real(wp), parameter :: factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, sqrt(2.0_wp), sqrt(2.0_wp), &
-                                      sqrt(2.0_wp)]
 
   !> A point under way.
   type :: traveller_t
@@ -83,6 +79,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(traveller_t) :: traveller
+    type(error_t), allocatable :: late
     integer :: i
 
     associate (material => model%material(point%material))
@@ -95,8 +92,8 @@ contains
                        record, error)
       end do
       taken = traveller%increment
-      if (.not. allocated(error) .and. traveller%waiting) &
-        call write_row(traveller, material, point, record, error)
+      if (traveller%waiting) call write_row(traveller, material, point, record, late)
+      if (.not. allocated(error)) call move_alloc(late, error)
     end associate
   end subroutine run_point
 
@@ -168,7 +165,7 @@ contains
     if (.not. regular) verdict%reason = "det F is not positive"
     if (.not. regular) return
     call polar_increment(matmul(gradient, back), strain, rotation)
-    call strain_point(traveller%state, material, factor*strain, rotation, verdict)
+    call strain_point(traveller%state, material, kelvin_factor*strain, rotation, verdict)
     if (verdict%outcome /= verdict_converged) return
     traveller%gradient = gradient
     traveller%state%strain = left_strain(gradient)

@@ -8,7 +8,7 @@
 !> functions). The second sum runs over the pairs of the same transformed stress.
 module dd3_material_yield_principal
   use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
+  use dd3_linalg_tensor, only : half_root, root2, symmetric_eigen, tensor_from_kelvin
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   use dd3_material_yield_power, only : exponent_t, powers
@@ -60,8 +60,6 @@ module dd3_material_yield_principal
   integer, parameter :: one(3) = [2, 3, 1], other(3) = [3, 1, 2]
   !> Principal values closer than this part of the largest are equal.
   real(wp), parameter :: closeness = 1.0e-6_wp
-  !> Square root of two and its inverse.
-  real(wp), parameter :: root = sqrt(2.0_wp), half_root = 1/sqrt(2.0_wp)
 
 contains
 
@@ -202,9 +200,9 @@ contains
     real(wp) :: n(6)
 
     n(1:3) = v*v
-    n(4) = root*v(2)*v(3)
-    n(5) = root*v(3)*v(1)
-    n(6) = root*v(1)*v(2)
+    n(4) = root2*v(2)*v(3)
+    n(5) = root2*v(3)*v(1)
+    n(6) = root2*v(1)*v(2)
   end function square_of
 
   !> Kelvin vector of sym(v x w).
