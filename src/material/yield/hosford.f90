@@ -13,7 +13,7 @@ module dd3_material_yield_hosford
   use dd3_material_yield_transformation, only : barlat_transformation
   implicit none
   private
-  public :: hosford_t, exponent_row
+  public :: hosford_t, exponent_row, hosford_function
 
   !> The criterion.
   type, extends(principal_criterion_t) :: hosford_t
@@ -70,14 +70,28 @@ contains
     real(wp), intent(out) :: q
     !> Its derivatives.
     real(wp), intent(out) :: first(6), second(6, 6)
+
+    call hosford_function(self%exponent, e, q, first, second)
+  end subroutine principal_function
+
+  !> The function of three principal values, with its derivatives.
+  pure subroutine hosford_function(exponent, e, q, first, second)
+    !> m.
+    type(exponent_t), intent(in) :: exponent
+    !> Principal values, MPa.
+    real(wp), intent(in) :: e(6)
+    !> The function, MPa.
+    real(wp), intent(out) :: q
+    !> Its derivatives.
+    real(wp), intent(out) :: first(6), second(6, 6)
     real(wp) :: f, f_first(6), f_second(6, 6), scale
 
     f = 0.0_wp
     f_first = 0.0_wp
     f_second = 0.0_wp
     scale = maxval(e(1:3)) - minval(e(1:3))
-    call add_differences(self%exponent, 0.5_wp, e(1:3)/scale, f, f_first, f_second)
-    call take_root(3, self%exponent%value, scale, 1.0_wp, f, f_first, f_second, q, first, second)
-  end subroutine principal_function
+    call add_differences(exponent, 0.5_wp, e(1:3)/scale, f, f_first, f_second)
+    call take_root(3, exponent%value, scale, 1.0_wp, f, f_first, f_second, q, first, second)
+  end subroutine hosford_function
 
 end module dd3_material_yield_hosford

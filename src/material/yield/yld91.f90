@@ -9,18 +9,22 @@ module dd3_material_yield_yld91
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_yield_hosford, only : hosford_t, exponent_row
-  use dd3_material_yield_power, only : new_exponent
+  use dd3_material_yield_hosford, only : exponent_row, hosford_function
+  use dd3_material_yield_power, only : exponent_t, new_exponent
+  use dd3_material_yield_principal, only : principal_criterion_t
   use dd3_material_yield_transformation, only : barlat_transformation
   implicit none
   private
   public :: yld91_t
 
-  !> The criterion: Hosford's with a transformation.
-  type, extends(hosford_t) :: yld91_t
+  !> The criterion.
+  type, extends(principal_criterion_t) :: yld91_t
+    !> m.
+    type(exponent_t) :: exponent
   contains
     procedure, nopass :: describe
     procedure :: set
+    procedure :: principal_function
   end type yld91_t
 
 contains
@@ -62,5 +66,19 @@ contains
                                 value_of(values, "h", 1.0_wp)])
     call new_exponent(self%exponent, value_of(values, "m"))
   end subroutine set
+
+  !> The function of the principal values, with its derivatives.
+  pure subroutine principal_function(self, e, q, first, second)
+    !> The criterion.
+    class(yld91_t), intent(in) :: self
+    !> Principal values, MPa.
+    real(wp), intent(in) :: e(6)
+    !> The function, MPa.
+    real(wp), intent(out) :: q
+    !> Its derivatives.
+    real(wp), intent(out) :: first(6), second(6, 6)
+
+    call hosford_function(self%exponent, e, q, first, second)
+  end subroutine principal_function
 
 end module dd3_material_yield_yld91
