@@ -34,7 +34,8 @@ contains
     description%name = "lemaitre_chaboche"
     description%title = "dX = CX (Xsat dev(T - X)/sb - X) dp"
     description%source = "P. J. Armstrong, C. O. Frederick, CEGB report "// &
-                         "RD/B/N731 (1966); J. Lemaitre, J.-L. Chaboche (1985)"
+                         "RD/B/N731 (1966); J. Lemaitre, J.-L. Chaboche, "// &
+                         "Mecanique des materiaux solides, Dunod (1985)"
     allocate (description%rows, source=[ &
       row("CX", kind_real, "", "", "rate of saturation", 0.0_wp), &
       row("Xsat", kind_real, "MPa", "", "back-stress at saturation", 0.0_wp)])
