@@ -19,7 +19,7 @@ module dd3_contact_operator
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: status_gap, status_stick, status_slip, contact_status
+  public :: status_gap, status_stick, status_slip, contact_status, round_off
   public :: contact_operator, contact_operator_of_status
 
   !> The node does not touch.
@@ -212,7 +212,7 @@ contains
     end do
   end subroutine slip_operator
 
-  !> Length of a vector.
+  !> Length of a vector; norm2 would call the library, which scales against overflow.
   pure real(wp) function norm(a)
     !> The vector.
     real(wp), intent(in) :: a(3)

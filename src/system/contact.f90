@@ -4,8 +4,8 @@
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
-  use dd3_contact_operator, only : contact_operator, contact_operator_of_status, status_gap, &
-      status_stick
+  use dd3_contact_operator, only : contact_operator, contact_operator_of_status, round_off, &
+      status_gap, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -15,8 +15,6 @@ module dd3_system_contact
 
   !> Distance up to which a tool that touches nothing counts as touching, mm.
   real(wp), parameter :: touch = 1.0e-4_wp
-  !> A contact force that makes no more than this of a gap is none, mm.
-  real(wp), parameter :: round_off = 1.0e-12_wp
   !> How far the predictor looks for tools, mm: whatever comes near limits the increment.
   real(wp), parameter :: far = 1.0e3_wp
   !> A node stays with its tool unless another is nearer by this, mm.
