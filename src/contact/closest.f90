@@ -13,7 +13,7 @@
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t
-  use dd3_contact_surface, only : surface_t, edge_t, edge_of, edge_parameters
+  use dd3_contact_surface, only : surface_t, edge_of, edge_parameters
   use dd3_contact_project, only : foot_t, project, project_globally
   use dd3_contact_hit, only : hit_t, new_hit, place_of, place_border
   implicit none

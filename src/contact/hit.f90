@@ -17,7 +17,7 @@ module dd3_contact_hit
   use dd3_contact_project, only : foot_t
   implicit none
   private
-  public :: hit_t, new_hit, place_smooth, place_crease, place_border, place_of
+  public :: hit_t, new_hit, place_border, place_of
 
   !> The foot lies inside its patch, or at a smooth edge.
   integer, parameter :: place_smooth = 0

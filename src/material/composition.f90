@@ -87,6 +87,7 @@ contains
     type(flow_response_t), intent(out) :: flow
     type(flow_direction_t) :: direction
 
+    ! Other laws never look at the direction, and filling it takes longer than their flow stress.
     if (self%hardening%follows_path) direction = no_direction()
     call self%hardening%flow_stress(internal(1), internal(self%first:self%last), 0.0_wp, &
                                     direction, flow)

@@ -17,7 +17,7 @@ module dd3_material_return_mapping
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
   private
-  public :: step_t, take_step, iteration_limit
+  public :: step_t, take_step
 
   !> Most Newton iterations in a step, and most halvings in one of them.
   integer, parameter :: iteration_limit = 30, halving_limit = 8

@@ -45,6 +45,7 @@ contains
     verdict%outcome = verdict_impossible
     verdict%iterations = 0
     verdict%norm = 0.0_wp
+    ! Blanking a text that is blank already would cost more than an elastic update.
     if (verdict%reason(1:1) /= " ") verdict%reason = ""
     if (.not. all_finite(laws%n_internal, stress_old, internal_old, strain)) then
       call give_up(laws, stress_old, internal_old, stress, internal, tangent)
