@@ -63,11 +63,11 @@ contains
     call check_grading(blank%source, "grading_x", blank%divisions(1), errors)
     call check_grading(blank%source, "grading_y", blank%divisions(2), errors)
     call check_grading(blank%source, "grading_z", blank%divisions(3), errors)
-    if (errors%count > before .or. blank%divisions(1) < 2) return
     if (product(real(blank%divisions, wp)) > 5.0e6_wp) then
       call errors%push_input(blank%source%at("divisions"), &
           "there would be more than 5 million elements")
     end if
+    if (errors%count > before .or. blank%divisions(1) < 2) return
     associate (x => blank%grading_x, n => blank%divisions(1))
       shift = 0.5_wp*abs(blank%skew)/real(n, wp)
       room = min(x(1) - x(0), x(n) - x(n - 1))
