@@ -54,12 +54,15 @@ contains
     if (present(digits)) n = digits
     write (form, '(a,i0,a,i0,a)') "(g", n + 10, ".", n, ")"
     write (buffer, form) value
-    if (scan(buffer, "eE") > 0) then
-      write (form, '(a,i0,a,i0,a)') "(es", n + 10, ".", max(1, n - 1), ")"
+    if (scan(trim(adjustl(buffer)), "E+-", back=.true.) > 1) then
+      write (form, '(a,i0,a,i0,a)') "(es", n + 10, ".", max(1, n - 1), "e3)"
       write (buffer, form) value
     end if
     text = trim(adjustl(buffer))
-    mark = scan(text, "eE")
+    mark = index(text, "E")
+    if (mark > 0) then
+      if (text(mark + 2:mark + 2) == "0") text = text(:mark + 1)//text(mark + 3:)
+    end if
     if (index(text, ".") == 0) return
     e = len(text)
     if (mark > 0) e = mark - 1
