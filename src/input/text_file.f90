@@ -1,5 +1,6 @@
 !> Text files as lists of lines: any line end, any line length, no control characters.
 module dd3_input_text_file
+  use dd3_base_kinds, only : i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : text_t, to_text
   implicit none
@@ -7,7 +8,7 @@ module dd3_input_text_file
   public :: read_lines, resolve_path, folder_of
 
   !> Largest file taken for an input file, bytes.
-  integer, parameter :: largest_file = 200000000
+  integer(i8), parameter :: largest_file = 200000000
 
 contains
 
@@ -37,7 +38,8 @@ contains
     !> Why it cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
-    integer :: unit, status, length
+    integer(i8) :: length
+    integer :: unit, status
     character(len=1) :: byte
     logical :: there
 
@@ -62,7 +64,7 @@ contains
     if (length > largest_file) then
       call fatal_error(error, "it is too large for an input file")
     else
-      allocate (character(len=max(0, length)) :: content)
+      allocate (character(len=max(0_i8, length)) :: content)
       if (length > 0) read (unit, iostat=status) content
       if (status /= 0) call fatal_error(error, "reading it failed")
       if (length <= 0) read (unit, iostat=status) byte
