@@ -4,12 +4,13 @@ module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
   use dd3_base_text, only : to_text
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
-  use dd3_input_case, only : until_displacement, until_force
+  use dd3_input_case, only : until_displacement
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_process_predictor, only : prediction_t
+  use dd3_process_stage, only : until_value
   use dd3_system_contact, only : contact_work_t, touch
   use dd3_system_system, only : system_t
   implicit none
@@ -288,7 +289,8 @@ contains
     end do
   end function gap_limit
 
-  !> An early end of the phase by a tool's displacement or force, extrapolated linearly.
+  !> An early end of the phase by a tool's displacement or force, extrapolated linearly. The size is
+  !> met with either sign: that in which the value goes, or, from above, comes.
   function until_limit(model, phase, state, prediction) result(limit)
     !> The model.
     type(model_t), intent(in) :: model
@@ -300,7 +302,7 @@ contains
     type(prediction_t), intent(in) :: prediction
     type(limit_t) :: limit
 
-    real(wp) :: value, left, rate, line(3)
+    real(wp) :: left, rate, line(3)
     integer :: tool, c
 
     tool = phase%until%tool
@@ -308,23 +310,19 @@ contains
     limit%name = "until"
     line = phase%direction(:, tool)
     if (phase%until%kind == until_displacement) then
-      value = dot_product(line, state%tool_displacement(:, tool) - phase%tool_start(:, tool))
       rate = dot_product(line, prediction%tool(:, tool))
-    else if (phase%until%kind == until_force) then
-      value = dot_product(line, state%tool_force(:, tool))
+    else
       rate = 0.0_wp
       do c = 1, model%n_contact
         if (state%contact_tool(c) == tool) rate = rate + dot_product(line, prediction%lambda(:, c))
       end do
-      if (value < 0.0_wp) rate = -rate
-      if (abs(value) <= 0.0_wp) rate = abs(rate)
     end if
-    left = phase%until%value - abs(value)
-    if (.not. phase%until_from_below) then
-      left = -left
-      rate = -rate
+    if (phase%until_from_below) then
+      left = phase%until%value - sign(1.0_wp, rate)*until_value(phase, state)
+    else
+      left = -phase%until%value - sign(1.0_wp, rate)*until_value(phase, state)
     end if
-    if (rate > 0.0_wp) limit%r = max(0.0_wp, left)/rate
+    if (left > 0.0_wp .and. abs(rate) > 0.0_wp) limit%r = left/abs(rate)
   end function until_limit
 
 end module dd3_process_limiters

@@ -9,7 +9,7 @@ module dd3_process_stage
   use dd3_process_stage_warnings, only : look_along, reach
   implicit none
   private
-  public :: begin_phase, next_output_progress, phase_is_over
+  public :: begin_phase, next_output_progress, phase_is_over, until_value
 
   !> Advances of a pressed tool towards the sheet; each covers at least the smallest gap left.
   integer, parameter :: most_advances = 200
@@ -96,12 +96,12 @@ contains
     type(state_t), intent(in) :: state
 
     if (phase%until%kind /= until_force) return
-    phase%until_from_below = until_value(phase, state) <= phase%until%value
+    phase%until_from_below = abs(until_value(phase, state)) <= phase%until%value
   end subroutine take_until_side
 
-  !> What is compared with the value of the early end: the displacement of its tool along its line
-  !> since the phase began, mm, or the force on it along that line, N; its size.
-  real(wp) function until_value(phase, state) result(value)
+  !> What has the size of the early end when it is met: the displacement of its tool along its line
+  !> since the phase began, mm, or the force on it along that line, N.
+  pure real(wp) function until_value(phase, state) result(value)
     !> The phase.
     type(phase_t), intent(in) :: phase
     !> The state.
@@ -115,7 +115,6 @@ contains
         value = dot_product(phase%direction(:, tool), state%tool_force(:, tool))
       end if
     end associate
-    value = abs(value)
   end function until_value
 
   !> Moves a pressed tool that touches nothing along its line until it touches.
@@ -190,13 +189,15 @@ contains
     type(state_t), intent(in) :: state
 
     real(wp), parameter :: displacement_tolerance = 1.0e-6_wp, force_tolerance = 1.0e-3_wp
+    real(wp) :: tolerance, met
 
-    if (phase%until%kind == until_displacement) then
-      until_met = until_value(phase, state) >= phase%until%value*(1.0_wp - displacement_tolerance)
-    else if (phase%until_from_below) then
-      until_met = until_value(phase, state) >= phase%until%value*(1.0_wp - force_tolerance)
+    tolerance = force_tolerance
+    if (phase%until%kind == until_displacement) tolerance = displacement_tolerance
+    met = abs(until_value(phase, state))
+    if (phase%until_from_below) then
+      until_met = met >= phase%until%value*(1.0_wp - tolerance)
     else
-      until_met = until_value(phase, state) <= phase%until%value*(1.0_wp + force_tolerance)
+      until_met = met <= phase%until%value*(1.0_wp + tolerance)
     end if
   end function until_met
 
