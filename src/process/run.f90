@@ -335,8 +335,7 @@ contains
       //to_text(run%committed%x(1, verdict%node), 5)//" "//to_text(run%committed%x(2, &
       verdict%node), 5) &
       //" "//to_text(run%committed%x(3, verdict%node), 5)
-    if (verdict%node > 0 .and. verdict%node <= model%n_node) message = message//tool_text(run, &
-        model, verdict%node)
+    if (verdict%node > 0) message = message//tool_text(run, model, verdict%node)
   end function failure_message
 
   !> The tool a node touches, as a piece of a message.

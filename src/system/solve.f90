@@ -43,6 +43,7 @@ contains
     call self%profile%add(section_assembly)
     call self%solver%factor(self%reduced, verdict)
     call self%profile%add(section_factorisation)
+    if (verdict%node > model%n_node) call name_tool(model, verdict)
     if (verdict%outcome /= verdict_converged) return
     call self%solver%solve(self%problem%rhs, self%problem%solution, report)
     call self%profile%add(section_solve)
@@ -55,5 +56,17 @@ contains
       verdict%norm = report%residual
     end if
   end subroutine solve_reduced
+
+  !> Puts the tool in the place of its block row, which is empty where nothing resists the tool.
+  subroutine name_tool(model, verdict)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The verdict on the matrix.
+    type(verdict_t), intent(inout) :: verdict
+
+    verdict%tool = findloc(model%tool_block, verdict%node, dim=1)
+    verdict%node = 0
+    verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
+  end subroutine name_tool
 
 end module dd3_system_solve
