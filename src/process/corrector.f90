@@ -252,8 +252,10 @@ contains
           .and. abs(system%problem%tool_residual(tool)) &
           <= tool_force_tolerance*pressed_force(phase, new, tool)
     end do
-    scale = max(norm2(new%lambda), norm2(new%internal_force), &
-                negligible_strain*model%material(1)%laws%elasticity%shear*model%thickness**2)
+    associate (material => model%material(model%material_of(1)))
+      scale = max(norm2(new%lambda), norm2(new%internal_force), &
+          negligible_strain*material%laws%elasticity%shear*model%thickness**2)
+    end associate
     correction%criterion = [correction%criterion, (norm2(correction%lambda) &
         + sqrt(sum_of_squares))/scale]
     correction%status(:, 2:) = correction%status(:, :memory - 1)
