@@ -65,14 +65,14 @@ contains
         call add_jacobians(24, 8, element%slope, x, work%jacobian)
         call invert(8, 8, element%slope_row, element%weight, work%jacobian, work%gradient, &
                     work%weight, bad_point)
-        call average(24, 8, 1, element%group, work%weight, work%gradient, work%mean_gradient, &
-                     work%volume)
+        if (bad_point == 0) call average(24, 8, 1, element%group, work%weight, work%gradient, &
+                                         work%mean_gradient, work%volume)
       else
         call add_jacobians(3*m, n, element%slope, x, work%jacobian)
         call invert(n, m, element%slope_row, element%weight, work%jacobian, work%gradient, &
                     work%weight, bad_point)
-        call average(3*n, m, g, element%group, work%weight, work%gradient, work%mean_gradient, &
-                     work%volume)
+        if (bad_point == 0) call average(3*n, m, g, element%group, work%weight, work%gradient, &
+                                         work%mean_gradient, work%volume)
       end if
     end associate
     verdict%outcome = verdict_converged
