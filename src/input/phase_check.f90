@@ -99,7 +99,7 @@ contains
     named(tool) = .true.
   end subroutine name_tool
 
-  !> Checks the force on a tool: it has a line, and keeps it while the tool is pressed.
+  !> Checks the force on a tool: it has a line, and keeps it and its sense while the tool is pressed.
   subroutine check_press(press, motion, force, errors)
     !> The tool and the force.
     type(tool_vector_t), intent(in) :: press
@@ -110,7 +110,7 @@ contains
     !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: before(3), across(3)
+    real(wp) :: before(3)
 
     before = 0.0_wp
     if (motion(press%tool) == pressed) before = force(:, press%tool)
@@ -121,11 +121,10 @@ contains
       call errors%push_input(press%at, "a force of zero gives no line to move along", &
           "press = tool fx fy fz")
     else if (norm2(before) > 0.0_wp) then
-      across = press%vector - dot_product(press%vector, before)/dot_product(before, before)*before
-      if (norm2(across) <= 1.0e-6_wp*norm2(press%vector)) return
+      if (norm2(press%vector/norm2(press%vector) - before/norm2(before)) <= 1.0e-6_wp) return
       call errors%push_input(press%at, &
           "a pressed tool moves along one line: its force cannot turn", &
-                             "a force along the last one, or a phase between that holds the tool")
+          "a force in the direction of the last one, or a phase between that holds the tool")
     end if
   end subroutine check_press
 

@@ -57,7 +57,7 @@ contains
     if (errors%count > 0) return
     call find_candidates(model, case, mesh)
     call take_supports(model, case, mesh)
-    call new_phases(model, case, mesh, errors)
+    call new_phases(model, case, mesh)
     call take_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)

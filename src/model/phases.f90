@@ -2,7 +2,6 @@
 !> and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_list_t
   use dd3_input_case, only : case_t, case_phase_t => phase_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_loads, only : load_set_t
@@ -15,15 +14,13 @@ module dd3_model_phases
 contains
 
   !> Resolves all phases.
-  subroutine new_phases(model, case, mesh, errors)
+  subroutine new_phases(model, case, mesh)
     !> The model with its tools, candidates and supports.
     type(model_t), intent(inout) :: model
     !> The case.
     type(case_t), intent(in) :: case
     !> The mesh.
     type(mesh_t), intent(in) :: mesh
-    !> Receives what is wrong.
-    type(error_list_t), intent(inout) :: errors
 
     type(phase_t) :: before
     integer :: i
@@ -34,7 +31,7 @@ contains
     do i = 1, size(case%phase)
       call follow(model%phase(i), before)
       call take_settings(model, case%phase(i), model%phase(i))
-      call take_tools(case%phase(i), model%phase(i), errors)
+      call take_tools(case%phase(i), model%phase(i))
       call take_displacements(case%phase(i), mesh, model%phase(i))
       call take_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
@@ -101,13 +98,11 @@ contains
   end subroutine take_settings
 
   !> Takes what the tools do, and the trial increment as a share of the phase.
-  subroutine take_tools(from, phase, errors)
+  subroutine take_tools(from, phase)
     !> The phase of the case.
     type(case_phase_t), intent(in) :: from
     !> The phase.
     type(phase_t), intent(inout) :: phase
-    !> Receives what is wrong.
-    type(error_list_t), intent(inout) :: errors
 
     integer :: i, t
 
@@ -122,8 +117,7 @@ contains
       if (norm2(from%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(from%move(i)%vector)
     end do
     do i = 1, size(from%press)
-      t = from%press(i)%tool
-      call press(from, i, t, phase, errors)
+      call press(phase, from%press(i)%tool, from%press(i)%vector)
     end do
     do i = 1, size(from%release)
       t = from%release(i)%tool
@@ -149,39 +143,19 @@ contains
     phase%press_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
 
-  !> Puts a force on a tool; a tool that is pressed already keeps its line.
-  subroutine press(from, i, tool, phase, errors)
-    !> The phase of the case.
-    type(case_phase_t), intent(in) :: from
-    !> Position among its pressed tools.
-    integer, intent(in) :: i
-    !> The tool.
-    integer, intent(in) :: tool
+  !> Puts a force on a tool; one of zero leaves a pressed tool its line.
+  subroutine press(phase, tool, force)
     !> The phase.
     type(phase_t), intent(inout) :: phase
-    !> Receives what is wrong.
-    type(error_list_t), intent(inout) :: errors
+    !> The tool.
+    integer, intent(in) :: tool
+    !> The force, N.
+    real(wp), intent(in) :: force(3)
 
-    real(wp) :: line(3)
-
-    if (norm2(from%press(i)%vector) > 0.0_wp) then
-      line = unit(from%press(i)%vector)
-      if (phase%pressed(tool) .and. norm2(phase%press_start(:, tool)) > 0.0_wp) then
-        if (dot_product(line, phase%direction(:, tool)) < 1.0_wp - 1.0e-9_wp) then
-          call errors%push_input(from%press(i)%at, &
-              "the force turns away from the tool's line of motion", &
-                                 "a force along the same line and sense as in the phase before")
-        end if
-      end if
-      phase%direction(:, tool) = line
-    else if (.not. phase%pressed(tool)) then
-      call errors%push_input(from%press(i)%at, "a force of zero gives the tool no line of motion", &
-                             "press = tool fx fy fz with a force that is not zero")
-      return
-    end if
+    if (norm2(force) > 0.0_wp) phase%direction(:, tool) = unit(force)
     phase%pressed(tool) = .true.
     phase%keeps_press(tool) = .false.
-    phase%press_end(:, tool) = from%press(i)%vector
+    phase%press_end(:, tool) = force
   end subroutine press
 
   !> Takes prescribed displacements.
