@@ -29,6 +29,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 try:
@@ -37,7 +38,7 @@ try:
 except ImportError as error:
     sys.exit(f"{error}: run utils/install_needed.sh, or pip install -r utils/requirements.txt")
 
-from measurements import KEYS, TENSION, Datum, Problem, from_argument, read_curve, read_data
+from measurements import KEYS, TENSION, Datum, Problem, every, from_argument, read_curve, read_data
 
 UNIT = "perfect Y0=100"  # the flow stress with which criteria are tried
 REFUSED = 1e3  # residual of a set that the program does not take
@@ -46,6 +47,9 @@ ENOUGH = 1e-3  # root of the sum of squares of the data below which no other sta
 BORDER = 60  # generations along a border of convexity
 EVALUATIONS = 60  # of a descent, at most
 STEP = 1e-4  # of the differences, over the size of the parameter
+END = 3e-3  # part of a range: nearer to its end a parameter is told
+MISSED = 0.1  # difference from a measured value, over the value or 1, that is told
+MISSED_CURVE = 0.01  # the same of a curve: root mean square over the largest stress
 
 # Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the number of
 # values it takes at least.
@@ -107,6 +111,9 @@ class Points:
                 raise Problem(f"{self.program}: error: {error.strerror}\n"
                               "  expected: --program with the path of dd3imp") from None
             points = {}
+            if done.returncode == 1 or done.returncode == 0 and not (out / "history.csv").is_file():
+                raise Problem(f"{self.program}: error: exit code {done.returncode}, and no results\n"
+                              "  expected: --program with the path of dd3imp")
             if done.returncode == 0:
                 with open(out / "history.csv", newline="", encoding="utf-8") as stream:
                     for row in csv.DictReader(line for line in stream if not line.startswith("#")):
@@ -221,35 +228,41 @@ class Fit:
             costs.append(np.linalg.norm(self.at(point)[0]))
         return point, costs
 
-    def left_open(self, point):
-        """What the data do not determine, in words."""
+    def left_open(self, point, none, rest):
+        """What the data do not determine, in words, and what becomes of it: what has no bearing, and the rest."""
         slope = self.at(point)[1][:len(self.measured)]
         size = np.linalg.norm(slope, axis=0)
-        idle = [name for name, part in zip(self.names, size) if part < 1e-6]
+        idle = [name_of(name) for name, part in zip(self.names, size) if part < 1e-6]
         count = int(np.sum(np.linalg.svd(slope, compute_uv=False) > PULL))
         notes = []
         if idle:
-            notes.append(f"the data say nothing about {', '.join(idle)}: left as in the isotropic case")
+            notes.append(f"the data say nothing about {', '.join(idle)}: {none}")
         if count < len(point) - len(idle):
             notes.append(f"the data determine {count} of {len(point) - len(idle)} parameters, or combinations of them; "
-                         "the rest stays as near to isotropy as they allow")
-        return notes + self.at_ends(point)
+                         f"{rest}")
+        return notes
 
     def at_ends(self, point):
         """The parameters that are at the end of their range, in words."""
-        ends = np.minimum(point - self.low, self.high - point) < 1e-6 * (self.high - self.low)
-        return [f"{name[-1] if isinstance(name, tuple) else name} is at the end of its range: "
-                "another law may follow the data better" for name, end in zip(self.names, ends) if end]
+        ends = np.minimum(point - self.low, self.high - point) < END * (self.high - self.low)
+        return [f"{name_of(name)} is at the end of its range: another law may follow the data better"
+                for name, end in zip(self.names, ends) if end]
+
+
+def name_of(name):
+    """A parameter as it stands in the input."""
+    return name[-1] if isinstance(name, tuple) else name
 
 
 def sought_parameters(options, data):
     """What is sought, with start and bounds, and what is given."""
     sought, fixed, least = CRITERIA[options.criterion]
     sought, fixed = dict(sought), dict(fixed)
+    unknown = [name for name in options.fix if name not in sought and name not in fixed]
+    if unknown:
+        raise Problem(f"--fix: error: {options.criterion} has no {' '.join(unknown)}\n  expected: one of "
+                      + " ".join([*sought, *fixed]))
     for name, value in options.fix.items():
-        if name not in sought and name not in fixed:
-            raise Problem(f"--fix: error: {options.criterion} has no {name}\n  expected: one of "
-                          + " ".join([*sought, *fixed]))
         sought.pop(name, None)
         fixed[name] = value
     if "k" in sought and options.criterion == "cpb06" and not any("compression" in datum.kind for datum in data):
@@ -296,7 +309,15 @@ def criterion(options, points, data):
     table = [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
              + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
              for d, value in zip(data + told, values)]
-    return text, table, fit.left_open(point)
+    notes = fit.left_open(point, "left as in the isotropic case", "the rest stays as near to isotropy as they allow")
+    return text, table, notes + fit.at_ends(point) + missed(data, values)
+
+
+def missed(data, values):
+    """The measured values that the criterion does not meet, in words."""
+    far = [f"{d.label()} is {value:.4g} in place of {d.value:.4g}" for d, value in zip(data, values)
+           if d.weight and abs(value - d.value) > MISSED * max(d.value, 1)]
+    return [f"{text}: another criterion may follow the data better, or the value is wrong" for text in far]
 
 
 def rounded(trial, compute):
@@ -415,8 +436,13 @@ def hardening(options, points, yields):
     some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
     table = [f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
              for i in some]
-    table.append(f"root mean square over {len(strain)} rows: {np.sqrt(np.mean((values - stress) ** 2)):.2f} MPa")
-    return lines, table, fit.at_ends(point), (strain, stress, values)
+    far = np.linalg.norm(weight * (values - stress))
+    table.append(f"root mean square over {len(strain)} rows: {far * np.abs(stress).max():.2f} MPa")
+    notes = fit.left_open(point, "left as at the start", "other values of the rest may do as well") + fit.at_ends(point)
+    if far > MISSED_CURVE:
+        notes.append(f"the curve is missed by {100 * far:.1f} % of its largest stress: "
+                     "another law may follow it better")
+    return lines, table, notes, (strain, stress, values)
 
 
 def folded(key, text):
@@ -506,8 +532,9 @@ def arguments():
 
 def measured(options):
     """The measured values of a criterion."""
-    data = read_data(options.data) if options.data else []
-    data += [from_argument(key, text) for key in KEYS for text in getattr(options, key)]
+    parts = [partial(read_data, options.data)] if options.data else []
+    parts += [partial(from_argument, key, text) for key in KEYS for text in getattr(options, key)]
+    data = [datum for part in every(parts) for datum in part]
     if not data:
         raise Problem("error: no measured values\n  expected: --data or --" + " --".join(KEYS).replace("_", "-"))
     if not any(d.weight for d in data):

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +22,20 @@ RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain across over that through
 
 class Problem(Exception):
     """Input that cannot be used; its text is the message."""
+
+
+def every(parts):
+    """The results of all parts; where some have a problem, the messages of these, the first 20."""
+    results, said = [], []
+    for part in parts:
+        try:
+            results.append(part())
+        except Problem as problem:
+            said.append(str(problem))
+    if said:
+        more = [f"and {len(said) - 20} more"] if len(said) > 20 else []
+        raise Problem("\n".join(said[:20] + more))
+    return results
 
 
 @dataclass
@@ -94,19 +109,17 @@ def datum(key, line, words):
     if not least <= len(words) <= least + 1:
         place = line.end() if len(words) < least else words[-1]
         raise line.problem(place, f"{key} has too {'few' if len(words) < least else 'many'} numbers", expected)
-    words = list(words)
-    angle = line.number(words.pop(0), "angle", 0, 90, "an angle to the rolling direction, 0 to 90 degrees") if angled \
-        else 0.0
     low, high, meant = RANGES[quantity]
-    value = line.number(words[0], quantity, low, high, meant)
-    weight = line.number(words[1], "weight", 0, 1e6, "a weight, 0 or more") if len(words) > 1 else None
-    return Datum(key, angle, value, weight)
+    asked = [("angle", 0, 90, "an angle to the rolling direction, 0 to 90 degrees")] * angled
+    asked += [(quantity, low, high, meant), ("weight", 0, 1e6, "a weight, 0 or more")]
+    values = every([partial(line.number, word, *one) for word, one in zip(words, asked)])
+    return Datum(key, *([0.0] * (not angled) + values))
 
 
 def from_argument(key, text):
-    """A datum of the command line: angle:value:weight."""
+    """The datum of an argument of the command line: angle:value:weight."""
     line = Line(f"--{key.replace('_', '-')}", text)
-    return datum(key, line, line.words(r"[^:]+"))
+    return [datum(key, line, line.words(r"[^:]+"))]
 
 
 def lines_of(path):
@@ -120,36 +133,40 @@ def lines_of(path):
 
 def read_data(path):
     """The data of a file: in each line a key and its numbers."""
-    data = []
-    for line in lines_of(path):
-        words = line.words(r"[^\s,;:=]+")
-        if words:
-            if words[0][0] not in KEYS:
-                raise line.problem(words[0], f"unknown key '{words[0][0]}'", "one of: " + " ".join(KEYS))
-            data.append(datum(words[0][0], line, words[1:]))
+    lines = [(line, line.words(r"[^\s,;:=]+")) for line in lines_of(path)]
+    data = every([partial(data_line, line, words) for line, words in lines if words])
     if not data:
         raise Problem(f"{path}: error: no measured values\n  expected: lines such as: r 45 1.51")
     return data
 
 
+def data_line(line, words):
+    """The datum of a line."""
+    if words[0][0] not in KEYS:
+        raise line.problem(words[0], f"unknown key '{words[0][0]}'", "one of: " + " ".join(KEYS))
+    return datum(words[0][0], line, words[1:])
+
+
 def read_curve(path, reversed_too):
     """Strains and stresses of a table: two columns; lines before the first number are a header."""
-    rows = []
-    for line in lines_of(path):
-        words = line.words(r"[^\s,;]+")
-        if not words or not rows and not re.match(r"[-+.\d]", words[0][0]):
-            continue
-        if len(words) < 2:
-            raise line.problem(line.end(), "a number is missing", "strain and stress")
-        if len(words) > 2:
-            raise line.problem(words[2], "more than two numbers",
-                               "strain and stress, with a decimal point, not a comma")
-        rows.append((line, words, line.number(words[0], "strain", -2, 2, "a logarithmic strain, not per cent"),
-                     line.number(words[1], "stress", -1e4, 1e4, "a true stress in MPa")))
+    lines = [(line, words) for line in lines_of(path) if (words := line.words(r"[^\s,;]+"))]
+    first = next((i for i, (_, words) in enumerate(lines) if re.match(r"[-+.\d]", words[0][0])), len(lines))
+    rows = every([partial(curve_row, line, words) for line, words in lines[first:]])
     if len(rows) < 4:
         raise Problem(f"{path}: error: {len(rows)} rows\n  expected: strain and stress in four rows or more")
     check_curve(rows, reversed_too)
     return np.array([row[2:] for row in rows]).T
+
+
+def curve_row(line, words):
+    """A row of a curve: its line, its words, strain and stress."""
+    if len(words) < 2:
+        raise line.problem(line.end(), "a number is missing", "strain and stress")
+    if len(words) > 2:
+        raise line.problem(words[2], "more than two numbers", "strain and stress, with a decimal point, not a comma")
+    return line, words, *every([
+        partial(line.number, words[0], "strain", -2, 2, "a logarithmic strain, not per cent"),
+        partial(line.number, words[1], "stress", -1e4, 1e4, "a true stress in MPa")])
 
 
 def check_curve(rows, reversed_too):

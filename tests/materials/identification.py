@@ -76,6 +76,14 @@ MISTAKES = (
     ("--criterion hill48 --stress 0:nan", "stress = nan is out of range"),
     ("--criterion hill48 --r 0:1:2:3", "r has too many numbers\n  0:1:2:3\n        ^\n"),
     ("--criterion hill48 --r 0:1:0 45:1:0 90:1:0", "all weights are 0"),
+    ("--criterion hill48 --r 0:x 100:-2", "--r: error: 'x' is not a number\n  0:x\n    ^\n"),
+    ("--criterion hill48 --r 0:x 100:-2", "r = -2 is out of range"),
+    ("--criterion hill48 --r 0:x 100:-2", "angle = 100 is out of range"),
+    ("--criterion hill48 --r 0:x --data two_bad.txt", "two_bad.txt:1: error: 'one' is not a number"),
+    ("--criterion hill48 --r 0:x --data two_bad.txt", "two_bad.txt:3: error: r = -1 is out of range"),
+    ("--criterion hill48 --r 0:x --data two_bad.txt", "--r: error: 'x' is not a number"),
+    ("--criterion hill48 --data many_bad.txt", "\nand 5 more\n"),
+    ("--criterion hill48 --r 0:1 45:1 90:1 --fix Q=1 Z=2", "hill48 has no Q Z"),
     ("--criterion hosford --stress 90:1", "say nothing about m"),
     ("--criterion hill48 --data none.txt", "none.txt: error: No such file"),
     ("--criterion hill48 --data bad_key.txt", "bad_key.txt:2: error: unknown key 'rr'\n    rr 0 1.5\n    ^^\n"),
@@ -94,9 +102,12 @@ MISTAKES = (
     ("--hardening vocal --curve forth.csv", "--hardening: one of"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --hardening", "expected one argument"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --program ./none", "./none: error: No such file"),
+    ("--criterion hill48 --r 0:1 45:1 90:1 --program /bin/true", "/bin/true: error: exit code 0, and no results"),
+    ("--criterion hill48 --r 0:1 45:1 90:1 --program /bin/false", "/bin/false: error: exit code 1, and no results"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --output no/where.dat", "no/where.dat: error: No such file"))
 FILES = {
     "bad_key.txt": "r 0 1.5\n  rr 0 1.5\n", "bad_word.txt": "r 0 one\n", "empty.txt": "# nothing\n", "alloy.txt": ALLOY,
+    "two_bad.txt": "r 0 one\nr 45 1\nr 90 -1\n", "many_bad.txt": 25 * "r 0 one\n",
     "percent.csv": "strain;stress\n1,150\n5,200\n", "pascal.csv": "0.01 2e8\n", 
     "small.csv": "0 .1\n.1 .2\n.2 .3\n.3 0.4\n",
     "decimal.csv": "0,01;200,5\n", "back.csv": "0,100\n0.02,200\n0.01,300\n0.3,200\n",
@@ -166,8 +177,12 @@ def check_steel(trial):
         trial.near(name, found, wanted, 3e-5)
         trial.expect(("the data determine" in text) != bool(wanted), f"{name}: notes\n{text}")
         trial.expect(rows["equibiaxial, r"][1] > 0, f"{name}: equibiaxial r\n{text}")
+        trial.expect("end of its range" not in text and " in place of " not in text, f"{name}: notes\n{text}")
     _, _, text = trial.fit("--criterion", "hill48", "--r", "0:1.79", "90:2.27", "--stress", "90:1.04")
     trial.expect("the data say nothing about N: left as in the isotropic case" in text, f"N is open:\n{text}")
+    _, _, text = trial.fit("--criterion", "hill48", "--r", "0:.01", "45:19", "90:.01")
+    trial.expect("N is at the end of its range" in text, f"no note of N:\n{text}")
+    trial.expect("tension 0, stress is 1.39" in text, f"no note of the stress:\n{text}")
 
 
 def measure(trial, name, law):
@@ -259,7 +274,17 @@ def check_reversal(trial):
     found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
                                   "--criterion", "hill48", *STEEL, "--plot", "found.png")
     trial.near("reversal", found, of_law(REVERSAL), 2e-3)
+    trial.expect("Note" not in text, f"reversal: notes\n{text}")
     trial.expect(Path("found.png").exists() and Path("found.png").stat().st_size > 1e4, "no picture")
+
+
+def check_few_rows(trial):
+    """Notes where a curve has fewer rows than there are parameters, and where it is missed."""
+    write_curve([(0.01, 200), (0.05, 250), (0.1, 280), (0.09, -100), (0.05, -250), (0, -290)])
+    _, _, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "lemaitre_chaboche", "--curve",
+                           "curve.csv")
+    trial.expect(re.search(r"the data determine \d of 7 parameters", text), f"few rows: {text}")
+    trial.expect(re.search(r"the curve is missed by \d\.\d % of its largest stress", text), f"missed: {text}")
 
 
 def check_mistakes(trial):
@@ -279,7 +304,8 @@ def main():
         os.chdir(folder)
         for name, text in FILES.items():
             Path(name).write_text(text, encoding="utf-8")
-        for check in (check_mistakes, check_steel, check_true, check_hardening, check_reversal, check_alloy):
+        for check in (check_mistakes, check_steel, check_true, check_hardening, check_reversal, check_few_rows,
+                      check_alloy):
             try:
                 check(trial)
             except Problem as problem:
