@@ -7,9 +7,8 @@ module dd3_mesh_blank
   private
   public :: new_blank_mesh
 
-  !> Node order of a hexahedron as steps along x, y and z from its first corner, in units of half
-  !> an element for the
-  !> quadratic ones and of a whole one for hex8 (order of VTK).
+  !> Nodes of a hexahedron in the order of VTK, as steps of an element along x, y and z from its
+  !> first corner.
   integer, parameter :: hex8_step(3, 8) = reshape([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, &
                                                    0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8])
 

@@ -26,7 +26,7 @@ module dd3_mesh_mesh
     integer, allocatable :: connectivity(:, :)
     !> Position in `case%material` of each element.
     integer, allocatable :: material(:)
-    !> Sheet thickness, mm: the smallest extent of a structured blank along z.
+    !> Sheet thickness, mm: the length of a structured blank along z.
     real(wp) :: thickness = 0.0_wp
     !> Node sets: those of the blank, then those of the input file in its order.
     type(mesh_set_t), allocatable :: set(:)
