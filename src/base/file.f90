@@ -10,7 +10,7 @@ module dd3_base_file
   use dd3_base_clock, only : wall_time
   implicit none
   private
-  public :: file_t, make_directory, remove_file, system_message, standard_output
+  public :: file_t, make_directory, remove_file, standard_output
 
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
@@ -60,62 +60,82 @@ module dd3_base_file
     !> creat(2).
     integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
       import :: c_char, c_int
+      !> Name of the file, ended by a null.
       character(kind=c_char), intent(in) :: path(*)
+      !> Permissions.
       integer(c_int), value :: mode
     end function posix_creat
     !> write(2).
     integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
       import :: c_char, c_int, c_size_t
+      !> Descriptor of the file.
       integer(c_int), value :: descriptor
+      !> The characters.
       character(kind=c_char), intent(in) :: buffer(*)
+      !> How many there are.
       integer(c_size_t), value :: count
     end function posix_write
     !> ftruncate(2).
     integer(c_int) function posix_ftruncate(descriptor, length) bind(c, name="ftruncate")
       import :: c_int, c_long
+      !> Descriptor of the file.
       integer(c_int), value :: descriptor
+      !> Its new length.
       integer(c_long), value :: length
     end function posix_ftruncate
     !> lseek(2).
     integer(c_long) function posix_lseek(descriptor, offset, whence) bind(c, name="lseek")
       import :: c_int, c_long
+      !> Descriptor of the file; what the offset counts from.
       integer(c_int), value :: descriptor, whence
+      !> The offset.
       integer(c_long), value :: offset
     end function posix_lseek
     !> close(2).
     integer(c_int) function posix_close(descriptor) bind(c, name="close")
       import :: c_int
+      !> Descriptor of the file.
       integer(c_int), value :: descriptor
     end function posix_close
     !> fallocate(2).
     integer(c_int) function linux_fallocate(descriptor, mode, offset, length) &
       bind(c, name="fallocate")
       import :: c_int, c_long
+      !> Descriptor of the file; how room is reserved.
       integer(c_int), value :: descriptor, mode
+      !> Where the room begins, and its length.
       integer(c_long), value :: offset, length
     end function linux_fallocate
     !> getrlimit(2).
     integer(c_int) function posix_getrlimit(resource, limits) bind(c, name="getrlimit")
       import :: c_int, c_long
+      !> What is limited.
       integer(c_int), value :: resource
+      !> The limit that holds, and the largest it may be raised to.
       integer(c_long), intent(out) :: limits(2)
     end function posix_getrlimit
     !> mkdir(2).
     integer(c_int) function posix_mkdir(path, mode) bind(c, name="mkdir")
       import :: c_char, c_int
+      !> Name of the directory, ended by a null.
       character(kind=c_char), intent(in) :: path(*)
+      !> Permissions.
       integer(c_int), value :: mode
     end function posix_mkdir
     !> unlink(2).
     integer(c_int) function posix_unlink(path) bind(c, name="unlink")
       import :: c_char, c_int
+      !> Name of the file, ended by a null.
       character(kind=c_char), intent(in) :: path(*)
     end function posix_unlink
     !> readlink(2).
     integer(c_size_t) function posix_readlink(path, buffer, size) bind(c, name="readlink")
       import :: c_char, c_int, c_size_t
+      !> Name of the link, ended by a null.
       character(kind=c_char), intent(in) :: path(*)
+      !> Receives what the link leads to.
       character(kind=c_char), intent(out) :: buffer(*)
+      !> Room in the buffer.
       integer(c_size_t), value :: size
     end function posix_readlink
     !> Address of the last error number.
@@ -125,11 +145,13 @@ module dd3_base_file
     !> strerror(3).
     type(c_ptr) function c_strerror(number) bind(c, name="strerror")
       import :: c_int, c_ptr
+      !> Number of the error.
       integer(c_int), value :: number
     end function c_strerror
     !> strlen(3).
     integer(c_size_t) function c_strlen(text) bind(c, name="strlen")
       import :: c_ptr, c_size_t
+      !> Address of the text, ended by a null.
       type(c_ptr), value :: text
     end function c_strlen
   end interface
