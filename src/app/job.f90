@@ -20,8 +20,8 @@ module dd3_app_job
   use dd3_process_run, only : run_model, run_summary_t
   implicit none
   private
-  public :: run_job, results_directory
-  public :: exit_end, exit_usage, exit_input, exit_stopped
+  public :: run_job
+  public :: exit_end, exit_usage
 
   !> Exit codes: reached the end, usage, errors in the input, stopped before the end.
   integer, parameter :: exit_end = 0, exit_usage = 1, exit_input = 2, exit_stopped = 3

@@ -1,14 +1,12 @@
 !> The kinds of numbers used everywhere.
 module dd3_base_kinds
-  use, intrinsic :: iso_fortran_env, only : real64, int32, int64
+  use, intrinsic :: iso_fortran_env, only : real64, int64
   implicit none
   private
-  public :: wp, i4, i8, pi
+  public :: wp, i8, pi
 
   !> Working precision of every real number.
   integer, parameter :: wp = real64
-  !> Integers handed to C libraries.
-  integer, parameter :: i4 = int32
   !> Long integers: clocks and hashes.
   integer, parameter :: i8 = int64
   !> Ratio of a circle's circumference to its diameter.

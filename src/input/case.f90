@@ -15,16 +15,15 @@ module dd3_input_case
   public :: tool_name_t, tool_vector_t, displace_t, load_t, until_t, history_t, output_t
   public :: set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
-  public :: point_spec_t, point_goal_t, target_values, gradient_values
+  public :: point_spec_t, point_goal_t, gradient_values
   public :: fields_ends, fields_every, fields_at, fields_increments
 
   !> How a node set is chosen.
   integer, parameter :: set_plane = 1, set_box = 2, set_nodes = 3, set_near = 4
   !> What ends a phase early.
   integer, parameter :: until_never = 0, until_displacement = 1, until_force = 2
-  !> Length of the values of a single point's goal: six strains and stresses, nine components of a
-  !> deformation gradient.
-  integer, parameter :: target_values = 6, gradient_values = 9
+  !> Number of the components of a deformation gradient.
+  integer, parameter :: gradient_values = 9
   !> When fields are written: first and last state only, every so many mm, at given travels, every
   !> so many increments.
   integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3

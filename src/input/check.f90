@@ -3,7 +3,7 @@ module dd3_input_check
   use dd3_base_error, only : as_written, error_list_t, location_t
   use dd3_base_text, only : upper_case, same_name, nearest_name, join
   use dd3_base_parameter, only : parameter_t
-  use dd3_input_block, only : block_t, entry_t, token_t, deck_t
+  use dd3_input_block, only : block_t, entry_t, deck_t
   use dd3_input_table, only : block_row_t, find_block, find_key
   use dd3_input_token, only : line_t, token_list_t, split_line
   use dd3_input_value, only : check_value, not_available

@@ -3,7 +3,6 @@
 module dd3_input_echo
   use dd3_base_kinds, only : i8
   use dd3_base_text, only : upper_case
-  use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t
   use dd3_input_case, only : case_t
   use dd3_input_table, only : block_row_t, block_table, find_block, find_key

@@ -5,8 +5,7 @@ module dd3_input_fill
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, deck_t, entry_t
   use dd3_input_case, only : case_t, blank_t, node_set_t, law_parameter_t, law_spec_t, &
-      material_spec_t, tool_spec_t, contact_t, &
-                             boundary_t, limits_t, limit_t, newton_t, history_t, &
+      material_spec_t, tool_spec_t, boundary_t, history_t, &
                              set_plane, set_box, set_nodes, set_near, fields_every, fields_at, &
                              fields_increments
   use dd3_input_fill_point, only : fill_point

@@ -4,7 +4,7 @@ module dd3_input_law
   use dd3_base_error, only : as_written, error_list_t, error_t
   use dd3_base_parameter, only : parameter_t, law_value_t, kind_text, pair_name
   use dd3_base_text, only : text_t, same_name, nearest_name, join, to_text
-  use dd3_input_case, only : law_spec_t, law_parameter_t
+  use dd3_input_case, only : law_spec_t
   use dd3_input_number, only : parse_pair, parse_real
   use dd3_input_table, only : find_key
   use dd3_input_text_file, only : read_lines, resolve_path
@@ -37,14 +37,14 @@ contains
     position = 0
     nearest = nearest_name(spec%name, known)
     if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
-    if (nearest == "") nearest = beginning_with(spec%name, known)
+    if (nearest == "") nearest = names_holding(spec%name, known)
     call errors%push_input(spec%at, "there is no "//what//" '"// &
         as_written(spec%name, spec%at)//"'"//nearest, &
         "one of: "//join(known, " "))
   end subroutine check_law_name
 
   !> The known names that hold a name, as a question; empty where there is none.
-  pure function beginning_with(name, known) result(text)
+  pure function names_holding(name, known) result(text)
     !> What was written.
     character(len=*), intent(in) :: name
     !> The names there are.
@@ -60,7 +60,7 @@ contains
       text = text//" '"//trim(known(i))//"'"
     end do
     if (text /= "") text = "; did you mean"//text//"?"
-  end function beginning_with
+  end function names_holding
 
   !> The law's parameters checked against the rows: unknown, doubled, missing, no number, out of
   !> range. Rows with the

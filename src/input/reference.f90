@@ -3,12 +3,12 @@ module dd3_input_reference
   use dd3_base_error, only : as_written, error_list_t
   use dd3_base_text, only : nearest_name, same_name, upper_case
   use dd3_base_parameter, only : parameter_t, kind_name, kind_other
-  use dd3_input_block, only : block_t, entry_t, token_t, deck_t
+  use dd3_input_block, only : block_t, token_t, deck_t
   use dd3_input_table, only : block_row_t, find_block, find_key
   use dd3_input_value, only : form_for, word_length
   implicit none
   private
-  public :: check_references, blank_sets, names_of
+  public :: check_references
 
   !> Longest name that is compared.
   integer, parameter :: name_length = 80

@@ -12,7 +12,7 @@ module dd3_input_value
   use dd3_input_token, only : line_t, token_list_t, add_token, split_line
   implicit none
   private
-  public :: check_value, describe, split_words, word_length, not_available, is_on, form_for, &
+  public :: check_value, describe, split_words, word_length, not_available, form_for, &
       range_text, check_range, is_point
 
   !> Longest word in a row's lists.
