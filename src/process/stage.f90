@@ -9,14 +9,14 @@ module dd3_process_stage
   use dd3_process_stage_warnings, only : look_along, reach
   implicit none
   private
-  public :: begin_phase, next_output_progress, phase_is_over, until_value
+  public :: begin_phase, next_output_progress, phase_is_over, until_value, progress_tolerance
 
   !> Advances of a pressed tool towards the sheet; each covers at least the smallest gap left.
   integer, parameter :: most_advances = 200
   !> A gap this small counts as touch, mm.
   real(wp), parameter :: closed = 1.0e-9_wp
-  !> Share of a phase by which an end is met.
-  real(wp), parameter :: sharp = 1.0e-9_wp
+  !> Share of a phase within which its end, or an output, is met.
+  real(wp), parameter :: progress_tolerance = 1.0e-9_wp
 
 contains
 
@@ -157,11 +157,11 @@ contains
     if (phase%length <= 0.0_wp) return
     travel = state%progress*phase%length
     if (model%output%fields_every > 0.0_wp) then
-      progress = (aint(travel/model%output%fields_every + sharp) &
-          + 1)*model%output%fields_every/phase%length
+      progress = (aint(travel/model%output%fields_every + progress_tolerance) + 1) &
+        *model%output%fields_every/phase%length
     else if (allocated(model%output%fields_at)) then
       do i = 1, size(model%output%fields_at)
-        if (model%output%fields_at(i) <= travel + sharp*phase%length) cycle
+        if (model%output%fields_at(i) <= travel + progress_tolerance*phase%length) cycle
         progress = model%output%fields_at(i)/phase%length
         exit
       end do
@@ -176,7 +176,7 @@ contains
     !> The committed state.
     type(state_t), intent(in) :: state
 
-    phase_is_over = state%progress >= 1.0_wp - sharp
+    phase_is_over = state%progress >= 1.0_wp - progress_tolerance
     if (phase%until%tool > 0) phase_is_over = phase_is_over .or. until_met(phase, state)
   end function phase_is_over
 
