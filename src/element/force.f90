@@ -15,19 +15,20 @@ contains
   subroutine element_cauchy(element, work)
     !> The element's table.
     type(element_t), intent(in) :: element
-    !> `cauchy` and `pressure` are set.
+    !> `cauchy` and `mean_stress_integral` are set.
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: s(3, 3)
     integer :: g, p
 
-    work%pressure = 0.0_wp
+    work%mean_stress_integral = 0.0_wp
     do p = 1, element%n_point
       work%cauchy(:, :, p) = global_stress(work%stress(:, p), work%rotation(:, :, p))
       g = element%group(p)
       if (g == 0) cycle
       s = work%weight(p)*work%cauchy(:, :, p)
-      work%pressure(g) = work%pressure(g) + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
+      work%mean_stress_integral(g) = work%mean_stress_integral(g) &
+        + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
     end do
   end subroutine element_cauchy
 
@@ -40,11 +41,11 @@ contains
 
     if (element%n_node == 8 .and. element%n_point == 8 .and. element%n_group == 1) then
       call add_forces(8, 8, 1, element%group, work%weight, work%cauchy, work%gradient, &
-                      work%mean_gradient, work%pressure, work%force)
+                      work%mean_gradient, work%mean_stress_integral, work%force)
     else
       call add_forces(element%n_node, element%n_point, element%n_group, element%group, &
                       work%weight, work%cauchy, work%gradient, work%mean_gradient, &
-                      work%pressure, work%force)
+                      work%mean_stress_integral, work%force)
     end if
   end subroutine element_force
 
@@ -71,7 +72,7 @@ contains
 
   !> Sums the forces over the points.
   pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, &
-                             mean_gradient, pressure, force)
+                             mean_gradient, mean_stress_integral, force)
     !> Sizes.
     integer, intent(in) :: n_node, n_point, n_group
     !> Group of each point.
@@ -83,7 +84,7 @@ contains
     !> Gradients and their means, 1/mm.
     real(wp), intent(in) :: gradient(n_node, 3, n_point), mean_gradient(n_node, 3, n_group)
     !> Volume integral of the mean stress of each group, N mm.
-    real(wp), intent(in) :: pressure(n_group)
+    real(wp), intent(in) :: mean_stress_integral(n_group)
     !> Forces, N.
     real(wp), intent(out) :: force(3, n_node)
 
@@ -105,7 +106,7 @@ contains
       end do
     end do
     do g = 1, n_group
-      by_node = by_node + pressure(g)*mean_gradient(:, :, g)
+      by_node = by_node + mean_stress_integral(g)*mean_gradient(:, :, g)
     end do
     force = transpose(by_node)
   end subroutine add_forces

@@ -32,9 +32,9 @@ contains
     if (verdict%outcome /= verdict_converged) return
     associate (n => element%n_node, m => element%n_point)
       if (n == 8 .and. m == 8) then
-        call add_jacobians(24, 8, element%slope, x_old, work%jacobian_old)
+        call jacobians(24, 8, element%slope, x_old, work%jacobian_old)
       else
-        call add_jacobians(3*m, n, element%slope, x_old, work%jacobian_old)
+        call jacobians(3*m, n, element%slope, x_old, work%jacobian_old)
       end if
       call deform(m, element%weight, work%jacobian_old, work%jacobian, work%deformation, &
                   work%weight_old, bad_point)
@@ -62,13 +62,13 @@ contains
     associate (n => element%n_node, m => element%n_point, g => element%n_group)
       ! Constant sizes let the compiler make a copy of each kernel for the commonest element.
       if (n == 8 .and. m == 8 .and. g == 1) then
-        call add_jacobians(24, 8, element%slope, x, work%jacobian)
+        call jacobians(24, 8, element%slope, x, work%jacobian)
         call invert(8, 8, element%slope_row, element%weight, work%jacobian, work%gradient, &
                     work%weight, bad_point)
         if (bad_point == 0) call average(24, 8, 1, element%group, work%weight, work%gradient, &
                                          work%mean_gradient, work%volume)
       else
-        call add_jacobians(3*m, n, element%slope, x, work%jacobian)
+        call jacobians(3*m, n, element%slope, x, work%jacobian)
         call invert(n, m, element%slope_row, element%weight, work%jacobian, work%gradient, &
                     work%weight, bad_point)
         if (bad_point == 0) call average(3*n, m, g, element%group, work%weight, work%gradient, &
@@ -92,7 +92,7 @@ contains
   end subroutine blame
 
   !> dx/dxi at all points: `jacobian(q,i)` with q running over natural direction and point.
-  pure subroutine add_jacobians(n_slope, n_node, slope, x, jacobian)
+  pure subroutine jacobians(n_slope, n_node, slope, x, jacobian)
     !> Three times the number of points, number of nodes.
     integer, intent(in) :: n_slope, n_node
     !> Derivatives of the shape functions.
@@ -114,7 +114,7 @@ contains
         jacobian(q, i) = total
       end do
     end do
-  end subroutine add_jacobians
+  end subroutine jacobians
 
   !> G_a = (dN_a/dxi)(dxi/dx) and w j at all points.
   pure subroutine invert(n_node, n_point, slope, weight, jacobian, gradient, volume_weight, &

@@ -11,7 +11,7 @@ module dd3_element_rate
 
 contains
 
-  !> Strain rates in the material frame, with the mean dilatation, and rotations, after
+  !> Strain increments in the material frame, with the mean dilatation, and rotations, after
   !> `element_gradients`.
   subroutine element_rate(element, du, rotation, work)
     !> The element's table.
@@ -20,7 +20,7 @@ contains
     real(wp), intent(in) :: du(3, element%n_node)
     !> Material axes as columns: `rotation(3,3,n_point)`.
     real(wp), intent(in) :: rotation(3, 3, element%n_point)
-    !> `rate` and `spin` are set.
+    !> `strain_increment` and `rotation_increment` are set.
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: l(3, 3), q(3, 3), own
@@ -29,7 +29,8 @@ contains
     do p = 1, element%n_point
       g = element%group(p)
       l = displacement_gradient(element%n_node, du, work%gradient(:, :, p))
-      work%spin(p) = 0.5_wp*norm2([l(3, 2) - l(2, 3), l(1, 3) - l(3, 1), l(2, 1) - l(1, 2)])
+      work%rotation_increment(p) = 0.5_wp*norm2([l(3, 2) - l(2, 3), l(1, 3) - l(3, 1), &
+                                                 l(2, 1) - l(1, 2)])
       l = 0.5_wp*(l + transpose(l))
       if (g > 0) then
         own = l(1, 1) + l(2, 2) + l(3, 3)
@@ -39,7 +40,7 @@ contains
         end do
       end if
       q = rotation(:, :, p)
-      work%rate(:, p) = kelvin_from_tensor(matmul(transpose(q), matmul(l, q)))
+      work%strain_increment(:, p) = kelvin_from_tensor(matmul(transpose(q), matmul(l, q)))
     end do
   end subroutine element_rate
 

@@ -22,8 +22,9 @@ module dd3_element_stiffness
 
   !> Position of a tensor's component in a Kelvin vector.
   integer, parameter :: place(3, 3) = reshape([1, 6, 5, 6, 2, 4, 5, 4, 3], [3, 3])
-  !> Factor from a Kelvin vector's component to the tensor's.
+  !> Factor from a shear component of a Kelvin vector to the tensor's.
   real(wp), parameter :: half_root = sqrt(0.5_wp)
+  !> The factors of all six components.
   real(wp), parameter :: unit(6) = [1.0_wp, 1.0_wp, 1.0_wp, half_root, half_root, half_root]
 
 contains
@@ -65,7 +66,7 @@ contains
 
     work%row_factor = 0.0_wp
     work%column_factor = 0.0_wp
-    work%curvature = 0.0_wp
+    work%bulk_integral = 0.0_wp
     do p = 1, n_point
       call point_moduli(work%strain(:, p), work%stress(:, p), work%tangent(:, :, p), &
                         work%rotation(:, :, p), c)
@@ -74,7 +75,8 @@ contains
       if (g > 0) then
         mean = (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
         call split_volume(c, row, column)
-        work%curvature(g) = work%curvature(g) + work%weight(p)*(row(1) + row(2) + row(3))/3.0_wp
+        work%bulk_integral(g) = work%bulk_integral(g) &
+          + work%weight(p)*(row(1) + row(2) + row(3))/3.0_wp
         column(1:3) = column(1:3) + mean
         row(1:3) = row(1:3) - (row(1) + row(2) + row(3))/3.0_wp
         call add_factor(n_node, work%weight(p), row, work%gradient(:, :, p), &
@@ -82,7 +84,7 @@ contains
         call add_factor(n_node, work%weight(p), column, work%gradient(:, :, p), &
                         work%column_factor(:, :, g))
         do i = 1, 3
-          s(i, i) = s(i, i) - mean + work%pressure(g)/work%volume(g)
+          s(i, i) = s(i, i) - mean + work%mean_stress_integral(g)/work%volume(g)
         end do
       end if
       call point_operator(work%weight(p), c, s, operator)
@@ -91,7 +93,7 @@ contains
     do g = 1, n_group
       do i = 1, 3
         work%column_factor(:, i, g) = work%column_factor(:, i, g) &
-          + (work%curvature(g) - work%pressure(g))*work%mean_gradient(:, i, g)
+          + (work%bulk_integral(g) - work%mean_stress_integral(g))*work%mean_gradient(:, i, g)
       end do
     end do
   end subroutine contract_points
@@ -146,7 +148,7 @@ contains
     real(wp), intent(in) :: weight
     !> Moduli, Kelvin, global frame.
     real(wp), intent(in) :: c(6, 6)
-    !> s-hat, MPa.
+    !> S, MPa.
     real(wp), intent(in) :: s(3, 3)
     !> The operator.
     real(wp), intent(out) :: operator(3, 3, 3, 3)

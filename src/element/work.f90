@@ -38,11 +38,12 @@ module dd3_element_work
     !> d force/d displacement, N/mm: `stiffness(3,3,n_node,n_node)`; the 3x3 block of row node a and
     !> column node b is `stiffness(:,:,b,a)`.
     real(wp), allocatable :: stiffness(:, :, :, :)
-    !> Strain rate of a trial displacement, with the mean dilatation, Kelvin, material frame:
-    !> `rate(6,n_point)`.
-    real(wp), allocatable :: rate(:, :)
-    !> Rotation of a trial displacement, length of the axial vector, rad: `spin(n_point)`.
-    real(wp), allocatable :: spin(:)
+    !> Strain increment of a trial displacement, to first order, with the mean dilatation, Kelvin,
+    !> material frame: `strain_increment(6,n_point)`.
+    real(wp), allocatable :: strain_increment(:, :)
+    !> Rotation increment of a trial displacement, length of the axial vector, rad:
+    !> `rotation_increment(n_point)`.
+    real(wp), allocatable :: rotation_increment(:)
     !> Cauchy stress, MPa, tensor in the global frame: `cauchy(3,3,n_point)`.
     real(wp), allocatable :: cauchy(:, :, :)
     !> Inner: dx/dxi of both configurations, `jacobian(3,n_point,3)`; the last index is the
@@ -51,11 +52,11 @@ module dd3_element_work
     !> Inner: tangent contracted with the column node's gradient, `half(3,3,n_node,3,n_point)`.
     real(wp), allocatable :: half(:, :, :, :, :)
     !> Inner: factors of the groups' outer products, N/mm2: `row_factor(n_node,3,n_group)`,
-    !> `column_factor` alike, and the group's volume integral of the mean stress, N mm:
-    !> `pressure(n_group)`.
-    real(wp), allocatable :: row_factor(:, :, :), column_factor(:, :, :), pressure(:)
-    !> Inner: volume integral of the moduli's trace over 9, N mm: `curvature(n_group)`.
-    real(wp), allocatable :: curvature(:)
+    !> `column_factor` alike.
+    real(wp), allocatable :: row_factor(:, :, :), column_factor(:, :, :)
+    !> Inner: volume integrals of each group, N mm: of the mean stress, and of a ninth of the
+    !> moduli's trace, `(n_group)`.
+    real(wp), allocatable :: mean_stress_integral(:), bulk_integral(:)
   end type element_work_t
 
 contains
@@ -76,11 +77,12 @@ contains
     allocate (self%weight(p), self%weight_old(p), self%volume(g), self%volume_old(g))
     allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))
     allocate (self%rotation(3, 3, p), self%stress(6, p), self%tangent(6, 6, p))
-    allocate (self%force(3, n), self%stiffness(3, 3, n, n), self%rate(6, p), self%spin(p))
+    allocate (self%force(3, n), self%stiffness(3, 3, n, n))
+    allocate (self%strain_increment(6, p), self%rotation_increment(p))
     allocate (self%jacobian(3, p, 3), self%jacobian_old(3, p, 3), self%cauchy(3, 3, p))
     allocate (self%half(3, 3, n, 3, p))
-    allocate (self%row_factor(n, 3, g), self%column_factor(n, 3, g), self%pressure(g), &
-              self%curvature(g))
+    allocate (self%row_factor(n, 3, g), self%column_factor(n, 3, g))
+    allocate (self%mean_stress_integral(g), self%bulk_integral(g))
   end subroutine new_element_work
 
 end module dd3_element_work

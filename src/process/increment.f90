@@ -2,7 +2,7 @@
 !> state with a smaller r.
 module dd3_process_increment
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -10,6 +10,7 @@ module dd3_process_increment
   use dd3_process_corrector, only : clear_correction, correct, correction_t
   use dd3_process_limiters, only : limit_increment, limit_t
   use dd3_process_predictor, only : new_prediction, predict, prediction_t
+  use dd3_process_stage, only : progress_tolerance
   use dd3_system_solve, only : solve_info_t
   use dd3_system_system, only : system_t
   implicit none
@@ -95,13 +96,13 @@ contains
     call state_copy(committed, trial)
     associate (prediction => self%prediction, r => self%limit%r)
       progress = committed%progress + r*prediction%progress
-      if (abs(1.0_wp - progress) < 1.0e-9_wp) progress = 1.0_wp
+      if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
       trial%lambda = committed%lambda + r*prediction%lambda
-      trial%tool_displacement = committed%tool_displacement + r*prediction%tool
+      trial%tool_displacement = committed%tool_displacement + r*prediction%tool_displacement
       trial%load = phase%load_start + progress*(phase%load_end - phase%load_start)
       trial%fading = (1.0_wp - progress)*phase%fading
       call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &

@@ -276,8 +276,8 @@ contains
       if (tool == 0 .or. contact%status(c) /= status_gap) cycle
       if (.not. phase%active(tool)) cycle
       node = model%contact_node(c)
-      approach = dot_product(prediction%tool(:, tool) - prediction%displacement(:, node), &
-          contact%normal(:, c))
+      approach = dot_product(prediction%tool_displacement(:, tool) &
+          - prediction%displacement(:, node), contact%normal(:, c))
       if (approach <= 0.0_wp) cycle
       depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
       r = (max(contact%distance(c), 0.0_wp) + depth)/approach
@@ -310,7 +310,7 @@ contains
     limit%name = "until"
     line = phase%direction(:, tool)
     if (phase%until%kind == until_displacement) then
-      rate = dot_product(line, prediction%tool(:, tool))
+      rate = dot_product(line, prediction%tool_displacement(:, tool))
     else
       rate = 0.0_wp
       do c = 1, model%n_contact

@@ -7,6 +7,7 @@ module dd3_process_predictor
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
   use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_rate, only : element_rate
   use dd3_model_loads, only : nodal_forces
@@ -31,7 +32,7 @@ module dd3_process_predictor
     !> Increment of the contact forces, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
     !> Displacement of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool(:, :)
+    real(wp), allocatable :: tool_displacement(:, :)
     !> Strain increment, Kelvin, material frame, `(6, n_point, n_element)`.
     real(wp), allocatable :: strain(:, :, :)
     !> Rotation increment, rad, `(n_point, n_element)`.
@@ -57,7 +58,8 @@ contains
 
     n_point = model%element%n_point
     allocate (self%displacement(3, model%n_node), self%lambda(3, model%n_contact), source=0.0_wp)
-    allocate (self%tool(3, model%n_tool), self%strain(6, n_point, model%n_element), source=0.0_wp)
+    allocate (self%tool_displacement(3, model%n_tool), source=0.0_wp)
+    allocate (self%strain(6, n_point, model%n_element), source=0.0_wp)
     allocate (self%rotation(n_point, model%n_element), source=0.0_wp)
     allocate (self%plastic(n_point, model%n_element), source=.false.)
   end subroutine new_prediction
@@ -103,7 +105,7 @@ contains
     end do
     call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
         self%lambda)
-    where (spread(system%contact%status == 0, 1, 3)) self%lambda = 0.0_wp
+    where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
     call tool_increments(self, system, model, phase)
   end subroutine predict
 
@@ -178,8 +180,8 @@ contains
             e), &
                           system%element(1))
       end associate
-      self%strain(:, :, e) = system%element(1)%rate
-      self%rotation(:, e) = system%element(1)%spin
+      self%strain(:, :, e) = system%element(1)%strain_increment
+      self%rotation(:, e) = system%element(1)%rotation_increment
     end do
   end subroutine point_increments
 
@@ -226,10 +228,10 @@ contains
     integer :: tool, block
 
     do tool = 1, model%n_tool
-      self%tool(:, tool) = self%progress*phase%move(:, tool)
+      self%tool_displacement(:, tool) = self%progress*phase%move(:, tool)
       if (.not. phase%pressed(tool)) cycle
       block = model%tool_block(tool)
-      self%tool(:, tool) = system%problem%solution(3*block - 2:3*block)
+      self%tool_displacement(:, tool) = system%problem%solution(3*block - 2:3*block)
     end do
   end subroutine tool_increments
 
