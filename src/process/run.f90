@@ -5,7 +5,7 @@ module dd3_process_run
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_input_case, only : solver_t
   use dd3_linalg_solver, only : solver_options_t
@@ -19,9 +19,8 @@ module dd3_process_run
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_status, only : status_record_t, status_row_t
   use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
-      shrink_increment, stepper_t, &
-                                    try_increment
-  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
+      shrink_increment, stepper_t, try_increment
+  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over, progress_tolerance
   use dd3_process_stage_warnings, only : press_warning, release_warning, support_warning
   use dd3_system_system, only : new_system
   implicit none
@@ -241,14 +240,14 @@ contains
     call prepare_increment(run%stepper, model, phase, run%committed, next_output, verdict)
     predicted = verdict%outcome == verdict_converged
     do
-      if (predicted) call try_increment(run%stepper, model, phase, run%committed, run%trial, &
-          verdict)
+      if (predicted) &
+        call try_increment(run%stepper, model, phase, run%committed, run%trial, verdict)
       row = status_row(run, model, phase, verdict)
       row%seconds = wall_time() - began
       began = wall_time()
       again = .false.
-      if (predicted .and. verdict%outcome /= verdict_converged) call shrink_increment(run%stepper, &
-          phase, again)
+      if (predicted .and. verdict%outcome == verdict_retry) &
+        call shrink_increment(run%stepper, phase, again)
       if (verdict%outcome == verdict_converged) then
         row%outcome = "accepted"
         row%reason = run%stepper%info%reason
@@ -302,13 +301,12 @@ contains
       row%stick = count(stepper%system%contact%status == status_stick)
       row%slip = count(stepper%system%contact%status == status_slip)
       if (stepper%correction%worst_node > 0) then
-        row%worst = "node "//to_text(stepper%correction%worst_node)//" residual "// &
-                    to_text(stepper%correction%worst_residual, 3)//" N"
+        row%worst = "node "//to_text(stepper%correction%worst_node)//" residual " &
+          //to_text(stepper%correction%worst_residual, 3)//" N"
       end if
-      if (verdict%element > 0) row%worst = "element "//to_text(verdict%element)//" point " &
-          //to_text(verdict%point)
+      if (verdict%element > 0) &
+        row%worst = "element "//to_text(verdict%element)//" point "//to_text(verdict%point)
     end associate
-    if (size(model%tool) == 0) row%gap = 0
   end function status_row
 
   !> What the user is told when an increment fails: where, and why.
@@ -324,18 +322,17 @@ contains
     character(len=:), allocatable :: message
 
     message = "increment "//to_text(run%committed%increment + 1)//" of phase '"//phase%name &
-        //"' (travel " &
-              //to_text(run%committed%travel)//" mm) did not converge"
-    if (run%stepper%attempt > 1) message = message//" in "//to_text(run%stepper%attempt) &
-        //" attempts"
+      //"' (travel "//to_text(run%committed%travel)//" mm) did not converge"
+    if (run%stepper%attempt > 1) &
+      message = message//" in "//to_text(run%stepper%attempt)//" attempts"
     message = message//": "//trim(verdict%reason)
     if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
-                                       //" point "//to_text(verdict%point)
-    if (verdict%node > 0) message = message//", node "//to_text(verdict%node)//" at " &
-      //to_text(run%committed%x(1, verdict%node), 5)//" "//to_text(run%committed%x(2, &
-      verdict%node), 5) &
-      //" "//to_text(run%committed%x(3, verdict%node), 5)
-    if (verdict%node > 0) message = message//tool_text(run, model, verdict%node)
+      //" point "//to_text(verdict%point)
+    if (verdict%node == 0) return
+    associate (x => run%committed%x(:, verdict%node))
+      message = message//", node "//to_text(verdict%node)//" at "//to_text(x(1), 5)//" " &
+        //to_text(x(2), 5)//" "//to_text(x(3), 5)//tool_text(run, model, verdict%node)
+    end associate
   end function failure_message
 
   !> The tool a node touches, as a piece of a message.
@@ -379,7 +376,7 @@ contains
     associate (state => run%committed)
       call run%history%write(model, state, error)
       if (allocated(error)) return
-      due = state%progress >= next_output - 1.0e-9_wp
+      due = state%progress >= next_output - progress_tolerance
       if (model%output%fields_increments > 0) &
         due = due .or. mod(state%increment, model%output%fields_increments) == 0
       if (due) call run%fields%write(model, state, error)
@@ -391,9 +388,8 @@ contains
       view%r = run%stepper%limit%r
       view%limiter = run%stepper%limit%name
       view%iterations = size(run%stepper%correction%criterion)
-      if (phase%control > 0) &
-        view%force = -dot_product(phase%direction(:, phase%control), state%tool_force(:, &
-        phase%control))
+      if (phase%control > 0) view%force = &
+        -dot_product(phase%direction(:, phase%control), state%tool_force(:, phase%control))
       call run%progress%update(log, view)
     end associate
     call run%stepper%system%profile%add(section_output)
