@@ -29,10 +29,8 @@ module dd3_process_corrector
   !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
   !> holds round-off alone.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
-  !> How the list of nodes whose status did not settle begins.
-  character(len=*), parameter :: changing_status = "contact status changes at "
   !> Status patterns remembered to see a cycle.
-  integer, parameter :: memory = 4
+  integer, parameter :: memory = 3
 
   !> What the corrector leaves behind for the records.
   type :: correction_t
@@ -45,7 +43,7 @@ module dd3_process_corrector
     !> See above.
     real(wp) :: worst_residual = 0.0_wp
     !> Increment of the contact forces in the last iteration, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda(:, :)
+    real(wp), allocatable :: lambda_increment(:, :)
   end type correction_t
 
 contains
@@ -73,13 +71,15 @@ contains
 
     call clear_correction(correction, model)
     call iterate(system, model, phase, old, new, info, correction, verdict)
-    if (verdict%outcome == verdict_converged .or. len_trim(verdict%reason) == 0) return
-    if (index(verdict%reason, changing_status) > 0) return
+    if (verdict%outcome == verdict_converged) return
+    if (len_trim(verdict%reason) == 0) call explain(system, model, phase, new, correction, verdict)
     changes = status_changes(model, correction, len(verdict%reason) - len_trim(verdict%reason) - 2)
-    if (len(changes) > 0) verdict%reason = trim(verdict%reason)//"; "//changes
+    if (len(changes) == 0) return
+    if (len_trim(verdict%reason) > 0) changes = trim(verdict%reason)//"; "//changes
+    verdict%reason = changes
   end subroutine correct
 
-  !> The iterations of the corrector.
+  !> The iterations of the corrector; where they come to their end, the reason stays empty.
   subroutine iterate(system, model, phase, old, new, info, correction, verdict)
     !> Matrices and solver.
     type(system_t), intent(inout) :: system
@@ -107,15 +107,12 @@ contains
       verdict%iterations = j
       call evaluate(system, model, phase, old, new, j, verdict)
       if (verdict%outcome /= verdict_converged) return
+      correction%status(:, 2:) = correction%status(:, :memory - 1)
       call judge(system, model, phase, new, j, correction, verdict)
       if (verdict%outcome /= verdict_converged .and. j > 1 &
           .and. verdict%norm < settled*phase%newton%tolerance) then
         call balance_tools(system, model, phase, old, new, moved)
-        if (moved) then
-          correction%criterion = correction%criterion(:j - 1)
-          correction%status(:, :memory - 1) = correction%status(:, 2:)
-          call judge(system, model, phase, new, j, correction, verdict)
-        end if
+        if (moved) call judge(system, model, phase, new, j, correction, verdict)
       end if
       if (verdict%outcome == verdict_converged) then
         new%lambda = system%contact%force
@@ -133,11 +130,10 @@ contains
     end do
     verdict%outcome = verdict_retry
     verdict%norm = correction%criterion(phase%newton%iterations)
-    call explain(system, model, phase, new, correction, verdict)
   end subroutine iterate
 
-  !> Says what did not converge: contact that finds no status, a tool that presses on nothing, a
-  !> tool's force, or the residual of a node.
+  !> Says what did not converge in the last iteration: a tool that presses on nothing, a tool's
+  !> force, or the residual of a node; nothing where there are nodes that find no status.
   subroutine explain(system, model, phase, new, correction, verdict)
     !> The evaluated system.
     type(system_t), intent(in) :: system
@@ -161,8 +157,7 @@ contains
       return
     end if
     verdict%node = correction%worst_node
-    verdict%reason = status_changes(model, correction, len(verdict%reason))
-    if (len_trim(verdict%reason) > 0) return
+    if (any(unsettled(correction%status))) return
     reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
              //to_text(correction%worst_node)
     if (verdict%norm < phase%newton%tolerance) then
@@ -184,9 +179,10 @@ contains
     if (allocated(correction%criterion)) deallocate (correction%criterion)
     allocate (correction%criterion(0))
     if (.not. allocated(correction%status)) allocate (correction%status(model%n_contact, memory))
-    if (.not. allocated(correction%lambda)) allocate (correction%lambda(3, model%n_contact))
+    if (.not. allocated(correction%lambda_increment)) &
+      allocate (correction%lambda_increment(3, model%n_contact))
     correction%status = -1
-    correction%lambda = 0.0_wp
+    correction%lambda_increment = 0.0_wp
     correction%worst_node = 0
     correction%worst_residual = 0.0_wp
   end subroutine clear_correction
@@ -256,9 +252,8 @@ contains
       scale = max(norm2(new%lambda), norm2(new%internal_force), &
           negligible_strain*material%laws%elasticity%shear*model%thickness**2)
     end associate
-    correction%criterion = [correction%criterion, (norm2(correction%lambda) &
-        + sqrt(sum_of_squares))/scale]
-    correction%status(:, 2:) = correction%status(:, :memory - 1)
+    correction%criterion = [correction%criterion(:j - 1), &
+        (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
     correction%status(:, 1) = system%contact%status
     verdict%norm = correction%criterion(j)
     verdict%outcome = verdict_retry
@@ -334,8 +329,8 @@ contains
     verdict%node = 0
     new%x = new%x + reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
     call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
-        correction%lambda)
-    new%lambda = new%lambda + correction%lambda
+        correction%lambda_increment)
+    new%lambda = new%lambda + correction%lambda_increment
     do tool = 1, model%n_tool
       block = model%tool_block(tool)
       if (block == 0) cycle
@@ -356,26 +351,36 @@ contains
     character(len=:), allocatable :: text
 
     character(len=5), parameter :: names(0:2) = ["gap  ", "stick", "slip "]
-    character(len=:), allocatable :: list, node
-    integer :: c, i, changing
+    character(len=:), allocatable :: node
+    integer :: c, i, listed
+    logical :: changing(model%n_contact)
 
-    changing = 0
-    list = ""
+    text = ""
+    changing = unsettled(correction%status)
+    if (.not. any(changing)) return
+    text = "contact status changes at "//to_text(count(changing))//" nodes: "
+    if (count(changing) == 1) text = "contact status changes at 1 node: "
+    listed = 0
     do c = 1, model%n_contact
-      if (correction%status(c, 2) < 0) cycle
-      if (all(correction%status(c, 2:3) == correction%status(c, 1) &
-          .or. correction%status(c, 2:3) < 0)) cycle
-      changing = changing + 1
+      if (.not. changing(c)) cycle
       node = "node "//to_text(model%contact_node(c))
-      do i = 3, 1, -1
+      do i = memory, 1, -1
         if (correction%status(c, i) >= 0) node = node//" "//trim(names(correction%status(c, i)))
       end do
-      if (changing > 1) node = "; "//node
-      if (changing > 4 .or. len(list) + len(node) > room - len(changing_status) - 12) cycle
-      list = list//node
+      if (listed > 0) node = "; "//node
+      if (listed == 4 .or. len(text) + len(node) > room) return
+      text = text//node
+      listed = listed + 1
     end do
-    text = ""
-    if (changing > 0) text = changing_status//to_text(changing)//" nodes: "//list
   end function status_changes
+
+  !> The candidates whose status did not stay the same in the iterations remembered.
+  pure function unsettled(status) result(changing)
+    !> Status in the last iterations, the newest first, `(n_contact, memory)`; -1 for none.
+    integer, intent(in) :: status(:, :)
+    logical :: changing(size(status, 1))
+
+    changing = any(status >= 0 .and. status /= spread(status(:, 1), 2, memory), dim=2)
+  end function unsettled
 
 end module dd3_process_corrector
