@@ -7,7 +7,10 @@ module dd3_material_backstress_relaxation
   use dd3_material_flow, only : flow_direction_t, back_response_t
   implicit none
   private
-  public :: relax_back_stress, relax
+  public :: longest_decay, relax, relax_back_stress
+
+  !> The function exp is given no exponent below minus this, where it would underflow.
+  real(wp), parameter :: longest_decay = 700.0_wp
 
 contains
 
@@ -17,12 +20,12 @@ contains
     real(wp), intent(in) :: rate, increment
     !> e; w, which is dp where c is zero.
     real(wp), intent(out) :: kept, weight
-    !> Largest c dp at which the series is taken, and largest exponent.
-    real(wp), parameter :: small = 1.0e-3_wp, longest = 700.0_wp
+    !> Largest c dp at which the series is taken.
+    real(wp), parameter :: small = 1.0e-3_wp
     real(wp) :: x
 
     x = rate*increment
-    kept = exp(-min(x, longest))
+    kept = exp(-min(x, longest_decay))
     if (x > small) then
       weight = (1 - kept)/rate
     else

@@ -4,6 +4,7 @@
 module dd3_material_hardening_hockett_sherby
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
+  use dd3_material_backstress_relaxation, only : longest_decay
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given, &
                                        position_of, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t
@@ -95,7 +96,7 @@ contains
     end associate
     strain = max(plastic + increment, shortest)
     power = (self%rate*strain)**self%q
-    missing = self%gain*exp(-min(power, 700.0_wp))
+    missing = self%gain*exp(-min(power, longest_decay))
     flow%value = self%saturation - missing
     flow%slope = missing*self%q*power/strain
     if (plastic + increment < shortest) then

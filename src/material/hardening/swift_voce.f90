@@ -4,6 +4,7 @@
 module dd3_material_hardening_swift_voce
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
+  use dd3_material_backstress_relaxation, only : longest_decay
   use dd3_material_description, only : description_t, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -87,7 +88,7 @@ contains
     associate (unused => old, no_direction => direction)
     end associate
     strain = plastic + increment
-    missing = self%alpha*self%gain*exp(-min(self%rate*strain, 700.0_wp))
+    missing = self%alpha*self%gain*exp(-min(self%rate*strain, longest_decay))
     power = (1 - self%alpha)*self%k*(self%e0 + strain)**self%n
     flow%value = self%alpha*(self%y0 + self%gain) - missing + power
     flow%slope = self%rate*missing + self%n*power/(self%e0 + strain)

@@ -17,7 +17,7 @@ module dd3_material_hardening_teodosiu_hu
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_linalg_tensor, only : kelvin_deviator
-  use dd3_material_backstress_relaxation, only : relax, relax_back_stress
+  use dd3_material_backstress_relaxation, only : longest_decay, relax, relax_back_stress
   use dd3_material_description, only : description_t, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -31,8 +31,6 @@ module dd3_material_hardening_teodosiu_hu
   integer, parameter :: iteration_limit = 60
   !> Strength, over its saturation, below which there is none; change that ends the iteration.
   real(wp), parameter :: nothing = 1.0e-14_wp
-  !> Largest exponent.
-  real(wp), parameter :: longest = 700.0_wp
 
   !> The law.
   type, extends(hardening_t) :: teodosiu_hu_t
@@ -159,7 +157,7 @@ contains
 
     call follow(self, old, increment, direction, structure)
     strength = root_of(structure, 1.0_wp, self%s_sat)
-    missing = self%r_sat*exp(-min(self%c_r*(plastic + increment), longest))
+    missing = self%r_sat*exp(-min(self%c_r*(plastic + increment), longest_decay))
     flow%value = self%y0 + self%r_sat - missing + self%f*strength%value
     flow%slope = self%c_r*missing + self%f*strength%slope
     flow%gradient = self%f*gradient_of(strength, structure, direction)
@@ -254,7 +252,7 @@ contains
     start%slope = 0.0_wp
     start%by_v = 0.0_wp
     structure%old_directed = start%value
-    structure%decay = exp(-min(self%c_p*increment, longest))
+    structure%decay = exp(-min(self%c_p*increment, longest_decay))
     polarity%value = 1 - (1 - dot_product(old(1:6), structure%n))*structure%decay
     polarity%slope = self%c_p*(1 - polarity%value)
     polarity%by_n = structure%decay*old(1:6)
@@ -347,7 +345,7 @@ contains
     if (self%n_l > 0.0_wp) then
       structure%kept = (1 + self%n_l*self%c_sl*increment*length**self%n_l)**(-1/self%n_l)
     else
-      structure%kept = exp(-min(self%c_sl*increment, longest))
+      structure%kept = exp(-min(self%c_sl*increment, longest_decay))
     end if
     structure%latent%value = structure%kept**2*before
     structure%latent%slope = -2*self%c_sl*(structure%kept*length)**self%n_l*structure%latent%value

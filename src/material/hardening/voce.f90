@@ -2,6 +2,7 @@
 module dd3_material_hardening_voce
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
+  use dd3_material_backstress_relaxation, only : longest_decay
   use dd3_material_description, only : description_t, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -70,7 +71,7 @@ contains
 
     associate (unused => old, no_direction => direction)
     end associate
-    missing = self%gain*exp(-min(self%rate*(plastic + increment), 700.0_wp))
+    missing = self%gain*exp(-min(self%rate*(plastic + increment), longest_decay))
     flow%value = self%y0 + self%gain - missing
     flow%slope = self%rate*missing
     flow%gradient = 0.0_wp
