@@ -3,9 +3,10 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_contact_operator, only : status_gap, status_slip, status_stick
   implicit none
   private
-  public :: state_t, new_state, state_copy
+  public :: state_t, new_state, state_copy, status_gap, status_stick, status_slip
 
   !> The state of a job at one configuration.
   type :: state_t
@@ -40,7 +41,7 @@ module dd3_model_state
     logical, allocatable :: plastic(:, :)
     !> Contact forces of the candidate nodes (the sheet's push on the tool), `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
-    !> Contact status, `(n_contact)`: one of the `status_*` values of the contact operators.
+    !> Contact status, `(n_contact)`: one of the `status_*` values.
     integer, allocatable :: status(:)
     !> Tool each candidate belongs to at present, `(n_contact)`; 0 for none.
     integer, allocatable :: contact_tool(:)

@@ -5,14 +5,12 @@ module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_model_model, only : model_t
-  use dd3_model_state, only : state_t
+  use dd3_model_state, only : state_t, status_gap
   use dd3_output_csv, only : table_t
   implicit none
   private
   public :: history_record_t
 
-  !> The status of a node without contact.
-  integer, parameter :: no_contact = 0
   !> Endings of the columns along the axes.
   character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
@@ -136,7 +134,7 @@ contains
     do i = 1, model%n_tool
       call table%add_reals(state%tool_displacement(:, i))
       call table%add_reals(state%tool_force(:, i))
-      call table%add_integer(count(state%contact_tool == i .and. state%status /= no_contact))
+      call table%add_integer(count(state%contact_tool == i .and. state%status /= status_gap))
     end do
     if (.not. allocated(model%history)) return
     do i = 1, size(model%history)
