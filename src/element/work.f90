@@ -8,6 +8,9 @@ module dd3_element_work
 
   !> Everything computed for one element. Kelvin vectors at points are in the material frame.
   type :: element_work_t
+    !> Positions of the nodes at the start of the increment and now, mm, set by the caller:
+    !> `x_old(3,n_node)`, `x_new(3,n_node)`.
+    real(wp), allocatable :: x_old(:, :), x_new(:, :)
     !> Gradients of the shape functions at the current configuration, 1/mm:
     !> `gradient(n_node,3,n_point)`.
     real(wp), allocatable :: gradient(:, :, :)
@@ -73,6 +76,7 @@ contains
     n = element%n_node
     p = element%n_point
     g = element%n_group
+    allocate (self%x_old(3, n), self%x_new(3, n))
     allocate (self%gradient(n, 3, p), self%mean_gradient(n, 3, g))
     allocate (self%weight(p), self%weight_old(p), self%volume(g), self%volume_old(g))
     allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))

@@ -15,7 +15,7 @@ module dd3_process_predictor
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_system_contact, only : predictor_contact
-  use dd3_system_internal, only : assemble_predictor_stiffness
+  use dd3_system_internal, only : assemble_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced, solve_info_t
   use dd3_system_system, only : system_t
@@ -93,7 +93,7 @@ contains
     do switch = 0, most_switches
       call continuum_tangents(self, system, model, state)
       call system%profile%add(section_material)
-      call assemble_predictor_stiffness(system, model, state)
+      call assemble_stiffness(system, model, state)
       call system%profile%add(section_assembly)
       call solve_reduced(system, model, phase, info, verdict)
       if (verdict%outcome /= verdict_converged) return
@@ -174,14 +174,14 @@ contains
     integer :: e
 
     do e = 1, model%n_element
-      associate (nodes => model%connectivity(:, e))
-        call element_gradients(model%element, state%x(:, nodes), system%element(1), verdict)
-        call element_rate(model%element, self%displacement(:, nodes), state%orientation(:, :, :, &
-            e), &
-                          system%element(1))
+      associate (nodes => model%connectivity(:, e), work => system%element(1))
+        work%x_old(:, :) = state%x(:, nodes)
+        call element_gradients(model%element, work%x_old, work, verdict)
+        call element_rate(model%element, self%displacement(:, nodes), &
+                          state%orientation(:, :, :, e), work)
+        self%strain(:, :, e) = work%strain_increment
+        self%rotation(:, e) = work%rotation_increment
       end associate
-      self%strain(:, :, e) = system%element(1)%strain_increment
-      self%rotation(:, e) = system%element(1)%rotation_increment
     end do
   end subroutine point_increments
 

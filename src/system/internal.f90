@@ -19,7 +19,7 @@ module dd3_system_internal
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: update_material, assemble_stiffness, assemble_predictor_stiffness
+  public :: update_material, assemble_stiffness
 
 contains
 
@@ -91,7 +91,9 @@ contains
     integer :: p, a
 
     associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
-      call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
+      work%x_old(:, :) = old%x(:, nodes)
+      work%x_new(:, :) = new%x(:, nodes)
+      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
       call element_strain(model%element, old%orientation(:, :, :, e), work)
@@ -114,7 +116,9 @@ contains
     end associate
   end subroutine update_element
 
-  !> Assembles the exact stiffness of the new configuration from the tangents of the last update.
+  !> Assembles the exact stiffness of the new configuration from the tangents of the last update, or,
+  !> without a new one, that of the committed configuration with the tangents already in place: the
+  !> predictor's.
   subroutine assemble_stiffness(self, model, old, new)
     !> Gets the stiffness.
     type(system_t), intent(inout) :: self
@@ -123,14 +127,13 @@ contains
     !> The committed state.
     type(state_t), intent(in) :: old
     !> The trial state after `update_material`.
-    type(state_t), intent(in) :: new
+    type(state_t), intent(in), optional :: new
 
-    type(verdict_t) :: verdict
     integer :: colour, k, e, block, thread
 
     call clear(self%stiffness)
     !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(verdict, colour, k, e, block, thread)
+    !$omp& private(colour, k, e, block, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(self%colour_start) - 1
@@ -138,12 +141,7 @@ contains
       do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
         block = self%coloured_block(k)
         do e = self%block_start(block), self%block_start(block + 1) - 1
-          associate (nodes => model%connectivity(:, e), work => self%element(thread))
-            call element_kinematics(model%element, old%x(:, nodes), new%x(:, nodes), work, verdict)
-            call element_strain(model%element, old%orientation(:, :, :, e), work)
-            work%stress(:, :) = new%stress(:, :, e)
-            call element_cauchy(model%element, work)
-          end associate
+          call take_element(model, e, self%element(thread), old, new)
           call add_stiffness(self, model, e, self%element(thread))
         end do
       end do
@@ -152,43 +150,35 @@ contains
     !$omp end parallel
   end subroutine assemble_stiffness
 
-  !> Assembles the stiffness at the committed configuration with the tangents already in place: the
-  !> predictor's.
-  subroutine assemble_predictor_stiffness(self, model, old)
-    !> Gets the stiffness; its tangents are the continuum ones.
-    type(system_t), intent(inout) :: self
+  !> Brings a workspace to an element's new configuration, or to the committed one.
+  subroutine take_element(model, e, work, old, new)
     !> The model.
     type(model_t), intent(in) :: model
+    !> The element.
+    integer, intent(in) :: e
+    !> Gets all that the stiffness needs but the tangents.
+    type(element_work_t), intent(inout) :: work
     !> The committed state.
     type(state_t), intent(in) :: old
+    !> The trial state, of an element that has kept its shape.
+    type(state_t), intent(in), optional :: new
 
     type(verdict_t) :: verdict
-    integer :: colour, k, e, block, thread
 
-    call clear(self%stiffness)
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(verdict, colour, k, e, block, thread)
-    thread = 1
-    !$ thread = omp_get_thread_num() + 1
-    do colour = 1, size(self%colour_start) - 1
-      !$omp do schedule(dynamic)
-      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        block = self%coloured_block(k)
-        do e = self%block_start(block), self%block_start(block + 1) - 1
-          associate (nodes => model%connectivity(:, e), work => self%element(thread))
-            call element_gradients(model%element, old%x(:, nodes), work, verdict)
-            work%strain = 0.0_wp
-            work%rotation(:, :, :) = old%orientation(:, :, :, e)
-            work%stress(:, :) = old%stress(:, :, e)
-            call element_cauchy(model%element, work)
-          end associate
-          call add_stiffness(self, model, e, self%element(thread))
-        end do
-      end do
-      !$omp end do
-    end do
-    !$omp end parallel
-  end subroutine assemble_predictor_stiffness
+    work%x_old(:, :) = old%x(:, model%connectivity(:, e))
+    if (present(new)) then
+      work%x_new(:, :) = new%x(:, model%connectivity(:, e))
+      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
+      call element_strain(model%element, old%orientation(:, :, :, e), work)
+      work%stress(:, :) = new%stress(:, :, e)
+    else
+      call element_gradients(model%element, work%x_old, work, verdict)
+      work%strain = 0.0_wp
+      work%rotation(:, :, :) = old%orientation(:, :, :, e)
+      work%stress(:, :) = old%stress(:, :, e)
+    end if
+    call element_cauchy(model%element, work)
+  end subroutine take_element
 
   !> Computes an element's stiffness from what its workspace holds and adds its blocks.
   subroutine add_stiffness(self, model, e, work)
