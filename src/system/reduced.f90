@@ -92,7 +92,7 @@ contains
   !> Replaces a touching node's row by its reduced row, and adds its share to the row of a pressed
   !> tool.
   subroutine reduce_node(model, phase, contact, c, problem, reduced)
-    !> The model and the running phase.
+    !> The model.
     type(model_t), intent(in) :: model
     !> The running phase.
     type(phase_t), intent(in) :: phase
@@ -106,7 +106,7 @@ contains
     type(block_matrix_t), intent(inout) :: reduced
 
     real(wp) :: remaining(3, 3), d(3, 3), residual(3), share(3)
-    integer :: node, tool, block, k, at, line
+    integer :: node, tool, block, k, at, row
     logical :: pressed
 
     node = model%contact_node(c)
@@ -121,8 +121,8 @@ contains
       problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
                                        + matmul(d, problem%tool_motion(:, tool))
     else
-      line = maxloc(abs(phase%direction(:, tool)), dim=1)
-      problem%rhs(3*(block - 1) + line) = problem%rhs(3*(block - 1) + line) &
+      row = force_row(phase%direction(:, tool))
+      problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
         + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
     end if
     share = -matmul(phase%direction(:, tool), contact%e(:, :, c))
@@ -139,7 +139,7 @@ contains
         do while (reduced%column(at) < reduced%column(k))
           at = at + 1
         end do
-        call add_share(share, reduced%value(:, :, k), line, reduced%value(:, :, at))
+        call add_share(share, reduced%value(:, :, k), row, reduced%value(:, :, at))
       end if
       call multiply_left(remaining, reduced%value(:, :, k))
     end do
@@ -149,8 +149,8 @@ contains
       k = position_of(reduced, node, block)
       reduced%value(:, :, k) = -d
       share = matmul(phase%direction(:, tool), d)
-      call add_to_tool_row(reduced, block, line, node, share)
-      call add_to_tool_row(reduced, block, line, block, -share)
+      call add_to_tool_row(reduced, block, row, node, share)
+      call add_to_tool_row(reduced, block, row, block, -share)
     end if
   end subroutine reduce_node
 
@@ -172,21 +172,22 @@ contains
     end do
   end subroutine multiply_left
 
-  !> Adds a share of a node's block to a line of a tool's block.
-  pure subroutine add_share(share, block, line, sum)
+  !> Adds a share of a node's block to a row of a tool's block.
+  pure subroutine add_share(share, block, row, sum)
     !> Shares of the block's rows.
     real(wp), intent(in) :: share(3)
     !> The node's block.
     real(wp), intent(in) :: block(3, 3)
-    !> The line.
-    integer, intent(in) :: line
+    !> The row.
+    integer, intent(in) :: row
     !> The tool's block.
     real(wp), intent(inout) :: sum(3, 3)
 
     integer :: j
 
     do j = 1, 3
-      sum(line, j) = sum(line, j) + (share(1)*block(1, j) + share(2)*block(2, j) + share(3)*block(3, j))
+      sum(row, j) = sum(row, j) &
+        + (share(1)*block(1, j) + share(2)*block(2, j) + share(3)*block(3, j))
     end do
   end subroutine add_share
 
@@ -205,18 +206,18 @@ contains
   end function node_residual
 
   !> Adds a row vector to the force row of a pressed tool.
-  subroutine add_to_tool_row(reduced, block, line, column, values)
+  subroutine add_to_tool_row(reduced, block, row, column, values)
     !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
-    !> Block row of the tool, the line in it, and the block column.
-    integer, intent(in) :: block, line, column
+    !> Block row of the tool, the row in it, and the block column.
+    integer, intent(in) :: block, row, column
     !> What is added.
     real(wp), intent(in) :: values(3)
 
     integer :: k
 
     k = position_of(reduced, block, column)
-    reduced%value(line, :, k) = reduced%value(line, :, k) + values
+    reduced%value(row, :, k) = reduced%value(row, :, k) + values
   end subroutine add_to_tool_row
 
   !> Clears the rows of the tools; those not pressed in this phase follow their prescribed motion.
@@ -230,7 +231,7 @@ contains
     !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: tool, block, line, k
+    integer :: tool, block, row, k
 
     do tool = 1, model%n_tool
       block = model%tool_block(tool)
@@ -240,8 +241,8 @@ contains
       end do
       problem%rhs(3*block - 2:3*block) = 0.0_wp
       if (phase%pressed(tool)) then
-        line = maxloc(abs(phase%direction(:, tool)), dim=1)
-        problem%rhs(3*(block - 1) + line) = -problem%tool_residual(tool)
+        row = force_row(phase%direction(:, tool))
+        problem%rhs(3*(block - 1) + row) = -problem%tool_residual(tool)
       else
         reduced%value(:, :, reduced%diagonal(block)) = identity
         problem%rhs(3*block - 2:3*block) = problem%tool_motion(:, tool)
@@ -263,24 +264,33 @@ contains
     !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: tool, block, line, i, k
+    integer :: tool, block, row, i, k
 
     do tool = 1, model%n_tool
       block = model%tool_block(tool)
       if (block == 0) cycle
       if (.not. phase%pressed(tool)) cycle
-      line = maxloc(abs(phase%direction(:, tool)), dim=1)
+      row = force_row(phase%direction(:, tool))
       k = reduced%diagonal(block)
       do i = 1, 3
-        if (i == line) cycle
+        if (i == row) cycle
         reduced%value(i, i, k) = 1.0_wp
-        reduced%value(i, line, k) = -phase%direction(i, tool)/phase%direction(line, tool)
+        reduced%value(i, row, k) = -phase%direction(i, tool)/phase%direction(row, tool)
       end do
       if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
-      reduced%value(line, line, k) = 1.0_wp
-      problem%rhs(3*(block - 1) + line) = problem%tool_motion(line, tool)
+      reduced%value(row, row, k) = 1.0_wp
+      problem%rhs(3*(block - 1) + row) = problem%tool_motion(row, tool)
     end do
   end subroutine finish_tool_rows
+
+  !> The row of a pressed tool's block that holds its balance of force; the other two keep the tool
+  !> on its line of motion.
+  pure integer function force_row(direction) result(row)
+    !> The direction of the line.
+    real(wp), intent(in) :: direction(3)
+
+    row = maxloc(abs(direction), dim=1)
+  end function force_row
 
   !> Makes the rows of the prescribed displacements unit rows.
   subroutine prescribe(phase, problem, reduced)
