@@ -1,13 +1,11 @@
 !> The command line: options as values, and what is wrong with them.
 module dd3_app_command_line
   use dd3_base_error, only : error_t, fatal_error
-  use dd3_base_text, only : text_t, nearest_name
+  use dd3_base_text, only : text_t, nearest_name, newline
   implicit none
   private
   public :: options_t, read_command_line, parse_arguments, usage_text
 
-  !> Ends a line.
-  character(len=1), parameter :: newline = achar(10)
   !> The options there are.
   character(len=9), parameter :: known(8) = [character(len=9) :: "--check", "--set", "--output", &
       "--restart", &

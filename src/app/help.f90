@@ -3,7 +3,7 @@ module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
   use dd3_app_job, only : exit_end, exit_usage
-  use dd3_base_text, only : lower_case, same_name
+  use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
   use dd3_model_law_help, only : help_law, help_laws, law_reference_markdown
@@ -24,8 +24,8 @@ contains
 
     exit_code = exit_end
     if (topic == "") then
-      text = usage_text()//"blocks of the input:"//achar(10)//help_blocks()// &
-             "laws:"//achar(10)//help_laws()
+      text = usage_text()//"blocks of the input:"//newline//help_blocks()// &
+             "laws:"//newline//help_laws()
     else if (same_name(topic, "markdown")) then
       text = reference_markdown()//law_reference_markdown()
     else
@@ -53,9 +53,9 @@ contains
     all_lines = help_laws()
     start = 1
     do while (start <= len(all_lines))
-      last = index(all_lines(start:)//achar(10), achar(10)) + start - 2
+      last = index(all_lines(start:)//newline, newline) + start - 2
       if (index(lower_case(all_lines(start:last)), word) > 0) then
-        text = text//achar(10)//all_lines(start:last)
+        text = text//newline//all_lines(start:last)
       end if
       start = last + 2
     end do

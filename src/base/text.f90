@@ -3,7 +3,11 @@ module dd3_base_text
   use dd3_base_kinds, only : wp, i8
   implicit none
   private
-  public :: text_t, to_text, lower_case, upper_case, same_name, nearest_name, join, slice
+  public :: text_t, newline, to_text, lower_case, upper_case, same_name, nearest_name, suggestion, &
+      join, slice
+
+  !> Ends a line.
+  character(len=1), parameter :: newline = achar(10)
 
   !> A string of any length, for lists of strings.
   type :: text_t
@@ -140,6 +144,18 @@ contains
       nearest = trim(known(i))
     end do
   end function nearest_name
+
+  !> The known name closest to a misspelt one as the end of a message; empty when none is close.
+  pure function suggestion(name, known) result(text)
+    !> What was written.
+    character(len=*), intent(in) :: name
+    !> The names there are.
+    character(len=*), intent(in) :: known(:)
+    character(len=:), allocatable :: text
+
+    text = nearest_name(name, known)
+    if (text /= "") text = "; did you mean '"//text//"'?"
+  end function suggestion
 
   !> How far apart in the alphabet the last characters are of two words that are alike before them;
   !> a large number for other words.

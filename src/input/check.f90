@@ -1,7 +1,7 @@
 !> Checks the blocks of an input against the keyword tables and fills in the defaults.
 module dd3_input_check
   use dd3_base_error, only : as_written, error_list_t, location_t
-  use dd3_base_text, only : upper_case, same_name, nearest_name, join
+  use dd3_base_text, only : upper_case, same_name, nearest_name, suggestion, join
   use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t, deck_t
   use dd3_input_table, only : block_row_t, find_block, find_key
@@ -160,12 +160,8 @@ contains
     !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: nearest
-
-    nearest = nearest_name(entry%key, key%name)
-    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
     call errors%push_input(entry%at, "unknown key '"//as_written(entry%key, entry%at)//"' in "// &
-        title_of(block)//nearest, "one of: "//join(key%name, " "))
+        title_of(block)//suggestion(entry%key, key%name), "one of: "//join(key%name, " "))
   end subroutine unknown_key
 
   !> Adds the keys that were left out: an error where there is no default.

@@ -2,7 +2,7 @@
 !> `--check`.
 module dd3_input_echo
   use dd3_base_kinds, only : i8
-  use dd3_base_text, only : upper_case
+  use dd3_base_text, only : newline, upper_case
   use dd3_input_block, only : block_t, entry_t
   use dd3_input_case, only : case_t
   use dd3_input_table, only : block_row_t, block_table, find_block, find_key
@@ -10,8 +10,6 @@ module dd3_input_echo
   private
   public :: echo_case
 
-  !> Ends a line.
-  character(len=1), parameter :: newline = achar(10)
   !> Column of the remarks.
   integer, parameter :: remark_column = 52
 

@@ -1,7 +1,7 @@
 !> Help on blocks and keys, and the manual's reference, printed from the keyword tables.
 module dd3_input_help
   use dd3_base_kinds, only : i8
-  use dd3_base_text, only : upper_case, lower_case, same_name
+  use dd3_base_text, only : upper_case, lower_case, newline, same_name
   use dd3_base_parameter, only : parameter_t
   use dd3_input_table, only : block_row_t, block_table
   use dd3_input_value, only : describe, not_available
@@ -9,8 +9,6 @@ module dd3_input_help
   private
   public :: help_blocks, help_topic, reference_markdown, describe_key, escaped
 
-  !> Ends a line.
-  character(len=1), parameter :: newline = achar(10)
   !> Width of the column of names.
   integer, parameter :: block_width = 18
 

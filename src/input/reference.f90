@@ -1,7 +1,7 @@
 !> Checks that the sets, tools and materials an input names exist.
 module dd3_input_reference
   use dd3_base_error, only : as_written, error_list_t
-  use dd3_base_text, only : nearest_name, same_name, upper_case
+  use dd3_base_text, only : suggestion, same_name, upper_case
   use dd3_base_parameter, only : parameter_t, kind_name, kind_other
   use dd3_input_block, only : block_t, token_t, deck_t
   use dd3_input_table, only : block_row_t, find_block, find_key
@@ -111,7 +111,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     character(len=name_length), allocatable :: known(:)
-    character(len=:), allocatable :: nearest, expected
+    character(len=:), allocatable :: expected
     integer :: k, last
 
     last = deck%n_block
@@ -122,13 +122,11 @@ contains
     do k = 1, size(known)
       if (same_name(known(k), token%text)) return
     end do
-    nearest = nearest_name(token%text, known)
-    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
     expected = "a *"//upper_case(what)//" of this name, but there is none at all"
     if (size(known) > 0) expected = "one of: "//listed(known)
     if (last < deck%n_block) expected = expected//"; a set is made from sets that stand above it"
     call errors%push_input(token%at, "there is no "//what//" '"// &
-        as_written(token%text, token%at)//"'"//nearest, expected)
+        as_written(token%text, token%at)//"'"//suggestion(token%text, known), expected)
   end subroutine check_reference
 
   !> The first names of a list.

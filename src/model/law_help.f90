@@ -1,6 +1,6 @@
 !> Help on the laws, and the manual's reference of them, printed from the registries.
 module dd3_model_law_help
-  use dd3_base_text, only : same_name
+  use dd3_base_text, only : newline, same_name
   use dd3_input_help, only : describe_key, escaped
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
   use dd3_material_description, only : description_t
@@ -8,8 +8,6 @@ module dd3_model_law_help
   private
   public :: help_laws, help_law, law_reference_markdown
 
-  !> Ends a line.
-  character(len=1), parameter :: newline = achar(10)
   !> The kinds of laws, and the key each is given with.
   integer, parameter :: kinds(3) = [law_yield, law_hardening, law_backstress]
   !> See above.
