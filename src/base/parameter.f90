@@ -2,9 +2,10 @@
 !> from it.
 module dd3_base_parameter
   use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
   implicit none
   private
-  public :: parameter_t, law_value_t, row, pair_name
+  public :: parameter_t, law_value_t, row, pair_name, in_range, range_text
   public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, &
       kind_law, kind_other, &
             kind_integers
@@ -115,5 +116,32 @@ contains
     if (present(form)) row%form = form
     if (present(later)) row%later = later
   end function row
+
+  !> Whether a value lies within the bounds of a parameter; a NaN does not.
+  pure logical function in_range(row, value)
+    !> The parameter.
+    type(parameter_t), intent(in) :: row
+    !> The value.
+    real(wp), intent(in) :: value
+
+    in_range = value >= row%lower .and. value <= row%upper
+    if (row%lower_open .and. .not. value > row%lower) in_range = .false.
+    if (row%upper_open .and. .not. value < row%upper) in_range = .false.
+  end function in_range
+
+  !> The bounds of a parameter, as they follow what it is; empty where there are none.
+  pure function range_text(row) result(text)
+    !> The parameter.
+    type(parameter_t), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = ""
+    if (row%lower > -huge(1.0_wp)) then
+      text = text//", "//trim(merge("> ", ">=", row%lower_open))//" "//to_text(row%lower)
+    end if
+    if (row%upper < huge(1.0_wp)) then
+      text = text//", "//trim(merge("< ", "<=", row%upper_open))//" "//to_text(row%upper)
+    end if
+  end function range_text
 
 end module dd3_base_parameter

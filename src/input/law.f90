@@ -2,13 +2,13 @@
 module dd3_input_law
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, error_list_t, error_t
-  use dd3_base_parameter, only : parameter_t, law_value_t, kind_text, pair_name
-  use dd3_base_text, only : text_t, same_name, nearest_name, join, to_text
+  use dd3_base_parameter, only : parameter_t, law_value_t, range_text, kind_text, pair_name
+  use dd3_base_text, only : text_t, same_name, suggestion, join, to_text
   use dd3_input_case, only : law_spec_t
   use dd3_input_number, only : parse_pair, parse_real
   use dd3_input_table, only : find_key
   use dd3_input_text_file, only : read_lines, resolve_path
-  use dd3_input_value, only : check_range, range_text
+  use dd3_input_value, only : check_range
   implicit none
   private
   public :: check_law_name, check_law_values
@@ -29,17 +29,16 @@ contains
     !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: nearest
+    character(len=:), allocatable :: meant
 
     do position = 1, size(known)
       if (same_name(known(position), spec%name)) return
     end do
     position = 0
-    nearest = nearest_name(spec%name, known)
-    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
-    if (nearest == "") nearest = names_holding(spec%name, known)
+    meant = suggestion(spec%name, known)
+    if (meant == "") meant = names_holding(spec%name, known)
     call errors%push_input(spec%at, "there is no "//what//" '"// &
-        as_written(spec%name, spec%at)//"'"//nearest, &
+        as_written(spec%name, spec%at)//"'"//meant, &
         "one of: "//join(known, " "))
   end subroutine check_law_name
 
@@ -209,18 +208,16 @@ contains
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: nearest, known
+    character(len=:), allocatable :: known
     integer :: k
 
     associate (given => spec%parameter(i))
       k = find_key(rows, given%key)
       if (k == 0) then
-        nearest = nearest_name(given%key, rows%name)
-        if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
         known = "no parameters"
         if (size(rows) > 0) known = "one of: "//join(rows%name, " ")
         call errors%push_input(given%key_at, "unknown parameter '"//given%key//"' of "// &
-            spec%name//nearest, known)
+            spec%name//suggestion(given%key, rows%name), known)
       else if (find_parameter(spec, given%key) < i .and. .not. rows(k)%repeatable) then
         call errors%push_input(given%key_at, "'"//given%key//"' is given twice")
       else if (rows(k)%kind == kind_text) then

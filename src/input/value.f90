@@ -2,10 +2,10 @@
 module dd3_input_value
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, error_list_t, location_t
-  use dd3_base_text, only : to_text, lower_case, same_name, nearest_name
-  use dd3_base_parameter, only : parameter_t, kind_real, kind_integer, kind_logical, kind_name, &
-      kind_text, &
-                                 kind_reals, kind_integers, kind_names, kind_law, kind_other
+  use dd3_base_text, only : to_text, lower_case, same_name, suggestion
+  use dd3_base_parameter, only : parameter_t, in_range, range_text, kind_real, kind_integer, &
+      kind_logical, kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, &
+      kind_other
   use dd3_input_block, only : entry_t, token_t
   use dd3_input_number, only : parse_real, parse_integer
   use dd3_input_table, only : axis_of
@@ -13,7 +13,7 @@ module dd3_input_value
   implicit none
   private
   public :: check_value, describe, split_words, word_length, not_available, form_for, &
-      range_text, check_range, is_point
+      check_range, is_point
 
   !> Longest word in a row's lists.
   integer, parameter :: word_length = 24
@@ -51,7 +51,7 @@ contains
       case (kind_other)
         call check_form(entry, row, errors)
       case (kind_law)
-        call check_law(entry, row, errors)
+        call check_law_form(entry, row, errors)
       case default
         call check_words(entry, row, errors)
       end select
@@ -172,13 +172,8 @@ contains
     !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
-    logical :: inside
-
-    inside = value >= row%lower .and. value <= row%upper
-    if (row%lower_open .and. .not. value > row%lower) inside = .false.
-    if (row%upper_open .and. .not. value < row%upper) inside = .false.
-    if (.not. inside) call errors%push_input(at, trim(row%name)//" = "//to_text(value)// &
-        " is out of range", expected)
+    if (in_range(row, value)) return
+    call errors%push_input(at, trim(row%name)//" = "//to_text(value)//" is out of range", expected)
   end subroutine check_range
 
   !> Checks words: switches, names, options, paths.
@@ -245,7 +240,6 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     character(len=word_length), allocatable :: known(:)
-    character(len=:), allocatable :: nearest
 
     known = split_words(row%later)
     if (any(known == token%text) .and. len(token%text) <= word_length) then
@@ -256,14 +250,12 @@ contains
     known = split_words(row%choices)
     if (size(known) == 0) return
     if (any(known == token%text) .and. len(token%text) <= word_length) return
-    nearest = nearest_name(token%text, known)
-    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
     call errors%push_input(token%at, "unknown word '"//as_written(token%text, token%at)//"'"// &
-        nearest, describe(row))
+        suggestion(token%text, known), describe(row))
   end subroutine check_choice
 
   !> Checks the outline of a law: a name, then `key = value` pairs, or points `p:Y`.
-  subroutine check_law(entry, row, errors)
+  subroutine check_law_form(entry, row, errors)
     !> The entry.
     type(entry_t), intent(inout) :: entry
     !> Its row.
@@ -301,7 +293,7 @@ contains
       end if
       i = i + 3
     end do
-  end subroutine check_law
+  end subroutine check_law_form
 
   !> Cuts a whole law in one pair of quotes into its words, as a parameter may hold it.
   subroutine unfold_law(entry, errors)
@@ -436,7 +428,6 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     character(len=word_length), allocatable :: known(:)
-    character(len=:), allocatable :: nearest
     character(len=len(wanted)) :: plain
     integer :: i
 
@@ -448,10 +439,8 @@ contains
     do i = 1, size(known)
       if (same_name(known(i), token%text)) return
     end do
-    nearest = nearest_name(token%text, known)
-    if (nearest /= "") nearest = "; did you mean '"//nearest//"'?"
     call errors%push_input(token%at, "unknown word '"//as_written(token%text, token%at)//"'"// &
-        nearest, describe(row))
+        suggestion(token%text, known), describe(row))
   end subroutine check_literal
 
   !> Takes `n` or `n-m` as a range of node numbers: two numbers.
@@ -620,20 +609,5 @@ contains
       text = text//trim(word(i))
     end do
   end function alternatives
-
-  !> The bounds of a row, in words; empty where there are none.
-  function range_text(row) result(text)
-    !> The row.
-    type(parameter_t), intent(in) :: row
-    character(len=:), allocatable :: text
-
-    text = ""
-    if (row%lower > -huge(1.0_wp)) then
-      text = text//", "//trim(merge("> ", ">=", row%lower_open))//" "//to_text(row%lower)
-    end if
-    if (row%upper < huge(1.0_wp)) then
-      text = text//", "//trim(merge("< ", "<=", row%upper_open))//" "//to_text(row%upper)
-    end if
-  end function range_text
 
 end module dd3_input_value

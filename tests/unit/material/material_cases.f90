@@ -2,13 +2,13 @@
 !> combinations, random and degenerate stresses, and a point driven by stress or strain.
 module material_cases
   use dd3_base_kinds, only : wp
-  use dd3_base_parameter, only : law_value_t
+  use dd3_base_parameter, only : in_range, law_value_t, parameter_t
   use dd3_base_text, only : same_name
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_backstress_registry, only : fill_backstresses
   use dd3_material_backstress_law, only : backstress_slot_t
-  use dd3_material_check, only : check_law, describe_laws, law_backstress, law_hardening, law_yield
+  use dd3_material_check, only : check_together, describe_laws, law_backstress, law_hardening, law_yield
   use dd3_material_description, only : description_t, law_choice_t, problem_t
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : fill_hardenings
@@ -103,29 +103,34 @@ contains
     type(description_t), intent(in) :: description
     type(law_value_t), allocatable :: values(:)
     type(problem_t), allocatable :: problems(:)
-    real(wp) :: change, lowest
+    type(parameter_t) :: row
+    real(wp) :: change
+    logical :: allowed
     integer :: i
 
     do
+      allowed = .true.
       values = description%example
       do i = 1, size(values)
         call random_number(change)
-        lowest = lower_bound(description, values(i)%name)
-        if (lowest >= 1.0_wp) then
-          values(i)%value = lowest*(2 + int(3*change))
+        row = row_of(description, values(i)%name)
+        if (row%lower >= 1.0_wp) then
+          values(i)%value = row%lower*(2 + int(3*change))
         else if (values(i)%value == 0.0_wp) then
           values(i)%value = 0.4_wp*change - 0.2_wp
         else
           values(i)%value = values(i)%value*(0.8_wp + 0.4_wp*change)
         end if
+        allowed = allowed .and. in_range(row, values(i)%value)
       end do
-      call check_law(kind, description%name, values, problems)
+      if (.not. allowed) cycle
+      call check_together(kind, description%name, values, problems)
       if (size(problems) == 0) exit
     end do
   end function perturbed
 
-  !> The lowest value of a parameter.
-  real(wp) function lower_bound(description, name)
+  !> A parameter of a law.
+  type(parameter_t) function row_of(description, name)
     type(description_t), intent(in) :: description
     character(len=*), intent(in) :: name
     integer :: i
@@ -133,8 +138,8 @@ contains
     do i = 1, size(description%rows)
       if (same_name(description%rows(i)%name, name)) exit
     end do
-    lower_bound = description%rows(i)%lower
-  end function lower_bound
+    row_of = description%rows(i)
+  end function row_of
 
   !> Every criterion of the registry, with its example and with perturbed values.
   subroutine make_criteria(criteria, isotropic)
