@@ -36,8 +36,9 @@ contains
           "a sheet does not go with single points", "*POINT in a file of its own")
     end do
     do i = 1, size(case%point)
-      if (.not. case%point(i)%source%valid) cycle
       before = errors%count
+      call check_control(case%point(i), errors)
+      if (.not. case%point(i)%source%valid) cycle
       call check_lead(case%point(i), errors)
       if (errors%count > before) cycle
       call check_goals(case%point(i), errors)
@@ -64,11 +65,10 @@ contains
         call errors%push_input(block%opened, "nothing leads the point '"//block%called()//"'", &
             "control and target, or gradient")
       end if
-      if (block%has("control")) call check_control(point, errors)
     end associate
   end subroutine check_lead
 
-  !> Checks the words of the control.
+  !> Checks the words of the control, whatever else is wrong with the point.
   subroutine check_control(point, errors)
     !> The point.
     type(point_spec_t), intent(in) :: point
@@ -79,6 +79,8 @@ contains
     integer :: i, k
 
     k = point%source%find("control")
+    if (k == 0) return
+    if (.not. point%source%entry(k)%valid) return
     do i = 1, 6
       word = lower_case(point%source%entry(k)%value(i)%text)
       if (word == "e"//component(i) .or. word == "s"//component(i)) cycle
