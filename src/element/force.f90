@@ -7,7 +7,7 @@ module dd3_element_force
   use dd3_element_work, only : element_work_t
   implicit none
   private
-  public :: element_cauchy, element_force, global_stress
+  public :: element_cauchy, element_force, global_tensor
 
 contains
 
@@ -23,7 +23,7 @@ contains
 
     work%mean_stress_integral = 0.0_wp
     do p = 1, element%n_point
-      work%cauchy(:, :, p) = global_stress(work%stress(:, p), work%rotation(:, :, p))
+      work%cauchy(:, :, p) = global_tensor(work%stress(:, p), work%rotation(:, :, p))
       g = element%group(p)
       if (g == 0) cycle
       s = work%weight(p)*work%cauchy(:, :, p)
@@ -50,7 +50,7 @@ contains
   end subroutine element_force
 
   !> A tensor of the material frame in the global one: Q T Q^T.
-  pure function global_stress(stress, q) result(cauchy)
+  pure function global_tensor(stress, q) result(cauchy)
     !> Tensor in the material frame, Kelvin.
     real(wp), intent(in) :: stress(6)
     !> Material axes as columns.
@@ -68,7 +68,7 @@ contains
     do j = 1, 3
       cauchy(:, j) = qt(:, 1)*q(j, 1) + qt(:, 2)*q(j, 2) + qt(:, 3)*q(j, 3)
     end do
-  end function global_stress
+  end function global_tensor
 
   !> Sums the forces over the points.
   pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, &
