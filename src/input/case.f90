@@ -10,9 +10,10 @@ module dd3_input_case
   use dd3_input_block, only : block_t, deck_t
   implicit none
   private
-  public :: case_t, blank_t, node_set_t, law_spec_t, law_parameter_t, material_spec_t, tool_spec_t
-  public :: contact_t, boundary_t, limits_t, limit_t, newton_t, solver_t, phase_t
-  public :: tool_name_t, tool_vector_t, displace_t, load_t, until_t, history_t, output_t
+  public :: case_t, blank_spec_t, node_set_spec_t, law_spec_t, law_parameter_t, material_spec_t
+  public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
+  public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
+  public :: tool_name_t, tool_vector_t, displace_spec_t, load_spec_t, until_spec_t
   public :: set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
   public :: point_spec_t, point_goal_t, gradient_values
@@ -29,7 +30,7 @@ module dd3_input_case
   integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3
 
   !> A structured blank.
-  type :: blank_t
+  type :: blank_spec_t
     !> Its name.
     character(len=:), allocatable :: name
     !> Corner with the smallest coordinates and edge lengths, mm.
@@ -46,10 +47,10 @@ module dd3_input_case
     integer :: material = 0
     !> The block it was read from.
     type(block_t) :: source
-  end type blank_t
+  end type blank_spec_t
 
   !> A node set chosen from the initial coordinates.
-  type :: node_set_t
+  type :: node_set_spec_t
     !> Its name.
     character(len=:), allocatable :: name
     !> One of the `set_*` values.
@@ -66,7 +67,7 @@ module dd3_input_case
     real(wp) :: tolerance = -1.0_wp
     !> The block it was read from.
     type(block_t) :: source
-  end type node_set_t
+  end type node_set_spec_t
 
   !> A law's parameter as written.
   type :: law_parameter_t
@@ -131,15 +132,15 @@ module dd3_input_case
   end type tool_spec_t
 
   !> Settings of the contact.
-  type :: contact_t
+  type :: contact_spec_t
     !> Penalty, N/mm.
     real(wp) :: penalty = 1000.0_wp
     !> Distance within which tools are searched, mm; negative for the sheet's thickness.
     real(wp) :: search_distance = -1.0_wp
-  end type contact_t
+  end type contact_spec_t
 
   !> Fixed nodes.
-  type :: boundary_t
+  type :: boundary_spec_t
     !> Its name.
     character(len=:), allocatable :: name
     !> Node set.
@@ -148,38 +149,38 @@ module dd3_input_case
     logical :: fix(3) = .false.
     !> The block it was read from.
     type(block_t) :: source
-  end type boundary_t
+  end type boundary_spec_t
 
   !> A number that may be switched off.
-  type :: limit_t
+  type :: limit_spec_t
     !> Whether it is on.
     logical :: active = .false.
     !> The number; where off, a value that never limits.
     real(wp) :: value = huge(1.0_wp)
-  end type limit_t
+  end type limit_spec_t
 
   !> Limits of the predictor.
-  type :: limits_t
+  type :: limits_spec_t
     !> Largest strain increment.
-    type(limit_t) :: strain = limit_t(.true., 0.005_wp)
+    type(limit_spec_t) :: strain = limit_spec_t(.true., 0.005_wp)
     !> Largest rotation increment, degrees.
-    type(limit_t) :: rotation = limit_t(.true., 0.05_wp)
+    type(limit_spec_t) :: rotation = limit_spec_t(.true., 0.05_wp)
     !> Largest stress increments along (a) and normal to (b) the yield surface, in flow stresses.
-    type(limit_t) :: stress_tangential = limit_t(.true., 3.0_wp)
+    type(limit_spec_t) :: stress_tangential = limit_spec_t(.true., 3.0_wp)
     !> See above.
-    type(limit_t) :: stress_normal = limit_t(.true., 1.0_wp)
+    type(limit_spec_t) :: stress_normal = limit_spec_t(.true., 1.0_wp)
     !> c, d, e of the contact force limit.
-    type(limit_t) :: force(3)
+    type(limit_spec_t) :: force(3)
     !> Floor of the contact force limit; 0 where off.
-    type(limit_t) :: force_floor = limit_t(.true., 0.1_wp)
+    type(limit_spec_t) :: force_floor = limit_spec_t(.true., 0.1_wp)
     !> Smallest factor r; 0 where off.
-    type(limit_t) :: r_min = limit_t(.true., 0.001_wp)
+    type(limit_spec_t) :: r_min = limit_spec_t(.true., 0.001_wp)
     !> Largest factor r.
-    type(limit_t) :: r_max = limit_t(.true., 1.0_wp)
-  end type limits_t
+    type(limit_spec_t) :: r_max = limit_spec_t(.true., 1.0_wp)
+  end type limits_spec_t
 
   !> Settings of the corrector.
-  type :: newton_t
+  type :: newton_spec_t
     !> Tolerance of the convergence criterion.
     real(wp) :: tolerance = 1.0e-2_wp
     !> Most iterations of an increment.
@@ -190,10 +191,10 @@ module dd3_input_case
     real(wp) :: cutback_factor = 0.5_wp
     !> Smallest r before the run is given up.
     real(wp) :: cutback_min = 1.0e-5_wp
-  end type newton_t
+  end type newton_spec_t
 
   !> Settings of the linear solver.
-  type :: solver_t
+  type :: solver_spec_t
     !> cgs, umfpack or auto.
     character(len=:), allocatable :: method
     !> Level of fill of the incomplete factorisation.
@@ -204,7 +205,7 @@ module dd3_input_case
     integer :: iterations = 500
     !> none, amd or rcm.
     character(len=:), allocatable :: ordering
-  end type solver_t
+  end type solver_spec_t
 
   !> A tool named in a phase.
   type :: tool_name_t
@@ -225,7 +226,7 @@ module dd3_input_case
   end type tool_vector_t
 
   !> A prescribed displacement of nodes.
-  type :: displace_t
+  type :: displace_spec_t
     !> Node set.
     character(len=:), allocatable :: set
     !> Axis: 1, 2, 3.
@@ -234,20 +235,20 @@ module dd3_input_case
     real(wp) :: value = 0.0_wp
     !> Where it was written.
     type(location_t) :: at
-  end type displace_t
+  end type displace_spec_t
 
   !> A force on nodes.
-  type :: load_t
+  type :: load_spec_t
     !> Node set.
     character(len=:), allocatable :: set
     !> Total force at the end of the phase, N.
     real(wp) :: force(3) = 0.0_wp
     !> Where it was written.
     type(location_t) :: at
-  end type load_t
+  end type load_spec_t
 
   !> What ends a phase early.
-  type :: until_t
+  type :: until_spec_t
     !> One of the `until_*` values.
     integer :: kind = until_never
     !> Position in `case%tool`.
@@ -256,10 +257,10 @@ module dd3_input_case
     real(wp) :: value = huge(1.0_wp)
     !> Where it was written.
     type(location_t) :: at
-  end type until_t
+  end type until_spec_t
 
   !> A phase of the process.
-  type :: phase_t
+  type :: phase_spec_t
     !> Its name.
     character(len=:), allocatable :: name
     !> Position of the controlling tool in `case%tool`; 0 for `load`.
@@ -271,23 +272,23 @@ module dd3_input_case
     !> Tools moved, and tools pressed.
     type(tool_vector_t), allocatable :: move(:), press(:)
     !> Prescribed displacements.
-    type(displace_t), allocatable :: displace(:)
+    type(displace_spec_t), allocatable :: displace(:)
     !> Forces on nodes.
-    type(load_t), allocatable :: load(:)
+    type(load_spec_t), allocatable :: load(:)
     !> What ends it early.
-    type(until_t) :: until
+    type(until_spec_t) :: until
     !> The limits that hold in this phase, whole.
-    type(limits_t) :: limits
+    type(limits_spec_t) :: limits
     !> The corrector's settings that hold in this phase, whole.
-    type(newton_t) :: newton
+    type(newton_spec_t) :: newton
     !> The contact's settings that hold in this phase, whole.
-    type(contact_t) :: contact
+    type(contact_spec_t) :: contact
     !> The block it was read from.
     type(block_t) :: source
-  end type phase_t
+  end type phase_spec_t
 
   !> Columns of the history table.
-  type :: history_t
+  type :: history_spec_t
     !> Its name.
     character(len=:), allocatable :: name
     !> Node set.
@@ -296,10 +297,10 @@ module dd3_input_case
     logical :: displacement = .false., reaction = .false., position = .false.
     !> The block it was read from.
     type(block_t) :: source
-  end type history_t
+  end type history_spec_t
 
   !> What is written when.
-  type :: output_t
+  type :: output_spec_t
     !> A row of the history table every so many increments.
     integer :: history = 1
     !> One of the `fields_*` values.
@@ -308,7 +309,7 @@ module dd3_input_case
     real(wp), allocatable :: fields_value(:)
     !> Folder of the results; empty for the default beside the input file.
     character(len=:), allocatable :: directory
-  end type output_t
+  end type output_spec_t
 
   !> What a single point is led to.
   type :: point_goal_t
@@ -346,31 +347,31 @@ module dd3_input_case
     !> Lines of the title.
     type(text_t), allocatable :: title(:)
     !> The sheet.
-    type(blank_t), allocatable :: blank(:)
+    type(blank_spec_t), allocatable :: blank(:)
     !> Node sets of the input file, in its order.
-    type(node_set_t), allocatable :: set(:)
+    type(node_set_spec_t), allocatable :: set(:)
     !> Materials.
     type(material_spec_t), allocatable :: material(:)
     !> Tools.
     type(tool_spec_t), allocatable :: tool(:)
     !> Contact at the start.
-    type(contact_t) :: contact
+    type(contact_spec_t) :: contact
     !> Fixed nodes.
-    type(boundary_t), allocatable :: boundary(:)
+    type(boundary_spec_t), allocatable :: boundary(:)
     !> Limits of the predictor at the start.
-    type(limits_t) :: limits
+    type(limits_spec_t) :: limits
     !> Corrector at the start.
-    type(newton_t) :: newton
+    type(newton_spec_t) :: newton
     !> Linear solver.
-    type(solver_t) :: solver
+    type(solver_spec_t) :: solver
     !> Phases in order.
-    type(phase_t), allocatable :: phase(:)
+    type(phase_spec_t), allocatable :: phase(:)
     !> Runs of single points in order.
     type(point_spec_t), allocatable :: point(:)
     !> Columns of the history table.
-    type(history_t), allocatable :: history(:)
+    type(history_spec_t), allocatable :: history(:)
     !> What is written when.
-    type(output_t) :: output
+    type(output_spec_t) :: output
     !> The checked input with its defaults filled in, for the echo.
     type(deck_t) :: deck
   end type case_t

@@ -5,8 +5,8 @@ module dd3_input_cross_check
   use dd3_base_error, only : error_list_t
   use dd3_base_text, only : to_text
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, blank_t, node_set_t, material_spec_t, limits_t, fields_every, &
-      fields_at
+  use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
+      limits_spec_t, fields_every, fields_at
   implicit none
   private
   public :: cross_check
@@ -52,7 +52,7 @@ contains
   !> Checks a blank's gradings and skew.
   subroutine check_blank(blank, errors)
     !> The blank.
-    type(blank_t), intent(in) :: blank
+    type(blank_spec_t), intent(in) :: blank
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
@@ -118,7 +118,7 @@ contains
   !> Checks that a set is chosen in one way.
   subroutine check_set(set, errors)
     !> The set.
-    type(node_set_t), intent(in) :: set
+    type(node_set_spec_t), intent(in) :: set
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
@@ -157,7 +157,7 @@ contains
   !> Checks the bounds of the factor r, where the block gives one of them.
   subroutine check_limits(limits, block, errors)
     !> The limits that hold.
-    type(limits_t), intent(in) :: limits
+    type(limits_spec_t), intent(in) :: limits
     !> The block.
     type(block_t), intent(in) :: block
     !> Receives the error.

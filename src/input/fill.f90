@@ -4,10 +4,9 @@ module dd3_input_fill
   use dd3_base_parameter, only : pair_name
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, deck_t, entry_t
-  use dd3_input_case, only : case_t, blank_t, node_set_t, law_parameter_t, law_spec_t, &
-      material_spec_t, tool_spec_t, boundary_t, history_t, &
-                             set_plane, set_box, set_nodes, set_near, fields_every, fields_at, &
-                             fields_increments
+  use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, law_parameter_t, law_spec_t, &
+      material_spec_t, tool_spec_t, boundary_spec_t, history_spec_t, set_plane, set_box, set_nodes, &
+      set_near, fields_every, fields_at, fields_increments
   use dd3_input_fill_point, only : fill_point
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_number, only : parse_pair, parse_real
@@ -181,7 +180,7 @@ contains
   !> Fills a blank.
   subroutine fill_blank(blank, block)
     !> The blank.
-    type(blank_t), intent(inout) :: blank
+    type(blank_spec_t), intent(inout) :: blank
     !> The block.
     type(block_t), intent(in) :: block
 
@@ -220,7 +219,7 @@ contains
   !> Fills a node set.
   subroutine fill_set(set, block)
     !> The set.
-    type(node_set_t), intent(inout) :: set
+    type(node_set_spec_t), intent(inout) :: set
     !> The block.
     type(block_t), intent(in) :: block
 
@@ -384,7 +383,7 @@ contains
   !> Fills a boundary condition.
   subroutine fill_boundary(boundary, block)
     !> The boundary condition.
-    type(boundary_t), intent(inout) :: boundary
+    type(boundary_spec_t), intent(inout) :: boundary
     !> The block.
     type(block_t), intent(in) :: block
 
@@ -417,7 +416,7 @@ contains
   !> Fills further columns of the history table.
   subroutine fill_history(history, block)
     !> The columns.
-    type(history_t), intent(inout) :: history
+    type(history_spec_t), intent(inout) :: history
     !> The block.
     type(block_t), intent(in) :: block
 

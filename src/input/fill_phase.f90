@@ -3,9 +3,9 @@ module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, phase_t, contact_t, limits_t, limit_t, newton_t, tool_name_t, &
-      tool_vector_t, &
-                             displace_t, load_t, until_t, until_displacement, until_force
+  use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
+      newton_spec_t, tool_name_t, tool_vector_t, displace_spec_t, load_spec_t, until_spec_t, &
+      until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -21,7 +21,7 @@ contains
     !> The block.
     type(block_t), intent(in) :: block
 
-    type(phase_t) :: phase
+    type(phase_spec_t) :: phase
 
     phase%name = block%name
     phase%source = block
@@ -129,7 +129,7 @@ contains
   !> Fills the prescribed displacements.
   subroutine fill_displacements(list, block)
     !> The displacements.
-    type(displace_t), allocatable, intent(out) :: list(:)
+    type(displace_spec_t), allocatable, intent(out) :: list(:)
     !> The phase's block.
     type(block_t), intent(in) :: block
 
@@ -151,7 +151,7 @@ contains
   !> Fills the forces on nodes.
   subroutine fill_loads(list, block)
     !> The forces.
-    type(load_t), allocatable, intent(out) :: list(:)
+    type(load_spec_t), allocatable, intent(out) :: list(:)
     !> The phase's block.
     type(block_t), intent(in) :: block
 
@@ -172,7 +172,7 @@ contains
   !> Fills what ends the phase early.
   subroutine fill_until(until, case, block)
     !> The end.
-    type(until_t), intent(inout) :: until
+    type(until_spec_t), intent(inout) :: until
     !> The case, its tools filled.
     type(case_t), intent(in) :: case
     !> The phase's block.
@@ -191,7 +191,7 @@ contains
   !> Takes over the limits a block gives.
   subroutine fill_limits(limits, block)
     !> The limits.
-    type(limits_t), intent(inout) :: limits
+    type(limits_spec_t), intent(inout) :: limits
     !> The block.
     type(block_t), intent(in) :: block
 
@@ -210,7 +210,7 @@ contains
   !> Takes over one limit if the block gives it.
   subroutine fill_limit(limit, block, key, component, without)
     !> The limit.
-    type(limit_t), intent(inout) :: limit
+    type(limit_spec_t), intent(inout) :: limit
     !> The block.
     type(block_t), intent(in) :: block
     !> The key.
@@ -233,7 +233,7 @@ contains
   !> Takes over the corrector's settings a block gives.
   subroutine fill_newton(newton, block)
     !> The settings.
-    type(newton_t), intent(inout) :: newton
+    type(newton_spec_t), intent(inout) :: newton
     !> The block.
     type(block_t), intent(in) :: block
 
@@ -247,7 +247,7 @@ contains
   !> Takes over the contact's settings a block gives.
   subroutine fill_contact(contact, block)
     !> The settings.
-    type(contact_t), intent(inout) :: contact
+    type(contact_spec_t), intent(inout) :: contact
     !> The block.
     type(block_t), intent(in) :: block
 

@@ -3,7 +3,7 @@ module dd3_input_phase_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
-  use dd3_input_case, only : case_t, phase_t, tool_vector_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t, tool_vector_t, until_never
   implicit none
   private
   public :: check_phases
@@ -39,7 +39,7 @@ contains
     !> The case.
     type(case_t), intent(in) :: case
     !> The phase.
-    type(phase_t), intent(in) :: phase
+    type(phase_spec_t), intent(in) :: phase
     !> What each tool does.
     integer, intent(inout) :: motion(:)
     !> The last force on each pressed tool, N.
@@ -99,7 +99,8 @@ contains
     named(tool) = .true.
   end subroutine name_tool
 
-  !> Checks the force on a tool: it has a line, and keeps it and its sense while the tool is pressed.
+  !> Checks the force on a tool: it has a line, and keeps it and its sense while the tool is
+  !> pressed.
   subroutine check_press(press, motion, force, errors)
     !> The tool and the force.
     type(tool_vector_t), intent(in) :: press
@@ -133,7 +134,7 @@ contains
     !> The case.
     type(case_t), intent(in) :: case
     !> The phase.
-    type(phase_t), intent(in) :: phase
+    type(phase_spec_t), intent(in) :: phase
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
@@ -171,7 +172,7 @@ contains
     !> The case.
     type(case_t), intent(in) :: case
     !> The phase.
-    type(phase_t), intent(in) :: phase
+    type(phase_spec_t), intent(in) :: phase
     !> What each tool does.
     integer, intent(in) :: motion(:)
     !> Receives the errors.

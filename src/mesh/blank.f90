@@ -1,7 +1,7 @@
 !> Generates the mesh of a structured blank: a box of hexahedra, graded and skewed.
 module dd3_mesh_blank
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : blank_t
+  use dd3_input_case, only : blank_spec_t
   use dd3_mesh_mesh, only : mesh_t, mesh_set_t
   implicit none
   private
@@ -19,7 +19,7 @@ contains
     !> The mesh.
     type(mesh_t), intent(out) :: mesh
     !> The blank.
-    type(blank_t), intent(in) :: blank
+    type(blank_spec_t), intent(in) :: blank
 
     mesh%element = blank%element
     mesh%thickness = blank%size(3)
@@ -45,7 +45,7 @@ contains
     !> The mesh.
     type(mesh_t), intent(inout) :: mesh
     !> The blank.
-    type(blank_t), intent(in) :: blank
+    type(blank_spec_t), intent(in) :: blank
 
     real(wp) :: shift
     integer :: i, j, k

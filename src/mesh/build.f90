@@ -3,7 +3,7 @@
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
-  use dd3_input_case, only : case_t, phase_t
+  use dd3_input_case, only : case_t, phase_spec_t
   use dd3_mesh_blank, only : new_blank_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_mesh_select, only : add_set
@@ -43,7 +43,7 @@ contains
     !> The case.
     type(case_t), intent(in) :: case
     !> The phase.
-    type(phase_t), intent(in) :: phase
+    type(phase_spec_t), intent(in) :: phase
     !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 

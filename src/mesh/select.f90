@@ -3,7 +3,7 @@ module dd3_mesh_select
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
   use dd3_base_text, only : to_text
-  use dd3_input_case, only : node_set_t, set_plane, set_box, set_nodes
+  use dd3_input_case, only : node_set_spec_t, set_plane, set_box, set_nodes
   use dd3_mesh_mesh, only : mesh_t, mesh_set_t
   implicit none
   private
@@ -19,7 +19,7 @@ contains
     !> The mesh.
     type(mesh_t), intent(inout) :: mesh
     !> The set as asked for.
-    type(node_set_t), intent(in) :: wanted
+    type(node_set_spec_t), intent(in) :: wanted
     !> Receives the error of a set without nodes.
     type(error_list_t), intent(inout) :: errors
 
@@ -63,7 +63,7 @@ contains
     !> Whether each node is a member.
     logical, intent(inout) :: member(:)
     !> The set as asked for.
-    type(node_set_t), intent(in) :: wanted
+    type(node_set_spec_t), intent(in) :: wanted
     !> Receives the error of numbers that no node has.
     type(error_list_t), intent(inout) :: errors
 

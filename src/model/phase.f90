@@ -2,7 +2,7 @@
 !> driven, when it ends.
 module dd3_model_phase
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : limits_t, newton_t, until_t
+  use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
   implicit none
   private
   public :: phase_t
@@ -45,13 +45,13 @@ module dd3_model_phase
     !> set when the phase begins.
     real(wp), allocatable :: fading(:, :)
     !> What ends it early.
-    type(until_t) :: until
+    type(until_spec_t) :: until
     !> Whether the force that ends it is met from below; set when the phase begins.
     logical :: until_from_below = .true.
     !> Limits of the predictor.
-    type(limits_t) :: limits
+    type(limits_spec_t) :: limits
     !> Settings of the corrector.
-    type(newton_t) :: newton
+    type(newton_spec_t) :: newton
     !> Penalty coefficient, N/mm.
     real(wp) :: penalty = 0.0_wp
     !> Distance up to which a tool's surface is looked for, mm.

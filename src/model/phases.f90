@@ -2,7 +2,7 @@
 !> and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t, case_phase_t => phase_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_model, only : model_t
@@ -82,7 +82,7 @@ contains
     !> The model.
     type(model_t), intent(in) :: model
     !> The phase of the case.
-    type(case_phase_t), intent(in) :: from
+    type(phase_spec_t), intent(in) :: from
     !> The phase.
     type(phase_t), intent(inout) :: phase
 
@@ -100,7 +100,7 @@ contains
   !> Takes what the tools do, and the trial increment as a share of the phase.
   subroutine take_tools(from, phase)
     !> The phase of the case.
-    type(case_phase_t), intent(in) :: from
+    type(phase_spec_t), intent(in) :: from
     !> The phase.
     type(phase_t), intent(inout) :: phase
 
@@ -161,7 +161,7 @@ contains
   !> Takes prescribed displacements.
   subroutine take_displacements(from, mesh, phase)
     !> The phase of the case.
-    type(case_phase_t), intent(in) :: from
+    type(phase_spec_t), intent(in) :: from
     !> The mesh.
     type(mesh_t), intent(in) :: mesh
     !> The phase.
@@ -180,7 +180,7 @@ contains
   !> Takes loads: a set that is named gets another force, the others keep theirs.
   subroutine take_loads(from, model, phase)
     !> The phase of the case.
-    type(case_phase_t), intent(in) :: from
+    type(phase_spec_t), intent(in) :: from
     !> The model with its sets.
     type(model_t), intent(in) :: model
     !> The phase.

@@ -7,7 +7,7 @@ module dd3_process_run
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
-  use dd3_input_case, only : solver_t
+  use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : solver_options_t
   use dd3_model_initial, only : new_initial_state
   use dd3_model_model, only : model_t
@@ -63,7 +63,7 @@ contains
     !> The model.
     type(model_t), intent(in) :: model
     !> The linear solver, as the case wants it.
-    type(solver_t), intent(in) :: solver
+    type(solver_spec_t), intent(in) :: solver
     !> Number of threads.
     integer, intent(in) :: threads
     !> The directory of the results; it exists.
@@ -105,7 +105,7 @@ contains
   !> The linear solver's options from the case's.
   pure type(solver_options_t) function solver_options(solver)
     !> As the case wants it.
-    type(solver_t), intent(in) :: solver
+    type(solver_spec_t), intent(in) :: solver
 
     solver_options%method = solver%method
     solver_options%ilu_level = solver%ilu_level
