@@ -26,13 +26,11 @@ contains
     real(wp) :: slope(3, 8)
     integer :: a
 
-    call new_table(self, "hex8", n_node=8, n_point=8, n_face_node=4, n_pair=4)
+    call new_table(self, "hex8", n_node=8, n_point=8, n_pair=4)
     self%title = "8 nodes, 2x2x2 points, mean dilatation (selective reduced integration)"
     self%vtk_type = 12
     self%node = corner
     self%group = 1
-    self%face = reshape([1, 4, 3, 2, 5, 6, 7, 8, 1, 2, 6, 5, &
-                         2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8], [4, 6])
     self%pair = reshape([1, 5, 2, 6, 3, 7, 4, 8], [2, 4])
     do a = 1, 8
       call set_table_point(self, a, corner(:, a)/root3, 1.0_wp)

@@ -1,7 +1,7 @@
-!> The table that is an element: nodes, integration points, shape functions, faces, and which points
-!> share a mean dilatation. An element is one filled `element_t`; every kernel works from the table
-!> for any number of nodes, points and groups. Shape functions and Gauss rules: Zienkiewicz &
-!> Taylor, The Finite Element Method, 1989, chap. 7.
+!> The table that is an element: nodes, integration points, shape functions, and which points share
+!> a mean dilatation. An element is one filled `element_t`; every kernel works from the table for
+!> any number of nodes, points and groups. Shape functions and Gauss rules: Zienkiewicz & Taylor,
+!> The Finite Element Method, 1989, chap. 7.
 module dd3_element_table
   use dd3_base_kinds, only : wp
   implicit none
@@ -20,10 +20,6 @@ module dd3_element_table
     integer :: n_point = 0
     !> Number of groups of points that share a mean dilatation; 0 where each point keeps its own.
     integer :: n_group = 0
-    !> Number of faces.
-    integer :: n_face = 0
-    !> Number of nodes of one face.
-    integer :: n_face_node = 0
     !> Number of pairs of nodes that face each other through the thickness.
     integer :: n_pair = 0
     !> Cell type of the VTK file format.
@@ -46,9 +42,6 @@ module dd3_element_table
     !> Values at the nodes from values at the points: `extrapolation(n_node,n_point)`; rows sum to
     !> 1.
     real(wp), allocatable :: extrapolation(:, :)
-    !> Nodes of each face, turning so that the normal points outward: `face(n_face_node,n_face)`.
-    !> Face 1 is zeta=-1 (bottom), 2 zeta=+1 (top), 3 eta=-1, 4 xi=+1, 5 eta=+1, 6 xi=-1.
-    integer, allocatable :: face(:, :)
     !> Nodes facing each other, bottom then top: `pair(2,n_pair)`.
     integer, allocatable :: pair(:, :)
     !> Our node at each place of VTK's order: `vtk_order(n_node)`.
@@ -71,27 +64,25 @@ module dd3_element_table
 contains
 
   !> Gives a table its sizes.
-  subroutine new_table(self, name, n_node, n_point, n_face_node, n_pair)
+  subroutine new_table(self, name, n_node, n_point, n_pair)
     !> The table.
     type(element_t), intent(out) :: self
     !> Name as written in the input.
     character(len=*), intent(in) :: name
-    !> Number of nodes, of integration points, of nodes of a face, of pairs through the thickness.
-    integer, intent(in) :: n_node, n_point, n_face_node, n_pair
+    !> Number of nodes, of integration points, of pairs through the thickness.
+    integer, intent(in) :: n_node, n_point, n_pair
 
     integer :: a
 
     self%name = name
     self%n_node = n_node
     self%n_point = n_point
-    self%n_face = 6
-    self%n_face_node = n_face_node
     self%n_pair = n_pair
     allocate (self%node(3, n_node), self%point(3, n_point), self%weight(n_point))
     allocate (self%shape(n_node, n_point), self%dshape(3, n_node, n_point))
     allocate (self%slope(3, n_point, n_node), self%slope_row(n_node, 3, n_point))
     allocate (self%extrapolation(n_node, n_point))
-    allocate (self%face(n_face_node, 6), self%pair(2, n_pair))
+    allocate (self%pair(2, n_pair))
     allocate (self%group(n_point), source=0)
     allocate (self%vtk_order(n_node), source=[(a, a=1, n_node)])
   end subroutine new_table

@@ -8,8 +8,6 @@ module dd3_material_elasticity
 
   !> The elastic constants.
   type :: elasticity_t
-    !> Young's modulus, MPa; Poisson's ratio.
-    real(wp) :: young = 0.0_wp, poisson = 0.0_wp
     !> Shear modulus G, MPa; Lamé's first constant, MPa.
     real(wp) :: shear = 0.0_wp, lame = 0.0_wp
     !> What the mean of a stress adds to each normal component of 2G times its strain.
@@ -29,8 +27,6 @@ contains
     real(wp) :: normal
     integer :: i, j
 
-    self%young = young
-    self%poisson = poisson
     self%shear = young/(2*(1 + poisson))
     self%lame = young*poisson/((1 + poisson)*(1 - 2*poisson))
     self%mean_factor = -poisson/(1 + poisson)

@@ -20,8 +20,8 @@ module dd3_material_material
 
   !> A material.
   type :: material_t
-    !> Young's modulus, MPa; Poisson's ratio.
-    real(wp) :: young = 0.0_wp, poisson = 0.0_wp
+    !> Young's modulus, MPa.
+    real(wp) :: young = 0.0_wp
     !> Number of internal variables of a point: equivalent plastic strain first, then six for each
     !> back-stress, then the hardening law's own. All are zero at the start.
     integer :: n_internal = 1
@@ -55,7 +55,6 @@ contains
     integer :: i
 
     self%young = young
-    self%poisson = poisson
     call new_elasticity(self%laws%elasticity, young, poisson)
     call find_criterion(criterion%name, found_criterion)
     call found_criterion%law%set(criterion%values)
