@@ -20,7 +20,7 @@ module dd3_material_return_mapping
   public :: step_t, take_step
 
   !> Most Newton iterations in a step, and most halvings in one of them.
-  integer, parameter :: iteration_limit = 30, halving_limit = 8
+  integer, parameter :: iteration_limit = 100, halving_limit = 20
   !> Strain that weighs as much as a relative error of one in the yield condition.
   real(wp), parameter :: strain_weight = 1.0e-3_wp
   !> Norm below which one more correction ends the iteration.

@@ -55,7 +55,12 @@ contains
       set_t("Ti-4Al, 1 %", law_of("cpb06 C11=1 C12=0.0431 C13=0.3369 C22=0.9562 "// &
                                   "C23=0.3139 C33=1.0861 k=-0.1868 m=2")), &
       set_t("Ti-4Al, 4 %", law_of("cpb06 C11=1 C12=0.2178 C13=0.3635 C22=1.0422 "// &
-                                  "C23=0.3754 C33=0.8825 k=-0.2577 m=2"))]
+                                  "C23=0.3754 C33=0.8825 k=-0.2577 m=2")), &
+      set_t("F = G = 0.001, H = 10, N = 100", law_of("hill48 F=1e-3 G=1e-3 H=10 N=100")), &
+      set_t("r0 = 0.01, r45 = r90 = 20", law_of("hill48 r0=0.01 r45=20 r90=20")), &
+      set_t("c = 2.25, C1 ... C6 = 0.01 ... 5", &
+            law_of("drucker c=2.25 C1=3 C2=0.1 C3=1 C4=0.01 C5=5 C6=2")), &
+      set_t("k = -1, m = 100", law_of("cpb06 C11=1 C12=0 C13=0 C22=1 C23=0 C33=1 k=-1 m=100"))]
   end function published_sets
 
   !> A law of its name and values in the manner of the input: "swift K=565 e0=0.007117 n=0.259".
