@@ -21,7 +21,8 @@ module dd3_model_phase
     real(wp), allocatable :: move(:, :)
     !> Whether a force acts on the tool, which then follows it, `(n_tool)`.
     logical, allocatable :: pressed(:)
-    !> The force on the pressed tools at the start and at the end of the phase, `(3, n_tool)`, N.
+    !> The force on the pressed tools at the start and at the end of the phase, `(3, n_tool)`, N; the
+    !> start is set when the phase begins.
     real(wp), allocatable :: press_start(:, :), press_end(:, :)
     !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase
     !> begins.

@@ -74,7 +74,6 @@ contains
     phase%displacement = 0.0_wp
     phase%keeps_press = .true.
     phase%keeps_load = .true.
-    phase%press_start = before%press_end
   end subroutine follow
 
   !> Takes name, control and limits.
@@ -139,7 +138,6 @@ contains
     integer, intent(in) :: tool
 
     phase%pressed(tool) = .false.
-    phase%press_start(:, tool) = 0.0_wp
     phase%press_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
 
