@@ -2,7 +2,7 @@
 !> together.
 module dd3_base_error
   use dd3_base_kinds, only : i8
-  use dd3_base_text, only : same_name
+  use dd3_base_text, only : same_name, slice
   implicit none
   private
   public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written
@@ -77,7 +77,7 @@ contains
       first = first + 1
       last = last - 1
     end if
-    if (same_name(at%text(first:last), name)) text = at%text(first:last)
+    if (same_name(slice(at%text, first, last), name)) text = slice(at%text, first, last)
   end function as_written
 
   !> Makes an error that shows the place in the input: file, line, text, caret, what was expected.
