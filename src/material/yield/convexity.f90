@@ -1,6 +1,6 @@
-!> Whether a criterion with its parameters gives a closed and convex surface. Closed: the pure shears
-!> have an equivalent stress, and over the deviators without shears it nowhere falls to a small part
-!> of its largest value. Convex: over a fixed set of directions the second derivative must have no
+!> Whether a criterion with its parameters gives a closed and convex surface. Closed: over the
+!> deviators without shears and in the pure shears the equivalent stress nowhere falls to a small
+!> part of its largest value without shears. Convex: over a fixed set of directions the second derivative must have no
 !> negative eigenvalue, which the pivots of its elimination show (Sylvester's law of inertia); half
 !> of the directions lie in the sheet's plane, half anywhere among the deviators. They are points of
 !> the additive sequence of M. Roberts (The unreasonable effectiveness of quasirandom sequences,
@@ -17,9 +17,10 @@ module dd3_material_yield_convexity
 
   !> Points of the sequence in the plane, and among all deviators; those outside the ball count.
   integer, parameter :: points(2) = [1500, 5000]
-  !> Deviators without shears that are tried, and the smallest part of the largest equivalent stress
-  !> among them: less than the distance of neighbours, so that a zero between them is seen.
-  integer, parameter :: angles = 720
+  !> Deviators without shears that are tried, shears, each both ways, and the smallest part of the
+  !> largest equivalent stress without shears: less than the distance of neighbours, so that a zero
+  !> between them is seen.
+  integer, parameter :: angles = 720, shears = 6
   !> See above.
   real(wp), parameter :: smallest_part = 0.005_wp
   !> Roots of x^4 = x + 1 and x^7 = x + 1, whose powers generate the sequences.
@@ -67,43 +68,41 @@ contains
     text = "; nonconvex=1 takes this one all the same, with a warning, and stress updates may fail"
   end function waiver
 
-  !> Adds a problem where a stress has no equivalent stress.
+  !> Adds a problem where a stress has next to no equivalent stress.
   subroutine check_closed(criterion, problems)
     !> The criterion, with its parameters.
     class(yield_criterion_t), intent(in) :: criterion
     !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
-    real(wp) :: value(angles), stress(6)
+    real(wp) :: value(angles + shears)
     integer :: n
 
-    do n = 4, 6
-      stress = 0.0_wp
-      stress(n) = 1.0_wp
-      if (criterion%value(stress) > 0.0_wp .and. criterion%value(-stress) > 0.0_wp) cycle
-      call add_problem(problems, 0, "the yield surface is open at the stress "// &
-                       components(stress), "a closed surface")
-      return
-    end do
-    do n = 1, angles
-      value(n) = criterion%value(without_shear(n))
+    do n = 1, size(value)
+      value(n) = criterion%value(tried(n))
     end do
     n = minloc(value, 1)
-    if (value(n) > smallest_part*maxval(value)) return
+    if (value(n) > smallest_part*maxval(value(:angles))) return
     call add_problem(problems, 0, "the yield surface is open near the stress "// &
-                     components(without_shear(n)), "a closed surface")
+                     components(tried(n)), "a closed surface")
   end subroutine check_closed
 
-  !> A deviator without shears.
-  pure function without_shear(n) result(stress)
+  !> A deviator without shears, or a shear; all of the same norm.
+  pure function tried(n) result(stress)
     !> Its number.
     integer, intent(in) :: n
     real(wp) :: stress(6), angle
+    integer :: k
 
-    angle = 2*acos(-1.0_wp)*real(n, wp)/angles
     stress = 0.0_wp
-    stress(1:3) = cos(angle)*[0.5_wp, -0.5_wp, 0.0_wp] + &
-                  sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
-  end function without_shear
+    if (n <= angles) then
+      angle = 2*acos(-1.0_wp)*real(n, wp)/angles
+      stress(1:3) = cos(angle)*[0.5_wp, -0.5_wp, 0.0_wp] + &
+                    sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
+    else
+      k = n - angles
+      stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*sqrt(0.5_wp)
+    end if
+  end function tried
 
   !> A point of the sequence: a plane stress, or a deviator.
   pure function direction(family, n) result(stress)
