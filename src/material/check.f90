@@ -75,8 +75,8 @@ contains
   end subroutine law_rows
 
   !> What a law finds wrong with its values taken together; each of them is known and within its
-  !> bounds, none is missing.
-  subroutine check_together(kind, name, values, problems)
+  !> bounds, none is missing. Where one is not, only what rests on the names of those given.
+  subroutine check_together(kind, name, values, problems, refused)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
     !> Name of the law.
@@ -85,18 +85,24 @@ contains
     type(law_value_t), intent(in) :: values(:)
     !> What is wrong; of size zero where nothing is.
     type(problem_t), allocatable, intent(out) :: problems(:)
+    !> Whether one of the values has been refused; without it none.
+    logical, intent(in), optional :: refused
     type(yield_slot_t) :: criterion
     type(hardening_slot_t) :: hardening
     type(backstress_slot_t) :: backstress
+    integer :: before
 
-    allocate (problems(0))
+    before = 0
+    if (present(refused)) before = merge(1, 0, refused)
+    allocate (problems(before))
     select case (kind)
     case (law_yield)
       call find_criterion(name, criterion)
       call criterion%law%check(values, problems)
-      if (size(problems) > 0) return
-      call criterion%law%set(values)
-      call check_convexity(criterion%law, problems)
+      if (size(problems) == 0) then
+        call criterion%law%set(values)
+        call check_convexity(criterion%law, problems)
+      end if
     case (law_hardening)
       call find_hardening(name, hardening)
       call hardening%law%check(values, problems)
@@ -104,6 +110,7 @@ contains
       call find_backstress(name, backstress)
       call backstress%law%check(values, problems)
     end select
+    problems = problems(before + 1:)
   end subroutine check_together
 
 end module dd3_material_check

@@ -97,8 +97,7 @@ contains
     choice%name = names(position)
     call law_rows(kind, names(position), rows)
     call check_law_values(spec, rows, choice%values, errors, origin)
-    if (errors%count > found) return
-    call check_together(kind, choice%name, choice%values, problems)
+    call check_together(kind, choice%name, choice%values, problems, errors%count > found)
     do i = 1, size(problems)
       call errors%push_input(problem_place(spec, origin, problems(i)%index), &
           trim(problems(i)%message), &

@@ -18,7 +18,8 @@ module dd3_material_backstress_law
     procedure(set_i), deferred :: set
     !> The back-stress at the end of an increment.
     procedure(back_stress_i), deferred :: back_stress
-    !> Finds what the parameters' own bounds cannot say.
+    !> Finds what the parameters' own bounds cannot say. Problems that are there already: a value is
+    !> missing or out of bounds, and only the names can be relied upon.
     procedure, nopass :: check => check_nothing
   end type backstress_t
 

@@ -5,7 +5,7 @@ module dd3_material_hardening_hockett_sherby
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_backstress_relaxation, only : longest_decay
-  use dd3_material_description, only : description_t, problem_t, add_problem, is_given, &
+  use dd3_material_description, only : description_t, problem_t, add_problem, &
                                        position_of, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t
   use dd3_material_hardening_law, only : hardening_t
@@ -57,7 +57,7 @@ contains
     !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
-    if (.not. (is_given(values, "Y0") .and. is_given(values, "Ysat"))) return
+    if (size(problems) > 0) return
     if (value_of(values, "Ysat") >= value_of(values, "Y0")) return
     call add_problem(problems, position_of(values, "Ysat"), "Ysat is smaller than Y0", &
                      "at least Y0")

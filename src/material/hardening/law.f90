@@ -29,7 +29,8 @@ module dd3_material_hardening_law
     procedure :: back_stress => no_back_stress
     !> Its own internal variables at the end of an increment.
     procedure :: advance => advance_nothing
-    !> Finds what the parameters' own bounds cannot say.
+    !> Finds what the parameters' own bounds cannot say. Problems that are there already: a value is
+    !> missing or out of bounds, and only the names can be relied upon.
     procedure, nopass :: check => check_nothing
   end type hardening_t
 

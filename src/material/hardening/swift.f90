@@ -60,7 +60,6 @@ contains
     else if (.not. (is_given(values, "e0") .or. is_given(values, "Y0"))) then
       call add_problem(problems, 0, "e0 is missing", "e0, or Y0 in its place")
     else if (is_given(values, "Y0") .and. size(problems) == 0) then
-      if (.not. (is_given(values, "K") .and. is_given(values, "n"))) return
       logarithm = log10(value_of(values, "Y0")/value_of(values, "K"))/value_of(values, "n")
       if (logarithm < -12.0_wp .or. logarithm > 1.0_wp) then
         call add_problem(problems, position_of(values, "Y0"), &

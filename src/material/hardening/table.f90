@@ -58,6 +58,7 @@ contains
     type(problem_t), allocatable, intent(inout) :: problems(:)
     integer :: i, last
 
+    if (size(problems) > 0) return
     last = 0
     do i = 1, size(values)
       if (values(i)%name /= pair_name) cycle

@@ -27,7 +27,8 @@ module dd3_material_yield_criterion
     procedure(gradient_i), deferred :: gradient
     !> The equivalent stress, its gradient and its second derivative.
     procedure(second_i), deferred :: second_derivative
-    !> Finds what the parameters' own bounds cannot say.
+    !> Finds what the parameters' own bounds cannot say. Problems that are there already: a value is
+    !> missing or out of bounds, and only the names can be relied upon.
     procedure, nopass :: check => check_nothing
   end type yield_criterion_t
 
