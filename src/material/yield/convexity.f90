@@ -1,8 +1,8 @@
 !> Whether a criterion with its parameters gives a closed and convex surface. Closed: over the
 !> deviators without shears and in the pure shears the equivalent stress nowhere falls to a small
 !> part of its largest value without shears. Convex: over a fixed set of directions the second
-!> derivative must have no negative eigenvalue, which the pivots of its elimination show (Sylvester's
-!> law of inertia); half of the directions lie in the sheet's plane, half anywhere among the
+!> derivative must have no negative eigenvalue, which the pivots of its elimination show
+!> (Sylvester's law of inertia); half of the directions lie in the sheet's plane, half anywhere among the
 !> deviators. They are points of the additive sequence of M. Roberts (The unreasonable effectiveness
 !> of quasirandom sequences, extremelearning.com.au, 2018) inside the unit ball.
 module dd3_material_yield_convexity
