@@ -2,9 +2,9 @@
 !> deviators without shears and in the pure shears the equivalent stress nowhere falls to a small
 !> part of its largest value without shears. Convex: over a fixed set of directions the second
 !> derivative must have no negative eigenvalue, which the pivots of its elimination show
-!> (Sylvester's law of inertia); half of the directions lie in the sheet's plane, half anywhere among the
-!> deviators. They are points of the additive sequence of M. Roberts (The unreasonable effectiveness
-!> of quasirandom sequences, extremelearning.com.au, 2018) inside the unit ball.
+!> (Sylvester's law of inertia); half of the directions lie in the sheet's plane, half anywhere
+!> among the deviators. They are points of the additive sequence of M. Roberts (The unreasonable
+!> effectiveness of quasirandom sequences, extremelearning.com.au, 2018) inside the unit ball.
 module dd3_material_yield_convexity
   use dd3_base_kinds, only : wp
   use dd3_material_description, only : description_t, problem_t, add_problem
