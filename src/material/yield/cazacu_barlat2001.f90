@@ -16,7 +16,8 @@ module dd3_material_yield_cazacu_barlat2001
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem, value_of
+  use dd3_material_description, only : description_t, problem_t, add_problem, position_of, &
+                                       value_of
   use dd3_material_yield_invariant, only : invariant_criterion_t, add_cubic, transform_forms
   use dd3_material_yield_transformation, only : transformation_t, new_transformation
   implicit none
@@ -82,8 +83,15 @@ contains
     !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
     type(coefficients_t) :: of
+    real(wp) :: waived
 
     if (size(problems) > 0) return
+    waived = value_of(values, "nonconvex")
+    if (waived > 0.0_wp .and. waived < 1.0_wp) then
+      call add_problem(problems, position_of(values, "nonconvex"), "nonconvex = "// &
+                       to_text(waived)//" is neither 0 nor 1", "0 or 1")
+      return
+    end if
     of = coefficients(values)
     if (of%k6 > 0.0_wp) return
     call add_problem(problems, 0, "no equivalent stress along rolling: ((a1+a3)/6)^3 - "// &
