@@ -267,6 +267,8 @@ def sought_parameters(options, data):
         fixed[name] = value
     if "k" in sought and options.criterion == "cpb06" and not any("compression" in datum.kind for datum in data):
         fixed["k"] = sought.pop("k")[0]
+    if options.criterion == "cpb06" and "C66" in sought and not any(0 < datum.angle < 90 for datum in data):
+        sought.pop("C66")  # the program's own value follows the other parameters
     if not sought:
         raise Problem(f"--fix: error: all parameters of {options.criterion} are given\n  expected: one to seek")
     if len(data) < least:
@@ -310,6 +312,8 @@ def criterion(options, points, data):
              + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
              for d, value in zip(data + told, values)]
     notes = fit.left_open(point, "left as in the isotropic case", "the rest stays as near to isotropy as they allow")
+    if options.criterion == "cpb06" and "C66" not in {**sought, **fixed}:
+        notes.insert(0, "the data say nothing about C66: left out, so that it follows the other parameters")
     return text, table, notes + fit.at_ends(point) + missed(data, values)
 
 

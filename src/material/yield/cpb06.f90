@@ -6,8 +6,9 @@
 !>     S22 = C12 s11 + C22 s22 + C23 s33    S31 = C55 s31
 !>     S33 = C13 s11 + C23 s22 + C33 s33    S12 = C66 s12
 !>
-!> and P_i = (2 Ci1 - Ci2 - Ci3)/3, so that sb = T11 in tension along rolling. With m = 2 the second
-!> derivative jumps where a principal value is zero.
+!> and P_i = (2 Ci1 - Ci2 - Ci3)/3, so that sb = T11 in tension along rolling. Shears left out are
+!> those of a plane in which the sheet is isotropic, as C66 = (C11 + C22)/2 - C12. With m = 2 the
+!> second derivative jumps where a principal value is zero.
 module dd3_material_yield_cpb06
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
@@ -53,9 +54,9 @@ contains
       row("C22", kind_real, "", "", "factor of s22 in S22"), &
       row("C23", kind_real, "", "", "factor of s33 in S22"), &
       row("C33", kind_real, "", "", "factor of s33 in S33"), &
-      row("C44", kind_real, "", "1", "factor of s23"), &
-      row("C55", kind_real, "", "1", "factor of s31"), &
-      row("C66", kind_real, "", "1", "factor of s12"), &
+      row("C44", kind_real, "", "-", "factor of s23; (C22+C33)/2 - C23 where left out"), &
+      row("C55", kind_real, "", "-", "factor of s31; (C33+C11)/2 - C13 where left out"), &
+      row("C66", kind_real, "", "-", "factor of s12; (C11+C22)/2 - C12 where left out"), &
       row("k", kind_real, "", "", "difference of tension and compression; 0: none", &
           -1.0_wp, 1.0_wp), &
       exponent_row()])
@@ -93,6 +94,16 @@ contains
     c(:, 3) = [value_of(values, "C13"), value_of(values, "C23"), value_of(values, "C33")]
   end function normal_block
 
+  !> Factor of the shear in a plane in which the sheet is isotropic.
+  pure real(wp) function isotropic_shear(c, i, j)
+    !> Block of the normal components.
+    real(wp), intent(in) :: c(3, 3)
+    !> The axes of the plane.
+    integer, intent(in) :: i, j
+
+    isotropic_shear = (c(i, i) + c(j, j))/2 - c(i, j)
+  end function isotropic_shear
+
   !> P of unit tension along rolling.
   pure function along_rolling(values) result(p)
     !> The parameters.
@@ -108,12 +119,14 @@ contains
     class(cpb06_t), intent(inout) :: self
     !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
-    real(wp) :: e(6), first(6), second(6, 6), value
+    real(wp) :: c(3, 3), e(6), first(6), second(6, 6), value
 
     self%always_convex = .true.
-    call new_transformation(self%transformation(1), normal_block(values), &
-                            [value_of(values, "C44", 1.0_wp), value_of(values, "C55", 1.0_wp), &
-                             value_of(values, "C66", 1.0_wp)])
+    c = normal_block(values)
+    call new_transformation(self%transformation(1), c, &
+                            [value_of(values, "C44", isotropic_shear(c, 2, 3)), &
+                             value_of(values, "C55", isotropic_shear(c, 3, 1)), &
+                             value_of(values, "C66", isotropic_shear(c, 1, 2))])
     call new_exponent(self%exponent, value_of(values, "m"))
     self%k = value_of(values, "k")
     self%normalisation = 1.0_wp
