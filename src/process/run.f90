@@ -242,7 +242,7 @@ contains
     do
       if (predicted) &
         call try_increment(run%stepper, model, phase, run%committed, run%trial, verdict)
-      row = status_row(run, model, phase, verdict)
+      row = status_row(run, phase, verdict)
       row%seconds = wall_time() - began
       began = wall_time()
       again = .false.
@@ -270,11 +270,9 @@ contains
   end subroutine run_increment
 
   !> The row of status.csv for an attempt, but for its outcome.
-  function status_row(run, model, phase, verdict) result(row)
+  function status_row(run, phase, verdict) result(row)
     !> The run.
     type(run_t), intent(in) :: run
-    !> The model.
-    type(model_t), intent(in) :: model
     !> The running phase.
     type(phase_t), intent(in) :: phase
     !> How the attempt ended.
