@@ -2,7 +2,8 @@
 #                  [WORKING_DIRECTORY <dir>])
 #
 # One executable and one test. pFUnit runs the files where it is installed (-DCMAKE_PREFIX_PATH=<prefix>), the stand-in of
-# tests/standin/ where it is not, or where DD3_FORCE_STANDIN is on. The label `unit` is added to those given.
+# tests/standin/ where it is not, or where DD3_FORCE_STANDIN is on. The label `unit` is added to those given. A test that names
+# no directory runs in one of its own, so that tests running side by side do not write each other's files.
 option(DD3_FORCE_STANDIN "Run the unit tests with the in-tree stand-in even where pFUnit is installed" OFF)
 
 include(PfStandin)
@@ -25,10 +26,15 @@ function(add_pfunit_ctest name)
     message(FATAL_ERROR "add_pfunit_ctest(${name}): TEST_SOURCES with OTHER_SOURCES, LINK_LIBRARIES, LABELS, "
       "WORKING_DIRECTORY; not understood: ${arg_UNPARSED_ARGUMENTS} ${arg_KEYWORDS_MISSING_VALUES}")
   endif()
+  set(directory "")
+  if(NOT arg_WORKING_DIRECTORY)
+    set(directory WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${name}.work")
+    file(MAKE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${name}.work")
+  endif()
   if(DD3_PFUNIT)
-    _add_pfunit_ctest(${ARGV})
+    _add_pfunit_ctest(${ARGV} ${directory})
   else()
-    dd3_standin_ctest(${ARGV})
+    dd3_standin_ctest(${ARGV} ${directory})
   endif()
   set_property(TEST ${name} APPEND PROPERTY LABELS unit)
   set_property(TEST ${name} PROPERTY TIMEOUT 300)
