@@ -8,7 +8,7 @@
 !> On the outer border nothing can be touched: a surface ends there, and its continuation is no
 !> tool.
 !> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov
-!> and Schweizerhof, Comput. Methods Appl. Mech. Eng. 194 (2005) 4045-4088; for signs at edges
+!> and Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges
 !> Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243-253.
 module dd3_contact_hit
   use dd3_base_kinds, only : wp
