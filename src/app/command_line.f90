@@ -8,8 +8,7 @@ module dd3_app_command_line
 
   !> The options there are.
   character(len=9), parameter :: known(8) = [character(len=9) :: "--check", "--set", "--output", &
-      "--restart", &
-                                             "--threads", "--quiet", "--version", "--help"]
+      "--restart", "--threads", "--quiet", "--version", "--help"]
 
   !> What the user asks for.
   type :: options_t

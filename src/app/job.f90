@@ -172,7 +172,7 @@ contains
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle
       call log%say("warning: material "//trim(model%material_name(i))// &
-                   ": its yield surface is taken though it may not be convex")
+          ": its yield surface is taken though it may not be convex")
     end do
   end subroutine introduce
 
@@ -186,10 +186,9 @@ contains
     integer :: i
 
     call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)// &
-        " cut back; "// &
-                 to_text(summary%iterations)//" iterations; "// &
-                 to_text(summary%solver_iterations)// &
-                 " of the linear solver; "//to_text(summary%seconds, 3)//" s")
+        " cut back; "//to_text(summary%iterations)//" iterations; "// &
+        to_text(summary%solver_iterations)//" of the linear solver; "// &
+        to_text(summary%seconds, 3)//" s")
     call log%note("time by section, s:")
     do i = 1, size(section_names)
       call log%note("  "//section_names(i)//" "//to_text(summary%profile%seconds(i), 4))

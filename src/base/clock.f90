@@ -12,8 +12,7 @@ module dd3_base_clock
                         section_factorisation = 4, section_solve = 5, section_output = 6
   !> Their names.
   character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", &
-      "contact", &
-                                                      "factorisation", "solve", "output"]
+      "contact", "factorisation", "solve", "output"]
 
   !> Seconds spent in each section.
   type :: profile_t

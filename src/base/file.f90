@@ -4,7 +4,7 @@
 !> buffer holds: a full disk is then found while all lines can still be written.
 module dd3_base_file
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_ptr, c_null_char, &
-                                          c_f_pointer, c_associated
+      c_f_pointer, c_associated
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_clock, only : wall_time

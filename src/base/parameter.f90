@@ -7,8 +7,7 @@ module dd3_base_parameter
   private
   public :: parameter_t, law_value_t, row, pair_name, in_range, range_text
   public :: kind_real, kind_integer, kind_logical, kind_name, kind_text, kind_reals, kind_names, &
-      kind_law, kind_other, &
-            kind_integers
+      kind_law, kind_other, kind_integers
 
   !> One real number.
   integer, parameter :: kind_real = 1

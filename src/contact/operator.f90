@@ -31,8 +31,8 @@ module dd3_contact_operator
 
   !> A tangential force below this share of its parts has no direction.
   real(wp), parameter :: no_direction = 1.0e-13_wp
-  !> Gap and slip below this are round-off, mm: a node that rests on a tool without force sticks, else
-  !> a sheet that nothing but friction holds would drift.
+  !> Gap and slip below this are round-off, mm: a node that rests on a tool without force sticks,
+  !> else a sheet that nothing but friction holds would drift.
   real(wp), parameter :: round_off = 1.0e-12_wp
   !> Largest quotient of the friction force and |sigma_t| in the linearisation; it is at most 1 on
   !> and outside the cone, more only where a slipping state is prescribed inside it.

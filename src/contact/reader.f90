@@ -68,9 +68,8 @@ contains
 
     call read_lines(file, line, error)
     if (allocated(error)) then
-      call errors%push_input(location, "the tool surface '"//file//"' cannot be read: " &
-                             //error%message, &
-                             "a file of Bézier patches")
+      call errors%push_input(location, "the tool surface '"//file//"' cannot be read: "// &
+          error%message, "a file of Bézier patches")
       return
     end if
     reading%file = file
@@ -135,7 +134,7 @@ contains
     call split_line(line, token, continues, reading%errors)
     if (continues) then
       call report(reading, place(line, index(text, "&"), 1), &
-                  "a line of a tool surface does not go on in the next one")
+          "a line of a tool surface does not go on in the next one")
     end if
     if (token%count == 0) return
     here = place(line, 1, len_trim(text))
@@ -147,7 +146,7 @@ contains
     else if (.not. reading%skipping) then
       reading%skipping = .true.
       call report(reading, token%item(1)%at, "'"//token%item(1)%text//"' stands outside a patch", &
-                  header)
+          header)
     end if
   end subroutine read_line
 
@@ -173,17 +172,16 @@ contains
       call parse_integer(token%item(i + 1)%text, reading%degree(i), ok)
       if (ok) ok = reading%degree(i) >= 1 .and. reading%degree(i) <= largest_degree
       if (ok) cycle
-      call report(reading, token%item(i + 1)%at, "'"//token%item(i + 1)%text &
-                    //"' is no degree of a patch", &
-                  "a whole number from 1 to "//to_text(largest_degree))
+      call report(reading, token%item(i + 1)%at, "'"//token%item(i + 1)%text// &
+          "' is no degree of a patch", "a whole number from 1 to "//to_text(largest_degree))
       return
     end do
     reading%rational = token%count > 3
     if (reading%rational) then
       i = merge(5, 4, same_name(token%item(4)%text, "rational"))
       if (i <= token%count) then
-        call report(reading, token%item(i)%at, "'"//token%item(i)%text &
-                      //"' is not understood here", header)
+        call report(reading, token%item(i)%at, "'"//token%item(i)%text// &
+            "' is not understood here", header)
         return
       end if
     end if
@@ -214,10 +212,9 @@ contains
     if (reading%n_read > reading%n_point) then
       reading%sound = .false.
       if (reading%n_read == reading%n_point + 1) then
-        call report(reading, here, "patch "//to_text(reading%n_begun)//" of degrees " &
-                      //degrees(reading)//" has more points than " &
-                      //to_text(reading%n_point), &
-                    "the next patch, or the end of the file")
+        call report(reading, here, "patch "//to_text(reading%n_begun)//" of degrees "// &
+            degrees(reading)//" has more points than "//to_text(reading%n_point), &
+            "the next patch, or the end of the file")
       end if
       return
     end if
@@ -227,9 +224,8 @@ contains
       reading%sound = .false.
       i = min(n + 1, token%count)
       call report(reading, merge_place(token%item(i)%at, here, token%count > n), &
-                  "a point of this patch has "//to_text(n) &
-                    //" numbers, here are " &
-                    //to_text(token%count), expected)
+          "a point of this patch has "//to_text(n)//" numbers, here are "//to_text(token%count), &
+          expected)
       return
     end if
     do i = 1, n
@@ -308,10 +304,9 @@ contains
     if (.not. reading%open) return
     reading%open = .false.
     if (reading%n_read < reading%n_point) then
-      call report(reading, reading%begun, "patch "//to_text(reading%n_begun)//" ends after " &
-                    //to_text(reading%n_read)//" of its points", &
-                  to_text(reading%n_point)//" points for the degrees " &
-                    //degrees(reading))
+      call report(reading, reading%begun, "patch "//to_text(reading%n_begun)//" ends after "// &
+          to_text(reading%n_read)//" of its points", to_text(reading%n_point)// &
+          " points for the degrees "//degrees(reading))
       return
     end if
     if (.not. reading%sound) return
@@ -327,7 +322,7 @@ contains
     end associate
     if (is_degenerate(patch)) then
       call report(reading, reading%begun, "patch "//to_text(reading%n_begun)//" has no area", &
-                  "control points that span a surface")
+          "control points that span a surface")
       return
     end if
     if (reading%n_patch == size(reading%patch)) then
@@ -376,8 +371,8 @@ contains
         if (next >= k .or. .not. surface%edge(e, k)%opposite) cycle
         here%line = surface%patch(k)%line
         call report(reading, here, "the normals of patches "//to_text(next)//" and "//to_text(k)// &
-                    " point to opposite sides of their common edge", &
-                    "S_u x S_v pointing out of the tool on both")
+            " point to opposite sides of their common edge", &
+            "S_u x S_v pointing out of the tool on both")
       end do
     end do
   end subroutine check_orientation

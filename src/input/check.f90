@@ -61,7 +61,7 @@ contains
     nearest = nearest_name(block%keyword, table%keyword)
     if (nearest /= "") nearest = "; did you mean *"//upper_case(nearest)//"?"
     call errors%push_input(block%opened, "unknown block *"//upper_case(block%keyword)//nearest, &
-                           "one of: *"//upper_case(join(table%keyword, " *")))
+        "one of: *"//upper_case(join(table%keyword, " *")))
   end subroutine unknown_block
 
   !> Checks a block's own name, and that it does not stand there twice.
@@ -86,14 +86,13 @@ contains
         call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
       else if (row%named .and. .not. is_name(block%name)) then
         call errors%push_input(block%named, "'"//block%called()//"' cannot be a name", &
-                               "a letter, then letters, digits, _ - or ., at most 60 characters")
+            "a letter, then letters, digits, _ - or ., at most 60 characters")
       end if
       do j = 1, i - 1
         if (deck%block(j)%keyword /= block%keyword) cycle
         if (row%repeatable .and. (deck%block(j)%name /= block%name .or. block%name == "")) cycle
         call errors%push_input(block%named, trim(title//" "//block%called())// &
-                               trim(merge(" is given twice        ", &
-                               " may be given only once", row%repeatable)))
+            trim(merge(" is given twice        ", " may be given only once", row%repeatable)))
         exit
       end do
     end associate
@@ -183,8 +182,7 @@ contains
       if (block%find(key(k)%name) > 0 .or. key(k)%default == "-") cycle
       if (key(k)%default == "") then
         call errors%push_input(block%opened, "'"//trim(key(k)%name)//"' is missing in "// &
-            title_of(block), &
-                               trim(key(k)%name)//" = "//trim(key(k)%help))
+            title_of(block), trim(key(k)%name)//" = "//trim(key(k)%help))
         cycle
       end if
       word = token_list_t()

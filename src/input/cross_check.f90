@@ -73,8 +73,8 @@ contains
       room = min(x(1) - x(0), x(n) - x(n - 1))
       if (shift >= room) then
         call errors%push_input(blank%source%at("skew"), "skew = "//to_text(blank%skew)// &
-            " folds the elements at the ends", &
-                               "a magnitude below "//to_text(2.0_wp*room*real(n, wp)))
+            " folds the elements at the ends", "a magnitude below "// &
+            to_text(2.0_wp*room*real(n, wp)))
       end if
     end associate
   end subroutine check_blank
@@ -98,8 +98,7 @@ contains
     k = block%find(key)
     if (size(x) /= n + 1) then
       call errors%push_input(block%at(key), "there are "//to_text(size(x))//" abscissae for "// &
-          to_text(n)//" elements", &
-                             key//" = "//to_text(n + 1)//" numbers rising from 0 to 1")
+          to_text(n)//" elements", key//" = "//to_text(n + 1)//" numbers rising from 0 to 1")
       return
     end if
     if (abs(x(1)) > 0.0_wp) call errors%push_input(block%at(key), key//" does not begin with 0", &
@@ -128,15 +127,13 @@ contains
         set%source%has("near")])
     if (i /= 1) then
       call errors%push_input(set%source%opened, "set '"//set%source%called()//"' is chosen in "// &
-          to_text(i)//" ways", &
-                             "one of plane, box, nodes, near; 'of' keeps another set's members")
+          to_text(i)//" ways", "one of plane, box, nodes, near; 'of' keeps another set's members")
     end if
     if (.not. set%source%has("box")) return
     do i = 1, 5, 2
       if (set%value(i + 1) >= set%value(i)) cycle
       call errors%push_input(set%source%entry(set%source%find("box"))%value(i)%at, &
-          "the box is inside out", &
-                             "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1")
+          "the box is inside out", "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1")
       return
     end do
   end subroutine check_set
@@ -151,7 +148,7 @@ contains
     if (any(abs(material%frame) > 0.0_wp)) return
     call errors%push_input(material%source%at("rolling_direction"), &
         "rolling and normal direction vanish or are parallel", &
-                           "two directions square to each other")
+        "two directions square to each other")
   end subroutine check_material
 
   !> Checks the bounds of the factor r, where the block gives one of them.
@@ -170,8 +167,7 @@ contains
     if (.not. given(block, key)) return
     if (limits%r_min%value <= limits%r_max%value) return
     call errors%push_input(block%at(key), "r_min = "//to_text(limits%r_min%value)// &
-        " is larger than r_max = "// &
-                           to_text(limits%r_max%value), "r_min <= r_max")
+        " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max")
   end subroutine check_limits
 
   !> Whether a key was written, not filled in.
@@ -258,8 +254,8 @@ contains
       do j = 1, size(case%tool)
         if (case%history(i)%name /= case%tool(j)%name) cycle
         call errors%push_input(case%history(i)%source%named, "a tool is called '"// &
-            case%tool(j)%source%called()//"' already: two columns "// &
-                               "would have one name", "another name")
+            case%tool(j)%source%called()//"' already: two columns would have one name", &
+            "another name")
       end do
     end do
   end subroutine check_history_names

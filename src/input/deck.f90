@@ -181,8 +181,7 @@ contains
     do while (continues)
       if (i == size(text)) then
         call errors%push_input(place(line, len_trim(line%text), 1), &
-            "the last line of the file goes on in another", &
-                               "a line after the ampersand")
+            "the last line of the file goes on in another", "a line after the ampersand")
         exit
       end if
       call take_line(self, line, text, i)
@@ -258,8 +257,7 @@ contains
     end if
     if (word%count > 1) then
       call errors%push_input(word%item(2)%at, "nothing but the block's name stands after *"// &
-          upper_case(keyword), &
-                             "values follow on lines of their own: key = value")
+          upper_case(keyword), "values follow on lines of their own: key = value")
     end if
   end subroutine open_block
 
@@ -315,7 +313,7 @@ contains
     if (self%mode == into_nothing) then
       if (.not. self%stray) then
         call errors%push_input(token%item(1)%at, "this line belongs to no block", &
-                               "a line *BLOCK above; *INCLUDE ends the block before it")
+            "a line *BLOCK above; *INCLUDE ends the block before it")
       end if
       self%stray = .true.
       return
@@ -357,11 +355,10 @@ contains
           "key = value")
     else if (token%count == 1) then
       call errors%push_input(token%item(1)%at, "this is neither a block nor a key with its value", &
-                             "*BLOCK name, or key = value")
+          "*BLOCK name, or key = value")
     else if (token%item(2)%text /= "=" .or. token%item(2)%quoted) then
       call errors%push_input(token%item(2)%at, "an equals sign is missing after '"// &
-          token%item(1)%text//"'", &
-                             "key = value")
+          token%item(1)%text//"'", "key = value")
     else if (token%count == 2) then
       call errors%push_input(token%item(2)%at, "no value is given for '"//token%item(1)%text//"'", &
           "key = value")

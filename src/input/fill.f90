@@ -5,8 +5,8 @@ module dd3_input_fill
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, deck_t, entry_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, law_parameter_t, law_spec_t, &
-      material_spec_t, tool_spec_t, boundary_spec_t, history_spec_t, set_plane, set_box, set_nodes, &
-      set_near, fields_every, fields_at, fields_increments
+      material_spec_t, tool_spec_t, boundary_spec_t, history_spec_t, set_plane, set_box, &
+      set_nodes, set_near, fields_every, fields_at, fields_increments
   use dd3_input_fill_point, only : fill_point
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_number, only : parse_pair, parse_real

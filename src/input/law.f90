@@ -99,7 +99,7 @@ contains
         from = [from, i]
       else if (rows(k)%default == "") then
         call errors%push_input(spec%at, "'"//trim(rows(k)%name)//"' is missing for "//spec%name, &
-                               trim(rows(k)%name)//"=value: "//trim(rows(k)%help))
+            trim(rows(k)%name)//"=value: "//trim(rows(k)%help))
       else if (rows(k)%default /= "-") then
         call parse_real(trim(rows(k)%default), value%value, ok)
         values = [values, value]

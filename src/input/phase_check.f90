@@ -93,8 +93,7 @@ contains
 
     if (named(tool)) then
       call errors%push_input(at, "tool '"//case%tool(tool)%source%called()// &
-          "' is told two things in one phase", &
-                             "one of hold, move and press for each tool")
+          "' is told two things in one phase", "one of hold, move and press for each tool")
     end if
     named(tool) = .true.
   end subroutine name_tool
@@ -145,12 +144,11 @@ contains
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "nothing happens in this phase", &
-                               "at least one of move, press, displace, load, release")
+            "at least one of move, press, displace, load, release")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &
-            " is out of range", &
-                               "a fraction of the phase, at most 1, where control = load")
+            " is out of range", "a fraction of the phase, at most 1, where control = load")
       end if
       return
     end if
@@ -162,9 +160,8 @@ contains
       return
     end do
     call errors%push_input(phase%source%at("control"), "the controlling tool '"// &
-        case%tool(phase%control)%source%called()// &
-                           "' has no move in this phase", "move = "// &
-                           case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
+        case%tool(phase%control)%source%called()//"' has no move in this phase", "move = "// &
+        case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
   end subroutine check_control
 
   !> Checks what ends the phase early.
@@ -184,8 +181,9 @@ contains
     end if
     if (motion(phase%until%tool) == held) then
       call errors%push_input(phase%until%at, "tool '"// &
-          case%tool(phase%until%tool)%source%called()//"' stands still in this phase: "// &
-                             "it has no line of motion", "a tool that is moved or pressed")
+          case%tool(phase%until%tool)%source%called()// &
+          "' stands still in this phase: it has no line of motion", &
+          "a tool that is moved or pressed")
     end if
   end subroutine check_until
 

@@ -110,8 +110,7 @@ contains
     do i = 1, size(self%item)
       if (self%item(i)%defined) cycle
       call errors%push_input(self%item(i)%at, "the input defines no parameter '"// &
-          self%item(i)%name//"'", &
-                             alternatives(self, self%item(i)%name))
+          self%item(i)%name//"'", alternatives(self, self%item(i)%name))
     end do
   end subroutine check_overrides
 
@@ -148,10 +147,9 @@ contains
         if (.not. self%item(i)%defined) i = 0
       end if
       if (i == 0) then
-        call errors%push_input(at, "unknown parameter '"// &
-            slice(token%text, first + k + 1, first + k + last - 2)//"'", &
-                               alternatives(self, slice(token%text, first + k + 1, &
-                               first + k + last - 2)))
+        call errors%push_input(at, "unknown parameter '"//slice(token%text, first + k + 1, &
+            first + k + last - 2)//"'", alternatives(self, slice(token%text, first + k + 1, &
+            first + k + last - 2)))
         return
       end if
       if (last + 1 == len(token%text) .and. .not. token%quoted) then

@@ -93,8 +93,7 @@ contains
         last = closing_quote(line%text, start)
         if (last == 0) then
           call errors%push_input(place(line, start, len_trim(line%text) - start + 1), &
-              "this quote is not closed", &
-                                 "a second "//line%text(start:start)//" on the same line")
+              "this quote is not closed", "a second "//line%text(start:start)//" on the same line")
           return
         end if
         call add_token(token, slice(line%text, start + 1, last - 1), .true., place(line, start, &

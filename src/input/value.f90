@@ -87,12 +87,10 @@ contains
     if (wanted == 0 .or. given == wanted) return
     if (given > wanted) then
       call errors%push_input(entry%value(wanted + 1)%at, counted(given, "value")// &
-          " given where "// &
-                             to_text(wanted)//" would do", describe(row))
+          " given where "//to_text(wanted)//" would do", describe(row))
     else
       call errors%push_input(entry%value(given)%at, "only "//counted(given, "value")//" of "// &
-          to_text(wanted), &
-                             describe(row))
+          to_text(wanted), describe(row))
     end if
   end subroutine check_numbers
 
@@ -127,8 +125,7 @@ contains
       entry%number = [entry%number, value]
     else if (index(token%text, ",") > 0) then
       call errors%push_input(token%at, "'"//token%text// &
-          "' is not a number: decimals take a point, values are "// &
-                             "separated by blanks", expected)
+          "' is not a number: decimals take a point, values are separated by blanks", expected)
     else if (verify(token%text, "+-.0123456789eEdD") == 0 .and. scan(token%text, "eEdD") > 1) then
       call errors%push_input(token%at, "'"//token%text//"' is not a number that can be held", &
           expected)
@@ -357,8 +354,7 @@ contains
     do i = 1, size(entry%value)
       if (k > size(form)) then
         call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
-            "' is one value too many", &
-                               describe(row))
+            "' is one value too many", describe(row))
         return
       end if
       wanted = form(k)
@@ -371,7 +367,7 @@ contains
     if (again .or. k > size(form)) return
     if (form(k)(1:1) == "[") return
     call errors%push_input(entry%value(size(entry%value))%at, &
-                           "something is missing after this: "//trim(form(k)), describe(row))
+        "something is missing after this: "//trim(form(k)), describe(row))
   end subroutine check_form
 
   !> Checks one word of a value against one word of the form.

@@ -3,9 +3,8 @@
 !> it is the library in use (looked up by name in the running program); with any other BLAS nothing
 !> happens.
 module dd3_linalg_blas_threads
-  use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, &
-    c_null_char, c_associated, &
-                                          c_f_procpointer
+  use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, &
+      c_associated, c_f_procpointer
   implicit none
   private
   public :: use_one_blas_thread

@@ -26,8 +26,7 @@ module dd3_linalg_cgs
   integer, parameter :: restart_limit = 5
   !> How a cycle ended.
   integer, parameter :: ended_converged = 0, ended_rho = 1, ended_sigma = 2, ended_diverged = 3, &
-    ended_stalled = 4, &
-                        ended_drifted = 5, ended_spent = 6
+      ended_stalled = 4, ended_drifted = 5, ended_spent = 6
   !> The same in words.
   character(len=48), parameter :: ended_text(6) = [character(len=48) :: &
     "CGS broke down (rho)", "CGS broke down (sigma)", "CGS diverged", "CGS stalled", &

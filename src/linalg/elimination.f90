@@ -1,5 +1,6 @@
-!> Innermost kernel of the incomplete factorisation. It has a file of its own so that it is not merged
-!> into its caller: as arguments its arrays are known not to overlap, and the loop is free of tests.
+!> Innermost kernel of the incomplete factorisation. It has a file of its own so that it is not
+!> merged into its caller: as arguments its arrays are known not to overlap, and the loop is free of
+!> tests.
 module dd3_linalg_elimination
   use dd3_base_kinds, only : wp
   implicit none

@@ -70,8 +70,8 @@ module dd3_linalg_ilu
 
   !> A complete factorisation is tried up to this many times the blocks of the matrix.
   integer, parameter :: fill_limit = 12
-  !> Iterations that an incomplete factorisation is reckoned to cost (some 40, whose blocks come from
-  !> memory and take twice the time of those of an elimination).
+  !> Iterations that an incomplete factorisation is reckoned to cost (some 40, whose blocks come
+  !> from memory and take twice the time of those of an elimination).
   integer, parameter :: reckoned_iterations = 80
 
 contains

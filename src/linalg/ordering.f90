@@ -71,9 +71,8 @@ contains
     integer(c_int) :: status
 
     allocate (permutation(matrix%n))
-    status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), int(matrix%column &
-      - 1, c_int), &
-                       permutation, c_null_ptr, c_null_ptr)
+    status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), &
+        int(matrix%column - 1, c_int), permutation, c_null_ptr, c_null_ptr)
     if (status < 0) then
       call fatal_error(error, "AMD could not order the matrix")
       return

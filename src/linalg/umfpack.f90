@@ -187,8 +187,7 @@ contains
     status = status_ok
     if (.not. c_associated(self%symbolic)) then
       status = umfpack_di_symbolic(int(self%n, c_int), int(self%n, c_int), self%start, self%row, &
-        self%value, &
-                                   self%symbolic, self%control, info)
+          self%value, self%symbolic, self%control, info)
     end if
     if (status == status_ok) then
       status = umfpack_di_numeric(self%start, self%row, self%value, self%symbolic, self%numeric, &

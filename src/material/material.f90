@@ -5,7 +5,7 @@ module dd3_material_material
   use dd3_base_verdict, only : verdict_t
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
-                                       flow_response_of
+      flow_response_of
   use dd3_material_description, only : law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t

@@ -12,7 +12,7 @@ module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
-                                       add_back_stresses
+      add_back_stresses
   use dd3_material_elasticity, only : elastic_strain, elastic_stress
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none

@@ -61,11 +61,10 @@ contains
       node = mesh%nodes_of(phase%displace(i)%set)
       if (any(held(phase%displace(i)%axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
         call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-                               "' is held along this axis by a *BOUNDARY", &
-                               "nodes that are free to move")
+            "' is held along this axis by a *BOUNDARY", "nodes that are free to move")
       else if (any(moved(phase%displace(i)%axis, node))) then
         call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-                               "' is displaced along this axis already in this phase")
+            "' is displaced along this axis already in this phase")
       end if
       moved(phase%displace(i)%axis, node) = .true.
     end do

@@ -74,8 +74,8 @@ contains
     do i = 1, size(wanted%range, 2)
       if (wanted%range(2, i) > size(member)) then
         call errors%push_input(wanted%source%entry(wanted%source%find("nodes"))%value(i)%at, &
-                               "there is no node "//to_text(wanted%range(2, i)), &
-                               "numbers from 1 to "//to_text(size(member)))
+            "there is no node "//to_text(wanted%range(2, i)), "numbers from 1 to "// &
+            to_text(size(member)))
         cycle
       end if
       named(wanted%range(1, i):wanted%range(2, i)) = .true.

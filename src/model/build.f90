@@ -134,9 +134,8 @@ contains
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
-      call errors%push_input(case%blank(1)%source%opened, "element "//to_text(e) &
-          //" has no volume", &
-                             "a blank whose node lines do not cross")
+      call errors%push_input(case%blank(1)%source%opened, "element "//to_text(e)// &
+          " has no volume", "a blank whose node lines do not cross")
       return
     end do
   end subroutine take_mesh
@@ -275,10 +274,9 @@ contains
             "patches whose normals (the cross product of their u and v) point to the sheet")
       end if
       if (worst == 0) cycle
-      call errors%push_input(case%tool(t)%source%opened, "tool '" &
-          //case%tool(t)%source%called()//"' starts inside the sheet: "// &
-                             "node "//to_text(worst)//" is "//to_text(-deepest, 4) &
-                             //" mm deep in it", &
+      call errors%push_input(case%tool(t)%source%opened, "tool '"//case%tool(t)%source%called()// &
+          "' starts inside the sheet: node "//to_text(worst)//" is "//to_text(-deepest, 4)// &
+          " mm deep in it", &
           "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
     end do
   end subroutine check_start

@@ -5,8 +5,8 @@ module dd3_model_materials
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
-  use dd3_material_check, only : check_together, known_laws, law_backstress, law_hardening, law_rows, &
-      law_yield
+  use dd3_material_check, only : check_together, known_laws, law_backstress, law_hardening, &
+      law_rows, law_yield
   use dd3_material_description, only : description_t, law_choice_t, problem_t
   use dd3_material_material, only : material_t, new_material
   use dd3_model_model, only : model_t
@@ -100,8 +100,7 @@ contains
     call check_together(kind, choice%name, choice%values, problems, errors%count > found)
     do i = 1, size(problems)
       call errors%push_input(problem_place(spec, origin, problems(i)%index), &
-          trim(problems(i)%message), &
-                             trim(problems(i)%expected))
+          trim(problems(i)%message), trim(problems(i)%expected))
     end do
   end subroutine choose
 

@@ -21,8 +21,8 @@ module dd3_model_phase
     real(wp), allocatable :: move(:, :)
     !> Whether a force acts on the tool, which then follows it, `(n_tool)`.
     logical, allocatable :: pressed(:)
-    !> The force on the pressed tools at the start and at the end of the phase, `(3, n_tool)`, N; the
-    !> start is set when the phase begins.
+    !> The force on the pressed tools at the start and at the end of the phase, `(3, n_tool)`, N;
+    !> the start is set when the phase begins.
     real(wp), allocatable :: press_start(:, :), press_end(:, :)
     !> Displacement of the tools at the start of the phase, `(3, n_tool)`, mm; set when the phase
     !> begins.
@@ -42,8 +42,8 @@ module dd3_model_phase
     real(wp), allocatable :: load_start(:, :), load_end(:, :)
     !> Whether this phase leaves the load of a set as it finds it, `(size(load_set))`.
     logical, allocatable :: keeps_load(:)
-    !> Push of the sheet on released tools that fades to nothing over the phase, `(3, n_contact)`, N;
-    !> set when the phase begins.
+    !> Push of the sheet on released tools that fades to nothing over the phase, `(3, n_contact)`,
+    !> N; set when the phase begins.
     real(wp), allocatable :: fading(:, :)
     !> What ends it early.
     type(until_spec_t) :: until

@@ -10,8 +10,7 @@ module dd3_output_fields
   use dd3_model_state, only : state_t
   use dd3_output_field_table, only : field_t, field_table, at_points, at_nodes_and_cells
   use dd3_output_hdf5, only : series_t, start_hdf5, make_group, text_attribute, integer_attribute, &
-                              rewrite_attribute, flush_hdf5, kind_real, kind_long, kind_int, &
-                              kind_byte
+      rewrite_attribute, flush_hdf5, kind_real, kind_long, kind_int, kind_byte
   use hdf5, only : hid_t, hsize_t, h5fcreate_f, h5fclose_f, h5fget_filesize_f, h5gclose_f, &
                    h5aclose_f, H5F_ACC_TRUNC_F
   implicit none

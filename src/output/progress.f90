@@ -122,13 +122,13 @@ contains
     self%looked = now
     self%last_progress = 0.0_wp
     self%speed = 0.0_wp
-    call log%say("phase "//to_text(view%phase)//" of "//to_text(size(self%phase_name))//": " &
-                 //trim(self%phase_name(view%phase)))
+    call log%say("phase "//to_text(view%phase)//" of "//to_text(size(self%phase_name))//": "// &
+        trim(self%phase_name(view%phase)))
     if (self%control_name(view%phase) == "") then
       call log%say("      done   increment            r  limited by        iterations")
     else
-      call log%say("    travel   increment            r  limited by        iterations   force on " &
-                   //trim(self%control_name(view%phase)))
+      call log%say("    travel   increment            r  limited by        iterations   "// &
+          "force on "//trim(self%control_name(view%phase)))
       call log%say("        mm                                                        N")
     end if
   end subroutine begin_phase

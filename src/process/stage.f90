@@ -66,8 +66,8 @@ contains
     phase%tool_start = state%tool_displacement
   end subroutine begin_phase
 
-  !> The force on a pressed tool goes on from its last value; on one that was held or moved until now,
-  !> from what it bears along its line.
+  !> The force on a pressed tool goes on from its last value; on one that was held or moved until
+  !> now, from what it bears along its line.
   subroutine take_press_start(phase, state)
     !> The phase.
     type(phase_t), intent(inout) :: phase

@@ -152,8 +152,8 @@ contains
     end do
   end subroutine hold_touched
 
-  !> What the user is told where the sheet yields while the forces of released tools fade: as loads of
-  !> fixed direction they may lead it on where withdrawn tools would not. Empty elsewhere.
+  !> What the user is told where the sheet yields while the forces of released tools fade: as loads
+  !> of fixed direction they may lead it on where withdrawn tools would not. Empty elsewhere.
   function release_warning(phase, strain_before, state) result(text)
     !> The phase.
     type(phase_t), intent(in) :: phase

@@ -120,7 +120,8 @@ contains
     touching = .false.
     do c = 1, model%n_contact
       if (state%status(c) == status_gap) cycle
-      if (norm2(state%lambda(:, c)) > phase%penalty*round_off) touching(state%contact_tool(c)) = .true.
+      if (norm2(state%lambda(:, c)) <= phase%penalty*round_off) cycle
+      touching(state%contact_tool(c)) = .true.
     end do
     reach = far
     do c = 1, model%n_contact

@@ -116,9 +116,9 @@ contains
     end associate
   end subroutine update_element
 
-  !> Assembles the exact stiffness of the new configuration from the tangents of the last update, or,
-  !> without a new one, that of the committed configuration with the tangents already in place: the
-  !> predictor's.
+  !> Assembles the exact stiffness of the new configuration from the tangents of the last update,
+  !> or, without a new one, that of the committed configuration with the tangents already in place:
+  !> the predictor's.
   subroutine assemble_stiffness(self, model, old, new)
     !> Gets the stiffness.
     type(system_t), intent(inout) :: self

@@ -5,7 +5,7 @@ module dd3_material_hardening_swift
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given, &
-                                       position_of, value_of
+      position_of, value_of
   use dd3_material_flow, only : flow_direction_t, flow_response_t
   use dd3_material_hardening_law, only : hardening_t
   implicit none

@@ -16,8 +16,7 @@ module dd3_material_yield_cazacu_barlat2001
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem, position_of, &
-                                       value_of
+  use dd3_material_description, only : description_t, problem_t, add_problem, position_of, value_of
   use dd3_material_yield_invariant, only : invariant_criterion_t, add_cubic, transform_forms
   use dd3_material_yield_transformation, only : transformation_t, new_transformation
   implicit none

@@ -9,7 +9,7 @@ module dd3_material_yield_hill48
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given, &
-                                       position_of, value_of
+      position_of, value_of
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   implicit none
