@@ -8,7 +8,7 @@ module dd3_input_law
   use dd3_input_number, only : parse_pair, parse_real
   use dd3_input_table, only : find_key
   use dd3_input_text_file, only : read_lines, resolve_path
-  use dd3_input_value, only : check_range
+  use dd3_input_value, only : check_range, no_number
   implicit none
   private
   public :: check_law_name, check_law_values
@@ -226,7 +226,7 @@ contains
         call errors%push_input(given%at, "'"//given%text//"' is not two numbers", &
             trim(rows(k)%name)//": "//trim(rows(k)%help))
       else if (.not. given%numeric) then
-        call errors%push_input(given%at, "'"//given%text//"' is not a number", &
+        call errors%push_input(given%at, no_number(given%text), &
             trim(rows(k)%name)//"=number"//range_text(rows(k)))
       else
         call check_range(given%value, rows(k), given%at, trim(rows(k)%name)//"=number"// &

@@ -25,6 +25,7 @@ contains
 
     call read_content(path, content, error)
     if (allocated(error)) return
+    call blank_no_break_spaces(content)
     call split_lines(content, line)
     call refuse_control_characters(line, error)
   end subroutine read_lines
@@ -73,6 +74,18 @@ contains
     end if
     close (unit, iostat=status)
   end subroutine read_content
+
+  !> Makes the no-break spaces of UTF-8, which text copied from a page may hold, two blanks each.
+  pure subroutine blank_no_break_spaces(content)
+    !> The bytes.
+    character(len=*), intent(inout) :: content
+
+    integer :: i
+
+    do i = 1, len(content) - 1
+      if (content(i:i + 1) == char(194)//char(160)) content(i:i + 1) = "  "
+    end do
+  end subroutine blank_no_break_spaces
 
   !> Cuts bytes into lines at LF, CR LF or CR; a UTF-8 byte order mark is dropped.
   pure subroutine split_lines(content, line)

@@ -13,7 +13,7 @@ module dd3_input_value
   implicit none
   private
   public :: check_value, describe, split_words, word_length, not_available, form_for, &
-      check_range, is_point
+      check_range, is_point, no_number
 
   !> Longest word in a row's lists.
   integer, parameter :: word_length = 24
@@ -123,16 +123,24 @@ contains
     call parse_real(token%text, value, ok)
     if (ok) then
       entry%number = [entry%number, value]
-    else if (index(token%text, ",") > 0) then
-      call errors%push_input(token%at, "'"//token%text// &
-          "' is not a number: decimals take a point, values are separated by blanks", expected)
-    else if (verify(token%text, "+-.0123456789eEdD") == 0 .and. scan(token%text, "eEdD") > 1) then
-      call errors%push_input(token%at, "'"//token%text//"' is not a number that can be held", &
-          expected)
     else
-      call errors%push_input(token%at, "'"//token%text//"' is not a number", expected)
+      call errors%push_input(token%at, no_number(token%text), expected)
     end if
   end subroutine take_real
+
+  !> What is said of a word that is not a number.
+  pure function no_number(word) result(text)
+    !> The word.
+    character(len=*), intent(in) :: word
+    character(len=:), allocatable :: text
+
+    text = "'"//word//"' is not a number"
+    if (index(word, ",") > 0) then
+      text = text//": decimals take a point, values are separated by blanks"
+    else if (verify(word, "+-.0123456789eEdD") == 0 .and. scan(word, "eEdD") > 1) then
+      text = text//" that can be held"
+    end if
+  end function no_number
 
   !> Takes a word as a whole number.
   subroutine take_integer(entry, token, expected, errors)
@@ -278,16 +286,16 @@ contains
         i = i + 1
         cycle
       end if
-      if (i + 2 > size(entry%value)) then
-        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
-            "' is no key=value pair", describe(row))
-        return
-      else if (is_equals(entry%value(i)) .or. .not. is_equals(entry%value(i + 1)) .or. &
-          is_equals(entry%value(i + 2))) then
-        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
-            "' is not followed by =value", describe(row))
-        return
-      end if
+      associate (word => entry%value(i))
+        if (equals_at(entry, i) .or. .not. equals_at(entry, i + 1)) then
+          call errors%push_input(word%at, "'"//word%text//"' is not followed by =value", describe(row))
+          return
+        else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
+                 equals_at(entry, i + 3)) then
+          call errors%push_input(word%at, "no value is given for '"//word%text//"'", describe(row))
+          return
+        end if
+      end associate
       i = i + 3
     end do
   end subroutine check_law_form
@@ -332,6 +340,17 @@ contains
 
     is_equals = token%text == "=" .and. .not. token%quoted
   end function is_equals
+
+  !> Whether a word of a value is an equals sign; not beyond its end.
+  pure logical function equals_at(entry, i)
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+    !> Position of the word.
+    integer, intent(in) :: i
+
+    equals_at = .false.
+    if (i <= size(entry%value)) equals_at = is_equals(entry%value(i))
+  end function equals_at
 
   !> Checks a value against the form of its row.
   subroutine check_form(entry, row, errors)
