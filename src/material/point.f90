@@ -17,6 +17,8 @@ module dd3_material_point
   real(wp), parameter :: tolerance = 1.0e-9_wp, smallest = 1.0e-12_wp
   !> Largest strain increment of one iteration.
   real(wp), parameter :: longest = 0.2_wp
+  !> Largest strain that a stress may lead to: beyond it laws mean nothing.
+  real(wp), parameter :: largest_strain = 10.0_wp
 
   !> The state of a point.
   type :: point_state_t
@@ -107,8 +109,9 @@ contains
     type(point_state_t) :: trial
     real(wp) :: turn(6, 6), tangent(6, 6), increment(6), change(6), now(6)
     integer :: iteration
-    logical :: regular
+    logical :: regular, within
 
+    within = .true.
     turn = kelvin_rotation(self%axes)
     now = global_stress(self)
     increment = 0.0_wp
@@ -128,6 +131,8 @@ contains
           <= tolerance*max(norm2(now), norm2(merge(goal, 0.0_wp, by_stress))) &
              + smallest*material%young .and. &
           norm2(merge(0.0_wp, change, by_stress)) <= smallest) then
+        within = .not. any(by_stress .and. abs(self%strain + increment) > largest_strain)
+        if (.not. within) exit
         self%stress = trial%stress
         self%internal = trial%internal
         self%plastic = trial%plastic
@@ -141,6 +146,10 @@ contains
                      " MPa are left"
     if (.not. regular) verdict%reason = "the stress asked for cannot be borne: the tangent is "// &
                                         "singular"
+    if (.not. within) verdict%reason = "the stress asked for wants a strain beyond "// &
+                                       to_text(largest_strain)
+    verdict%reason = trim(verdict%reason)//"; the flow stress is "// &
+                     to_text(material%flow_stress(self%internal), 4)//" MPa"
   end subroutine take_part
 
   !> The change of strain from the changes of stress and strain asked for.

@@ -21,6 +21,9 @@ module dd3_process_points
   private
   public :: run_points
 
+  !> Logarithmic strain that is seldom meant: more than seven times the length.
+  real(wp), parameter :: notable_strain = 2.0_wp
+
   !> A point under way.
   type :: traveller_t
     !> Its state.
@@ -56,23 +59,23 @@ contains
     call record%open(directory, error)
     do i = 1, size(model%point)
       if (allocated(error)) exit
-      call run_point(model, model%point(i), record, taken, error)
+      call run_point(model, model%point(i), record, log, taken, error)
       increments = increments + taken
-      if (.not. allocated(error)) &
-        call log%say("point "//model%point(i)%name//": "//to_text(taken)//" steps")
     end do
     call record%close(failure)
     if (.not. allocated(error)) call move_alloc(failure, error)
   end subroutine run_points
 
   !> Runs one point.
-  subroutine run_point(model, point, record, taken, error)
+  subroutine run_point(model, point, record, log, taken, error)
     !> The model.
     type(model_t), intent(in) :: model
     !> The point.
     type(point_t), intent(in) :: point
     !> The history.
     type(point_record_t), intent(inout) :: record
+    !> Where the run speaks.
+    type(log_t), intent(inout) :: log
     !> Steps taken.
     integer, intent(out) :: taken
     !> Why it stopped before the end.
@@ -80,8 +83,10 @@ contains
 
     type(traveller_t) :: traveller
     type(error_t), allocatable :: late
+    real(wp) :: strain
     integer :: i
 
+    strain = 0.0_wp
     associate (material => model%material(point%material))
       call new_point_state(traveller%state, material, point%axes)
       traveller%gradient = identity
@@ -90,8 +95,13 @@ contains
         if (allocated(error)) exit
         call run_stage(traveller, material, point, point%stage(i), model%output%history_every, &
                        record, error)
+        strain = max(strain, maxval(abs(traveller%state%strain/kelvin_factor)))
       end do
       taken = traveller%increment
+      if (.not. allocated(error)) &
+        call log%say("point "//point%name//": "//to_text(taken)//" steps")
+      if (strain > notable_strain) call log%say("warning: point "//point%name// &
+          ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
       if (traveller%waiting) call write_row(traveller, material, point, record, late)
       if (.not. allocated(error)) call move_alloc(late, error)
     end associate
