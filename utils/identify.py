@@ -32,13 +32,12 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-try:
-    import numpy as np
-    from scipy.optimize import differential_evolution, least_squares
-except ImportError as error:
-    sys.exit(f"{error}: run utils/install_needed.sh, or pip install -r utils/requirements.txt")
+import scripts
 
-from measurements import KEYS, TENSION, Datum, Problem, every, from_argument, read_curve, read_data
+scripts.need("numpy", "scipy")
+import numpy as np  # noqa: E402
+from measurements import KEYS, TENSION, Datum, Problem, every, from_argument, read_curve, read_data  # noqa: E402
+from scipy.optimize import differential_evolution, least_squares  # noqa: E402
 
 UNIT = "perfect Y0=100"  # the flow stress with which criteria are tried
 REFUSED = 1e3  # residual of a set that the program does not take
@@ -622,9 +621,8 @@ def main():
     try:
         identify()
     except Problem as problem:
-        print(problem, file=sys.stderr)
-        sys.exit(2)
+        scripts.end(str(problem))
 
 
 if __name__ == "__main__":
-    main()
+    scripts.run(main)

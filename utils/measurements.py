@@ -18,6 +18,7 @@ KEYS = {
 # Quantity: lowest and highest value, what is meant.
 RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain across over that through the thickness"),
           "stress": (0.1, 10, "a ratio, 0.1 to 10: yield stresses (MPa) are divided by the one along rolling")}
+FALL = 0.95  # of the largest stress: a curve that ends below is not one of true stresses
 
 
 class Problem(Exception):
@@ -123,12 +124,15 @@ def from_argument(key, text):
 
 
 def lines_of(path):
-    """The lines of a file."""
+    """The lines of a file. Only its numbers and keys matter: letters of headings may be coded in any way."""
     try:
-        with open(path, encoding="utf-8") as stream:
-            return [Line(f"{path}:{i}", text) for i, text in enumerate(stream.read().splitlines(), 1)]
-    except (OSError, UnicodeDecodeError) as error:
-        raise Problem(f"{path}: error: {getattr(error, 'strerror', None) or 'not a text'}") from None
+        with open(path, encoding="utf-8-sig", errors="replace") as stream:
+            text = stream.read()
+    except OSError as error:
+        raise Problem(f"{path}: error: {error.strerror}") from None
+    if "\0" in text:
+        raise Problem(f"{path}: error: not a text")
+    return [Line(f"{path}:{i}", line) for i, line in enumerate(text.splitlines(), 1)]
 
 
 def read_data(path):
@@ -163,7 +167,8 @@ def curve_row(line, words):
     if len(words) < 2:
         raise line.problem(line.end(), "a number is missing", "strain and stress")
     if len(words) > 2:
-        raise line.problem(words[2], "more than two numbers", "strain and stress, with a decimal point, not a comma")
+        raise line.problem(words[2], "more than two numbers",
+                           "two columns, strain and stress, with a decimal point, not a comma")
     return line, words, *every([
         partial(line.number, words[0], "strain", -2, 2, "a logarithmic strain, not per cent"),
         partial(line.number, words[1], "stress", -1e4, 1e4, "a true stress in MPa")])
@@ -182,3 +187,7 @@ def check_curve(rows, reversed_too):
     line, words, _, most = max(rows, key=lambda row: row[3])
     if most < 5:
         raise line.problem(words[1], f"the largest stress is {words[1][0]}", "stresses in MPa")
+    if rows[-1][3] < FALL * most and not reversed_too:
+        raise line.problem(words[1], f"from here the stress falls to {rows[-1][1][1][0]}",
+                           "true stresses up to the largest force; nominal ones fall, and what follows a neck tells "
+                           "nothing")

@@ -115,8 +115,11 @@ def read_points(path):
     if not rows or "point" not in rows[0]:
         sys.exit(f"{path}: not the history of single points")
     points = {}
-    for row in rows:
-        points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
+    for number, row in enumerate(rows, 1):
+        try:
+            points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
+        except (TypeError, ValueError):
+            sys.exit(f"{path}: row {number} does not hold a number in each column")
     return points
 
 

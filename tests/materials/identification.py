@@ -95,6 +95,7 @@ MISTAKES = (
     ("--hardening swift --curve pascal.csv", "pascal.csv:1: error: stress = 2e8 is out of range"),
     ("--hardening swift --curve small.csv", "the largest stress is 0.4\n"),
     ("--hardening swift --curve decimal.csv", "decimal.csv:1: error: more than two numbers"),
+    ("--hardening swift --curve neck.csv", "neck.csv:3: error: from here the stress falls to 150\n  0.2,300\n      ^^^\n"),
     ("--hardening swift --curve back.csv", "back.csv:3: error: strain = 0.01 does not grow\n  0.01,300\n  ^^^^\n"),
     ("--hardening voce --backstress prager --curve forth.csv", "says nothing about a back-stress"),
     ("--hardening voce --curve elastic.csv", "0 rows beyond the elastic range"),
@@ -110,7 +111,8 @@ FILES = {
     "two_bad.txt": "r 0 one\nr 45 1\nr 90 -1\n", "many_bad.txt": 25 * "r 0 one\n",
     "percent.csv": "strain;stress\n1,150\n5,200\n", "pascal.csv": "0.01 2e8\n", 
     "small.csv": "0 .1\n.1 .2\n.2 .3\n.3 0.4\n",
-    "decimal.csv": "0,01;200,5\n", "back.csv": "0,100\n0.02,200\n0.01,300\n0.3,200\n",
+    "decimal.csv": "0,01;200,5\n", "neck.csv": "0.01,200\n0.1,280\n0.2,300\n0.3,250\n0.4,150\n",
+    "back.csv": "0,100\n0.02,200\n0.01,300\n0.3,200\n",
     "forth.csv": "".join(f"{i / 50},{200 + i}\n" for i in range(9)),
     "elastic.csv": "".join(f"{i / 1e5} {2.1 * i}\n" for i in range(9))}
 
@@ -242,9 +244,9 @@ def curve(trial, law, targets):
     return np.array([(row["e11"], row["s11"]) for row in rows[1:]])
 
 
-def write_curve(rows, header="strain,stress\n"):
-    """Writes a curve."""
-    Path("curve.csv").write_text(header + "".join(f"{a:.10g},{b:.10g}\n" for a, b in rows), encoding="utf-8")
+def write_curve(rows, header="strain,stress (N/mm²)\n"):
+    """Writes a curve, as testing machines do."""
+    Path("curve.csv").write_text(header + "".join(f"{a:.10g},{b:.10g}\n" for a, b in rows), encoding="latin-1")
 
 
 def check_hardening(trial):

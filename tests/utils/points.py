@@ -110,6 +110,7 @@ def check_messages(program, folder):
     (folder / "wrong.dat").write_text(STEEL.replace("hill48", "hil48"))
     (folder / "binary.dat").write_bytes(b"\xff\xfe\x00*MATERIAL x")
     (folder / "history.csv").write_text("increment,phase\n0,draw\n")
+    (folder / "cut.csv").write_text("increment,point,e11,s11\n0,p,0,0\n1,p,0.1\n")
     end = ("--program", program, "--output", folder / "none.png")
     steel = folder / "steel.dat"
     for arguments, said in (
@@ -121,6 +122,7 @@ def check_messages(program, folder):
             ((steel, "--program", program, "--output", folder / "no" / "none.png"), "No such file"),
             ((steel, "--program", program, "--output", folder / "none.xyz"), "none.xyz: Format 'xyz' is not supported"),
             (("--run", folder / "no.out"), "no.out: No such file"),
+            (("--run", folder / "cut.csv"), "cut.csv: row 2 does not hold a number in each column"),
             (("--run", folder), "history.csv: not the history of single points"), ((), "a file or a --run is needed")):
         call(plot_point, *arguments, expect=said)
     assert not (folder / "none.png").exists()
