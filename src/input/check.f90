@@ -220,7 +220,8 @@ contains
     end do
     if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. has_block(deck, &
         "point"))) then
-      call errors%push_input(whole_file, "the block *BLANK is missing", "the sheet: *BLANK name; or a point: *POINT")
+      call errors%push_input(whole_file, "the block *BLANK is missing", &
+          "the sheet: *BLANK name; or a single point: *POINT name")
     end if
     if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
       call errors%push_input(whole_file, "the block *CONTACT is missing", &

@@ -288,7 +288,8 @@ contains
       end if
       associate (word => entry%value(i))
         if (equals_at(entry, i) .or. .not. equals_at(entry, i + 1)) then
-          call errors%push_input(word%at, "'"//word%text//"' is not followed by =value", describe(row))
+          call errors%push_input(word%at, "'"//word%text//"' is not followed by =value", &
+              describe(row))
           return
         else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
                  equals_at(entry, i + 3)) then
