@@ -97,10 +97,12 @@ contains
 
   !> The values, each changed at random by up to a fifth (of one, where it is zero) and still
   !> without problems. A parameter that may not be below 1 is an exponent, or half of one: it becomes
-  !> two, three or four times its lowest value, 2 or 1, since a law is smooth for even exponents only.
-  function perturbed(kind, description) result(values)
+  !> the given multiple of its lowest value, 2 or 1; without one, twice, three or four times it, as
+  !> a law is smooth for even exponents only.
+  function perturbed(kind, description, multiple) result(values)
     integer, intent(in) :: kind
     type(description_t), intent(in) :: description
+    real(wp), intent(in), optional :: multiple
     type(law_value_t), allocatable :: values(:)
     type(problem_t), allocatable :: problems(:)
     type(parameter_t) :: row
@@ -116,6 +118,7 @@ contains
         row = row_of(description, values(i)%name)
         if (row%lower >= 1.0_wp) then
           values(i)%value = row%lower*(2 + int(3*change))
+          if (present(multiple)) values(i)%value = row%lower*multiple
         else if (values(i)%value == 0.0_wp) then
           values(i)%value = 0.4_wp*change - 0.2_wp
         else
@@ -141,23 +144,27 @@ contains
     row_of = description%rows(i)
   end function row_of
 
-  !> Every criterion of the registry, with its example and with perturbed values.
+  !> Every criterion of the registry, with its example, with perturbed values, and with others whose
+  !> exponent is no whole number.
   subroutine make_criteria(criteria, isotropic)
     type(yield_slot_t), allocatable, intent(out) :: criteria(:)
     logical, allocatable, intent(out) :: isotropic(:)
     type(yield_slot_t), allocatable :: entries(:)
     type(description_t) :: description
-    integer :: i
+    integer :: i, k
 
     call fill_criteria(entries)
-    allocate (criteria(2*size(entries)), isotropic(2*size(entries)))
+    allocate (criteria(3*size(entries)), isotropic(3*size(entries)))
+    isotropic = .false.
     do i = 1, size(entries)
       call entries(i)%law%describe(description)
-      allocate (criteria(2*i - 1)%law, source=entries(i)%law)
-      call criteria(2*i - 1)%law%set(description%example)
-      allocate (criteria(2*i)%law, source=entries(i)%law)
-      call criteria(2*i)%law%set(perturbed(law_yield, description))
-      isotropic(2*i - 1:2*i) = [.true., .false.]
+      do k = 3*i - 2, 3*i
+        allocate (criteria(k)%law, source=entries(i)%law)
+      end do
+      isotropic(3*i - 2) = .true.
+      call criteria(3*i - 2)%law%set(description%example)
+      call criteria(3*i - 1)%law%set(perturbed(law_yield, description))
+      call criteria(3*i)%law%set(perturbed(law_yield, description, multiple=2.75_wp))
     end do
   end subroutine make_criteria
 
