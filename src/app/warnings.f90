@@ -12,8 +12,8 @@ module dd3_app_warnings
 
   !> Young's moduli of sheet metals lie well between these, MPa.
   real(wp), parameter :: least_young = 1.0e3_wp, largest_young = 1.0e6_wp
-  !> The first flow stress of a sheet metal is a far smaller part of Young's modulus.
-  real(wp), parameter :: largest_strain = 0.1_wp
+  !> The first flow stress of a sheet metal over Young's modulus lies well between these.
+  real(wp), parameter :: least_strain = 1.0e-5_wp, largest_strain = 0.1_wp
   !> Thicknesses of sheets lie well between these, mm.
   real(wp), parameter :: least_thickness = 1.0e-2_wp, largest_thickness = 1.0e2_wp
   !> Equivalent stress of unit tension along rolling: 1 in most published sets, near it in others.
@@ -75,7 +75,7 @@ contains
         "hardening law", "unusual; are these the parameters of "//case%material(i)%yield%name//"?")
   end subroutine look_at_criterion
 
-  !> Warns of a flow stress that is large beside Young's modulus.
+  !> Warns of a flow stress that is large or nothing beside Young's modulus.
   subroutine look_at_flow_stress(case, model, i, warnings)
     !> The case.
     type(case_t), intent(in) :: case
@@ -90,7 +90,8 @@ contains
 
     start = 0.0_wp
     stress = model%material(i)%flow_stress(start)
-    if (stress <= largest_strain*case%material(i)%young) return
+    if (.not. outside(stress, least_strain*case%material(i)%young, &
+        largest_strain*case%material(i)%young)) return
     call add(warnings, case%material(i)%hardening%at, "first flow stress = "// &
         to_text(stress, 4)//" MPa of material '"//case%material(i)%source%called()// &
         "', young = "// &

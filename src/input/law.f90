@@ -169,11 +169,14 @@ contains
       line(n)%s = pair_of(line(n)%s)
       if (line(n)%s == "") cycle
       call parse_pair(line(n)%s, value%abscissa, value%value, ok)
-      if (ok) call check_range(value%value, rows(row), spec%parameter(i)%at, "in line "// &
-          to_text(n)//" of '"//path//"'", errors)
-      if (.not. ok) call errors%push_input(spec%parameter(i)%at, "'"//path//"', line "// &
-          to_text(n)//" does not hold two numbers", "p and Y in each line")
-      if (.not. ok) return
+      if (.not. ok) then
+        call errors%push_input(spec%parameter(i)%at, "'"//path//"', line "//to_text(n)// &
+            " does not hold two numbers", &
+            "p and Y in each line, decimals with a point; # before a heading")
+        return
+      end if
+      call check_range(value%value, rows(row), spec%parameter(i)%at, &
+          "Y"//range_text(rows(row))//", in line "//to_text(n)//" of '"//path//"'", errors)
       values = [values, value]
       from = [from, i]
     end do

@@ -12,6 +12,9 @@ module dd3_material_hardening_table
   private
   public :: table_t
 
+  !> Largest plastic strain of a point: a curve of strains per cent goes beyond.
+  real(wp), parameter :: largest_strain = 10.0_wp
+
   !> The law.
   type, extends(hardening_t) :: table_t
     private
@@ -50,7 +53,8 @@ contains
       law_value_t(pair_name, 430.0_wp, 0.4_wp), law_value_t(pair_name, 500.0_wp, 0.8_wp)])
   end subroutine describe
 
-  !> Finds too few points, strains that do not rise from zero, flow stresses that fall.
+  !> Finds too few points, strains that do not rise from zero or go too far, flow stresses that
+  !> fall.
   subroutine check(values, problems)
     !> The values given.
     type(law_value_t), intent(in) :: values(:)
@@ -77,6 +81,11 @@ contains
       end if
       last = i
     end do
+    if (last > 0) then
+      if (values(last)%abscissa > largest_strain) call add_problem(problems, last, &
+          "the plastic strain "//to_text(values(last)%abscissa)//" is larger than "// &
+          to_text(largest_strain), "plastic strains: 0.1 is about 10 %")
+    end if
     if (count(values%name == pair_name) < 2 .and. size(problems) == 0) then
       call add_problem(problems, 0, "a table needs two points at least", "0:Y1 p2:Y2 ...")
     end if
