@@ -6,12 +6,12 @@ set(CMAKE_Fortran_FLAGS_DEBUG_INIT "-O0 -g -fcheck=all,no-array-temps -ffpe-trap
 string(APPEND CMAKE_Fortran_FLAGS_DEBUG_INIT " -finit-real=snan -finit-derived -fbacktrace")
 
 # Of the project's own code, not of what pFUnit generates. Off are warnings that are wrong too often: about the bounds of
-# allocatable arrays, about thirds of whole numbers, about subscripts behind an `if` (the checks of the debug build see the true
-# ones).
+# allocatable arrays (with -O3 also as -Wuninitialized), about thirds of whole numbers, about subscripts behind an `if`
+# (the checks of the debug build see the true ones).
 option(DD3_WARNINGS_ARE_ERRORS "Stop the build at the first warning" OFF)
 set(DD3_WARNINGS -std=f2008 -pedantic -Wall -Wextra -Wimplicit-interface -Wimplicit-procedure -Wno-maybe-uninitialized
   -Wno-integer-division -Wno-do-subscript
-  $<$<CONFIG:Debug>:-Wconversion-extra>)
+  $<IF:$<CONFIG:Debug>,-Wconversion-extra,-Wno-uninitialized>)
 if(DD3_WARNINGS_ARE_ERRORS)
   list(APPEND DD3_WARNINGS -Werror)
 endif()

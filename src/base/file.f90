@@ -247,7 +247,9 @@ contains
     do while (first <= self%used)
       n = posix_write(self%descriptor, self%buffer(first:self%used), &
                       int(self%used - first + 1, c_size_t))
-      if (n < 0 .and. errno() == eintr) cycle
+      if (n < 0) then
+        if (errno() == eintr) cycle
+      end if
       if (n <= 0) then
         self%failed = .true.
         call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()))

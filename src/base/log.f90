@@ -59,8 +59,8 @@ contains
     self%live_length = 0
     call self%screen%attach(int(standard_output, c_int), "screen")
     call get_environment_variable("TERM", kind, status=status)
-    self%terminal = .not. quiet .and. kind /= "dumb" .and. kind /= "" &
-                    .and. posix_isatty(int(standard_output, c_int)) == 1
+    self%terminal = posix_isatty(int(standard_output, c_int)) == 1
+    if (quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
   end subroutine log_start
 
   !> Opens job.log and writes what was said before.
