@@ -1,16 +1,21 @@
 !> The start of a phase: what only the state at that moment can tell.
 module dd3_process_stage
   use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement, until_force
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_stage_warnings, only : look_along, reach
   implicit none
   private
   public :: begin_phase, next_output_progress, phase_is_over, until_value, progress_tolerance
+  public :: look_along, reach, along
 
+  !> How far a pressed tool that touches nothing is looked for along its line, mm.
+  real(wp), parameter :: reach = 1.0e3_wp
+  !> A component of a normal along a force up to this is none: the force acts along the surface.
+  real(wp), parameter :: along = 1.0e-6_wp
   !> Advances of a pressed tool towards the sheet; each covers at least the smallest gap left.
   integer, parameter :: most_advances = 200
   !> A gap this small counts as touch, mm.
@@ -128,18 +133,51 @@ contains
     !> The committed state.
     type(state_t), intent(inout) :: state
 
-    real(wp) :: smallest
-    logical :: faces
+    real(wp) :: smallest, facing
     integer :: k
 
     if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
     do k = 1, most_advances
-      call look_along(model, phase, tool, state, smallest, faces)
-      if (smallest <= closed .or. smallest > reach .or. .not. faces) return
+      call look_along(model, phase, tool, state, smallest, facing)
+      if (smallest <= closed .or. smallest > reach .or. facing <= along) return
       state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
           + smallest*phase%direction(:, tool)
     end do
   end subroutine approach
+
+  !> How far a pressed tool is from the sheet, and whether its force pushes it there.
+  subroutine look_along(model, phase, tool, state, smallest, facing)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The phase.
+    type(phase_t), intent(in) :: phase
+    !> The tool.
+    integer, intent(in) :: tool
+    !> The committed state.
+    type(state_t), intent(in) :: state
+    !> The smallest gap, mm; a large number where no node is before the tool.
+    real(wp), intent(out) :: smallest
+    !> The largest component along the force that a normal of the tool has where nodes are before
+    !> it: below 0 the force points away from them.
+    real(wp), intent(out) :: facing
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    integer :: c
+
+    smallest = huge(1.0_wp)
+    facing = -1.0_wp
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      hint = hint_t()
+      call find_contact(model%tool(tool)%surface, &
+          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, reach, &
+          model%contact_depth, hit)
+      if (.not. hit%found) cycle
+      smallest = min(smallest, hit%distance)
+      facing = max(facing, dot_product(hit%normal, phase%direction(:, tool)))
+    end do
+  end subroutine look_along
 
   !> Progress of the phase at the next output of fields; the phase's end is always one.
   real(wp) function next_output_progress(model, phase, state) result(progress)

@@ -9,13 +9,12 @@ module dd3_process_stage_warnings
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_state, only : state_t
+  use dd3_process_stage, only : along, look_along, reach
   use dd3_system_contact, only : touch
   implicit none
   private
-  public :: press_warning, release_warning, support_warning, look_along, reach
+  public :: press_warning, release_warning, support_warning
 
-  !> How far a pressed tool that touches nothing is looked for along its line, mm.
-  real(wp), parameter :: reach = 1.0e3_wp
   !> Plastic strain in a release that is more than a little yielding backwards.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
   !> The axes.
@@ -35,58 +34,23 @@ contains
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    real(wp) :: smallest
-    logical :: faces
+    real(wp) :: smallest, facing
     integer :: tool
 
     text = ""
     do tool = 1, model%n_tool
       if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
       if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
-      call look_along(model, phase, tool, state, smallest, faces)
-      if (faces .and. smallest <= touch) cycle
+      call look_along(model, phase, tool, state, smallest, facing)
+      if (facing > along .and. smallest <= touch) cycle
       text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
         "' does not meet the sheet along its force"
-      if (smallest <= reach .and. .not. faces) text = "warning: in phase '"//phase%name// &
+      if (smallest <= reach .and. facing < -along) text = "warning: in phase '"//phase%name// &
         "' the force on tool '"//model%tool(tool)%name//"' points away from the sheet; is its "// &
         "sign wrong?"
       return
     end do
   end function press_warning
-
-  !> How far a pressed tool is from the sheet, and whether it faces the sheet with the side its
-  !> force pushes ahead.
-  subroutine look_along(model, phase, tool, state, smallest, faces)
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The phase.
-    type(phase_t), intent(in) :: phase
-    !> The tool.
-    integer, intent(in) :: tool
-    !> The committed state.
-    type(state_t), intent(in) :: state
-    !> The smallest gap, mm; a large number where no node is before the tool.
-    real(wp), intent(out) :: smallest
-    !> Whether a normal of the tool, where nodes are before it, turns along its force.
-    logical, intent(out) :: faces
-
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    integer :: c
-
-    smallest = huge(1.0_wp)
-    faces = .false.
-    do c = 1, model%n_contact
-      if (.not. model%candidate(tool, c)) cycle
-      hint = hint_t()
-      call find_contact(model%tool(tool)%surface, &
-          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, reach, &
-          model%contact_depth, hit)
-      if (.not. hit%found) cycle
-      smallest = min(smallest, hit%distance)
-      faces = faces .or. dot_product(hit%normal, phase%direction(:, tool)) > 0.0_wp
-    end do
-  end subroutine look_along
 
   !> What the user is told where neither supports nor tools that touch hold the sheet at the start
   !> of a phase. Empty elsewhere.
