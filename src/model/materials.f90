@@ -97,6 +97,7 @@ contains
     choice%name = names(position)
     call law_rows(kind, names(position), rows)
     call check_law_values(spec, rows, choice%values, errors, origin)
+    if (choice%name == no_law) return
     call check_together(kind, choice%name, choice%values, problems, errors%count > found)
     do i = 1, size(problems)
       call errors%push_input(problem_place(spec, origin, problems(i)%index), &
