@@ -22,20 +22,22 @@ contains
 
     real(wp), allocatable :: force(:, :)
     integer, allocatable :: motion(:)
+    logical, allocatable :: gone(:)
     integer :: i
 
     allocate (force(3, size(case%tool)), source=0.0_wp)
     allocate (motion(size(case%tool)), source=held)
+    allocate (gone(size(case%tool)), source=.false.)
     do i = 1, size(case%phase)
       if (.not. case%phase(i)%source%valid) return
-      call check_actions(case, case%phase(i), motion, force, errors)
+      call check_actions(case, case%phase(i), motion, force, gone, errors)
       call check_control(case, case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
     end do
   end subroutine check_phases
 
   !> Checks what the tools are told, and keeps account of it.
-  subroutine check_actions(case, phase, motion, force, errors)
+  subroutine check_actions(case, phase, motion, force, gone, errors)
     !> The case.
     type(case_t), intent(in) :: case
     !> The phase.
@@ -44,6 +46,8 @@ contains
     integer, intent(inout) :: motion(:)
     !> The last force on each pressed tool, N.
     real(wp), intent(inout) :: force(:, :)
+    !> Which tools have been released.
+    logical, intent(inout) :: gone(:)
     !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
@@ -63,6 +67,9 @@ contains
     do i = 1, size(phase%press)
       call name_tool(case, phase%press(i)%tool, phase%press(i)%at, named, errors)
       call check_press(phase%press(i), motion, force, errors)
+      if (gone(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, "tool '"// &
+          case%tool(phase%press(i)%tool)%source%called()//"' was released in an earlier phase: "// &
+          "nothing would resist the force", "a tool whose contact is not switched off")
     end do
     do i = 1, size(phase%release)
       call name_tool(case, phase%release(i)%tool, phase%release(i)%at, released, errors)
@@ -72,6 +79,7 @@ contains
       end if
       if (motion(phase%release(i)%tool) == pressed) motion(phase%release(i)%tool) = held
     end do
+    gone = gone .or. released
     ! A moved tool stands still in a later phase that does not name it.
     do i = 1, size(motion)
       if (motion(i) == moved .and. .not. named(i)) motion(i) = held

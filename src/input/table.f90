@@ -280,7 +280,7 @@ contains
       row("press", kind_other, "N", "-", &
           "force on a tool, reached at the end of the phase; it moves along that line only", &
           repeatable=.true., form="tool number number number"), &
-      row("release", kind_other, "", "-", "a tool whose contact is switched off", &
+      row("release", kind_other, "", "-", "a tool whose contact is switched off for good", &
           repeatable=.true., form="tool"), &
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
