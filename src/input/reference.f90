@@ -82,8 +82,7 @@ contains
       if (row%kind == kind_name .and. row%form /= "") then
         call check_reference(deck, i, entry%value(1), trim(row%form), errors)
       else if (row%name == "control" .and. deck%block(i)%keyword == "phase") then
-        if (entry%value(1)%text /= "load") call check_reference(deck, i, entry%value(1), "tool", &
-            errors)
+        call check_reference(deck, i, entry%value(1), "tool", errors, also="load")
       else if (row%kind == kind_other) then
         form = form_for(entry, row)
         do k = 1, min(size(form), size(entry%value))
@@ -98,7 +97,7 @@ contains
   end subroutine check_entry
 
   !> Checks one name.
-  subroutine check_reference(deck, i, token, what, errors)
+  subroutine check_reference(deck, i, token, what, errors, also)
     !> The checked blocks.
     type(deck_t), intent(in) :: deck
     !> Position of the block the name is used in.
@@ -109,6 +108,8 @@ contains
     character(len=*), intent(in) :: what
     !> Receives the error.
     type(error_list_t), intent(inout) :: errors
+    !> A word that may stand in place of a name.
+    character(len=*), intent(in), optional :: also
 
     character(len=name_length), allocatable :: known(:)
     character(len=:), allocatable :: expected
@@ -117,6 +118,7 @@ contains
     last = deck%n_block
     if (what == "set" .and. deck%block(i)%keyword == "set") last = i - 1
     known = names_of(deck, what, last)
+    if (present(also)) known = [character(len=name_length) :: known, also]
     ! The groups of a mesh file are not known here.
     if (what == "set" .and. size(names_of(deck, "mesh", deck%n_block)) > 0) return
     do k = 1, size(known)
