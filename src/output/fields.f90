@@ -363,8 +363,9 @@ contains
     type(model_t), intent(in) :: model
     !> The state.
     type(state_t), intent(in) :: state
-    !> Number of the field in the table; number of the last field at the cells.
+    !> Number of the field in the table.
     integer, intent(in) :: i
+    !> Number of the last field at the cells.
     integer, intent(inout) :: i_cell
     !> Whether all went well so far; nothing is done where not.
     logical, intent(inout) :: ok
@@ -401,8 +402,9 @@ contains
     type(model_t), intent(in) :: model
     !> The state.
     type(state_t), intent(in) :: state
-    !> Number of the field in the table; number of the last field at the cells.
+    !> Number of the field in the table.
     integer, intent(in) :: i
+    !> Number of the last field at the cells.
     integer, intent(inout) :: i_cell
     !> Whether all went well so far; nothing is done where not.
     logical, intent(inout) :: ok

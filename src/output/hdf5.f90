@@ -50,7 +50,9 @@ module dd3_output_hdf5
     !> setenv(3).
     integer(c_int) function c_setenv(name, value, overwrite) bind(c, name="setenv")
       import :: c_char, c_int
+      !> Name and value of the variable, each ended by a null.
       character(kind=c_char), intent(in) :: name(*), value(*)
+      !> Whether a value it has already is replaced.
       integer(c_int), value :: overwrite
     end function c_setenv
   end interface

@@ -1,6 +1,5 @@
 !> Linear systems as text files, in the coordinate and array forms of Matrix Market (Boisvert, Pozo
-!> and Remington 1996): a run's own tangents can be looked at with other programs, and read back by
-!> the solvers' benchmark.
+!> and Remington 1996): the solvers' benchmark reads them, other programs know them.
 module matrix_market
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error

@@ -1,5 +1,5 @@
-!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices
-!> written by a run.
+!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices in
+!> the form of Matrix Market.
 !>
 !> Without arguments: strips of several sizes. With a file name: the system in that file (matrix,
 !> and `.rhs` beside it). Columns: level of fill (all: nothing left out), numbering, blocks in the
