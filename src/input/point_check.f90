@@ -3,7 +3,7 @@
 module dd3_input_point_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
-  use dd3_base_text, only : lower_case, to_text
+  use dd3_base_text, only : join, lower_case, to_text, upper_case
   use dd3_input_case, only : case_t, point_spec_t, gradient_values
   implicit none
   private
@@ -13,6 +13,9 @@ module dd3_input_point_check
   character(len=2), parameter :: component(6) = ["11", "22", "33", "12", "23", "13"]
   !> Blocks that have no place beside a point.
   character(len=5), parameter :: of_a_sheet(3) = [character(len=5) :: "blank", "mesh", "phase"]
+  !> Blocks that have a meaning for a point.
+  character(len=9), parameter :: of_a_point(6) = [character(len=9) :: "title", "include", &
+      "parameter", "material", "point", "output"]
   !> Largest strain of a goal, most steps of all goals.
   real(wp), parameter :: largest_strain = 10.0_wp, most_steps = 1.0e7_wp
   !> Steps of a gradient that are looked at.
@@ -30,11 +33,7 @@ contains
     integer :: i, before
 
     if (size(case%point) == 0) return
-    do i = 1, case%deck%n_block
-      if (.not. any(of_a_sheet == case%deck%block(i)%keyword)) cycle
-      call errors%push_input(case%deck%block(i)%opened, &
-          "a sheet does not go with single points", "*POINT in a file of its own")
-    end do
+    call check_company(case, errors)
     do i = 1, size(case%point)
       before = errors%count
       call check_control(case%point(i), errors)
@@ -44,6 +43,32 @@ contains
       call check_goals(case%point(i), errors)
     end do
   end subroutine check_points
+
+  !> Reports the blocks of a sheet beside points; without a sheet others that do nothing here, but
+  !> for those that stand in no file because they were filled in.
+  subroutine check_company(case, errors)
+    !> The case.
+    type(case_t), intent(in) :: case
+    !> Receives the errors.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, before
+
+    before = errors%count
+    associate (block => case%deck%block(:case%deck%n_block))
+      do i = 1, size(block)
+        if (any(of_a_sheet == block(i)%keyword)) call errors%push_input(block(i)%opened, &
+            "a sheet does not go with single points", "*POINT in a file of its own")
+      end do
+      if (errors%count > before) return
+      do i = 1, size(block)
+        if (any(of_a_point == block(i)%keyword) .or. .not. block(i)%valid) cycle
+        if (.not. allocated(block(i)%opened%file)) cycle
+        call errors%push_input(block(i)%opened, "*"//upper_case(block(i)%keyword)// &
+            " does nothing for single points", "one of: *"//upper_case(join(of_a_point, " *")))
+      end do
+    end associate
+  end subroutine check_company
 
   !> Checks what leads a point: control and targets, or gradients.
   subroutine check_lead(point, errors)
