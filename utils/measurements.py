@@ -137,11 +137,17 @@ def lines_of(path):
 
 def read_data(path):
     """The data of a file: in each line a key and its numbers."""
-    lines = [(line, line.words(r"[^\s,;:=]+")) for line in lines_of(path)]
+    lines = [(line, data_words(line)) for line in lines_of(path)]
     data = every([partial(data_line, line, words) for line, words in lines if words])
     if not data:
         raise Problem(f"{path}: error: no measured values\n  expected: lines such as: r 45 1.51")
     return data
+
+
+def data_words(line):
+    """The words of a line; where blanks separate them, a comma inside one may be meant for a decimal point."""
+    blanks = re.search(r"\S\s+\S", line.text.partition("#")[0])
+    return line.words(r"[^\s;:=]*[^\s,;:=]" if blanks else r"[^\s,;:=]+")
 
 
 def data_line(line, words):
