@@ -145,9 +145,9 @@ def read_data(path):
 
 
 def data_words(line):
-    """The words of a line; where blanks separate them, a comma inside one may be meant for a decimal point."""
-    blanks = re.search(r"\S\s+\S", line.text.partition("#")[0])
-    return line.words(r"[^\s;:=]*[^\s,;:=]" if blanks else r"[^\s,;:=]+")
+    """The words of a line; a comma within one, where others separate words, may be meant for a decimal point."""
+    others = re.search(r"\S[\s;]+\S", line.text.partition("#")[0])
+    return line.words(r"[^\s;:=]*[^\s,;:=]" if others else r"[^\s,;:=]+")
 
 
 def data_line(line, words):
