@@ -105,7 +105,8 @@ contains
 
     character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
 
-    is_name = len(text) <= longest_name .and. verify(text, letters//"0123456789_-.") == 0
+    is_name = text /= "" .and. len(text) <= longest_name &
+      .and. verify(text, letters//"0123456789_-.") == 0
     if (is_name) is_name = index(letters, text(1:1)) > 0
   end function is_name
 
