@@ -387,7 +387,7 @@ contains
       view%limiter = run%stepper%limit%name
       view%iterations = size(run%stepper%correction%criterion)
       if (phase%control > 0) view%force = &
-        -dot_product(phase%direction(:, phase%control), state%tool_force(:, phase%control))
+        dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
       call run%progress%update(log, view)
     end associate
     call run%stepper%system%profile%add(section_output)
