@@ -2,7 +2,7 @@
 !> together.
 module dd3_base_error
   use dd3_base_kinds, only : i8
-  use dd3_base_text, only : same_name, slice
+  use dd3_base_text, only : newline, same_name, slice
   implicit none
   private
   public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written
@@ -108,13 +108,13 @@ contains
       end if
     end if
     if (allocated(location%text) .and. location%line > 0) then
-      error%message = error%message//new_line("a")//"  "//location%text
+      error%message = error%message//newline//"  "//location%text
       if (location%column > 0) then
-        error%message = error%message//new_line("a")//"  "//caret_indent(location) &
+        error%message = error%message//newline//"  "//caret_indent(location) &
                         //repeat("^", width)
       end if
     end if
-    if (present(expected)) error%message = error%message//new_line("a")//"  expected: "//expected
+    if (present(expected)) error%message = error%message//newline//"  expected: "//expected
   end subroutine input_error
 
   !> Blanks (tabs kept) up to the caret; the later bytes of a UTF-8 character take no room.

@@ -8,6 +8,7 @@ module dd3_base_file
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_clock, only : wall_time
+  use dd3_base_text, only : newline
   implicit none
   private
   public :: file_t, make_directory, remove_file, standard_output
@@ -285,7 +286,7 @@ contains
     character(len=*), intent(in) :: text
     integer(i8) :: end_of_line
 
-    end_of_line = index(text, new_line("a"), back=.true., kind=i8)
+    end_of_line = index(text, newline, back=.true., kind=i8)
     if (end_of_line > 0) self%whole = self%length + end_of_line
     self%length = self%length + len(text, i8)
   end subroutine count_written

@@ -4,12 +4,13 @@ module dd3_base_log
   use, intrinsic :: iso_c_binding, only : c_int
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t, standard_output
+  use dd3_base_text, only : newline
   implicit none
   private
   public :: log_t
 
-  !> End of a line, return to its start, and the sequence that wipes a terminal's line from there.
-  character(len=*), parameter :: newline = new_line("a"), wipe = achar(13)//achar(27)//"[K"
+  !> Return to the start of a terminal's line, and the sequence that wipes it from there.
+  character(len=*), parameter :: wipe = achar(13)//achar(27)//"[K"
 
   !> The log of a run.
   type :: log_t

@@ -6,7 +6,7 @@
 module dd3_contact_reader
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, error_list_t, location_t
-  use dd3_base_text, only : text_t, to_text, same_name
+  use dd3_base_text, only : text_t, newline, to_text, same_name
   use dd3_input_block, only : token_t
   use dd3_input_number, only : parse_real, parse_integer
   use dd3_input_text_file, only : read_lines
@@ -107,7 +107,7 @@ contains
       error%order = reading%location%order
       error%column = reading%location%column
       if (i == most_errors .and. reading%errors%count > i) then
-        error%message = error%message//new_line("a")//"  further errors of this file are not shown"
+        error%message = error%message//newline//"  further errors of this file are not shown"
       end if
       call errors%push(error)
       deallocate (error)

@@ -3,6 +3,7 @@
 module dd3_model_materials
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_parameter, only : parameter_t
+  use dd3_base_text, only : newline
   use dd3_input_case, only : case_t, law_spec_t, material_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
   use dd3_material_check, only : check_together, known_laws, law_backstress, law_hardening, &
@@ -149,7 +150,7 @@ contains
     type(description_t), intent(in) :: description
     character(len=:), allocatable :: text
 
-    text = new_line("a")//"  "//trim(description%name)//": "//trim(description%title)//"; " &
+    text = newline//"  "//trim(description%name)//": "//trim(description%title)//"; " &
         //trim(description%source)
   end function source_line
 

@@ -4,6 +4,7 @@ module dd3_output_csv
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
+  use dd3_base_text, only : newline
   implicit none
   private
   public :: table_t, quoted, short_real
@@ -144,7 +145,7 @@ contains
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    self%row(self%length + 1:self%length + 1) = new_line("a")
+    self%row(self%length + 1:self%length + 1) = newline
     call self%file%put(self%row(:self%length + 1), error)
     self%length = 0
     self%cells = 0

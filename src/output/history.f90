@@ -4,6 +4,7 @@
 module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
+  use dd3_base_text, only : newline
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t, status_gap
   use dd3_output_csv, only : table_t
@@ -47,7 +48,7 @@ contains
     call self%table%open(directory//"/history.csv", error)
     if (allocated(error)) return
     call heading(model, names, units)
-    call self%table%file%put("# units: "//units//new_line("a")//names//new_line("a"), error)
+    call self%table%file%put("# units: "//units//newline//names//newline, error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine history_open
 
@@ -194,7 +195,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. allocated(self%waiting)) return
-    if (len(self%waiting) > 0) call self%table%file%put(self%waiting//new_line("a"), error)
+    if (len(self%waiting) > 0) call self%table%file%put(self%waiting//newline, error)
     self%waiting = ""
   end subroutine put_waiting
 

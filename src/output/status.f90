@@ -3,6 +3,7 @@
 module dd3_output_status
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
+  use dd3_base_text, only : newline
   use dd3_output_csv, only : table_t
   implicit none
   private
@@ -76,7 +77,7 @@ contains
 
     call self%table%open(directory//"/status.csv", error)
     if (allocated(error)) return
-    call self%table%file%put(names//new_line("a"), error)
+    call self%table%file%put(names//newline, error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine status_open
 
