@@ -152,6 +152,7 @@ contains
     logical :: ok
     integer :: n, row
 
+    if (spec%parameter(i)%text == "") return
     if (size(from) > 0) then
       call errors%push_input(spec%parameter(i)%key_at, "points are given beside a file of them", &
           "one of them")
@@ -223,8 +224,12 @@ contains
             spec%name//suggestion(given%key, rows%name), known)
       else if (find_parameter(spec, given%key) < i .and. .not. rows(k)%repeatable) then
         call errors%push_input(given%key_at, "'"//given%key//"' is given twice")
+      else if (given%text == "") then
+        call errors%push_input(given%at, "no value is given for '"//given%key//"'", &
+            trim(rows(k)%name)//"="//trim(merge("path  ", "number", rows(k)%kind == kind_text))// &
+            range_text(rows(k)))
       else if (rows(k)%kind == kind_text) then
-        if (given%text == "") call errors%push_input(given%at, "the text is empty")
+        return  ! any text will do until the file is read
       else if (.not. given%numeric .and. rows(k)%repeatable) then
         call errors%push_input(given%at, "'"//given%text//"' is not two numbers", &
             trim(rows(k)%name)//": "//trim(rows(k)%help))

@@ -259,7 +259,8 @@ contains
         suggestion(token%text, known), describe(row))
   end subroutine check_choice
 
-  !> Checks the outline of a law: a name, then `key = value` pairs, or points `p:Y`.
+  !> Checks the outline of a law: a name, then `key = value` pairs, or points `p:Y`. A value that is
+  !> left out becomes an empty word, which the check of the law's parameters tells of.
   subroutine check_law_form(entry, row, errors)
     !> The entry.
     type(entry_t), intent(inout) :: entry
@@ -268,7 +269,8 @@ contains
     !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i
+    type(token_list_t) :: word
+    integer :: i, k
 
     call unfold_law(entry, errors)
     entry%value(1)%text = lower_case(entry%value(1)%text)
@@ -280,26 +282,47 @@ contains
       call errors%push_input(entry%value(1)%at, "the law's name is missing", describe(row))
       return
     end if
+    call take_words(word, entry, 1, 1)
     i = 2
     do while (i <= size(entry%value))
       if (is_point(entry%value(i))) then
+        call take_words(word, entry, i, i)
         i = i + 1
-        cycle
+      else if (equals_at(entry, i) .or. .not. equals_at(entry, i + 1)) then
+        call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
+            "' is not followed by =value", describe(row))
+        do k = i + 1, size(entry%value)
+          if (is_point(entry%value(k)) .or. equals_at(entry, k + 1)) exit
+        end do
+        i = k
+      else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
+               equals_at(entry, i + 3)) then
+        call take_words(word, entry, i, i + 1)
+        call add_token(word, "", .false., entry%value(i)%at)
+        i = i + 2
+      else
+        call take_words(word, entry, i, i + 2)
+        i = i + 3
       end if
-      associate (word => entry%value(i))
-        if (equals_at(entry, i) .or. .not. equals_at(entry, i + 1)) then
-          call errors%push_input(word%at, "'"//word%text//"' is not followed by =value", &
-              describe(row))
-          return
-        else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
-                 equals_at(entry, i + 3)) then
-          call errors%push_input(word%at, "no value is given for '"//word%text//"'", describe(row))
-          return
-        end if
-      end associate
-      i = i + 3
     end do
+    entry%value = word%item(:word%count)
   end subroutine check_law_form
+
+  !> Adds some words of an entry's value to others.
+  subroutine take_words(word, entry, first, last)
+    !> The words.
+    type(token_list_t), intent(inout) :: word
+    !> The entry.
+    type(entry_t), intent(in) :: entry
+    !> Positions of the first and the last to be added.
+    integer, intent(in) :: first, last
+
+    integer :: i
+
+    do i = first, last
+      call add_token(word, entry%value(i)%text, entry%value(i)%quoted, entry%value(i)%at)
+    end do
+  end subroutine take_words
 
   !> Cuts a whole law in one pair of quotes into its words, as a parameter may hold it.
   subroutine unfold_law(entry, errors)
@@ -320,9 +343,7 @@ contains
     do i = 1, word%count
       word%item(i)%at = entry%value(1)%at
     end do
-    do i = 2, size(entry%value)
-      call add_token(word, entry%value(i)%text, entry%value(i)%quoted, entry%value(i)%at)
-    end do
+    call take_words(word, entry, 2, size(entry%value))
     if (word%count > 0) entry%value = word%item(:word%count)
   end subroutine unfold_law
 
