@@ -44,7 +44,7 @@ module dd3_contact_project
 contains
 
   !> Foot near a known one.
-  pure subroutine project(patch, x, lower, upper, foot)
+  pure subroutine project(patch, x, lower, upper, foot, iterations)
     !> The patch.
     type(patch_t), intent(in) :: patch
     !> The node, mm.
@@ -53,19 +53,24 @@ contains
     real(wp), intent(in) :: lower(2), upper(2)
     !> The foot; `at` is where to start.
     type(foot_t), intent(inout) :: foot
+    !> Newton iterations from there.
+    integer, intent(out), optional :: iterations
 
     real(wp) :: relative(3)
+    integer :: taken
     logical :: ok
 
     relative = x - patch%centre
+    if (present(iterations)) iterations = 0
     if (patch%flat) then
       call project_flat(patch, relative, lower, upper, foot)
       return
     end if
-    call descend(patch, relative, lower, upper, foot, ok)
+    call descend(patch, relative, lower, upper, foot, taken, ok)
+    if (present(iterations)) iterations = taken
     if (ok) return
     call sample_finely(patch, relative, lower, upper, foot%at)
-    call descend(patch, relative, lower, upper, foot, ok)
+    call descend(patch, relative, lower, upper, foot, taken, ok)
     if (.not. ok) call project_by_sections(patch, x, lower, upper, foot)
   end subroutine project
 
@@ -180,7 +185,7 @@ contains
   end subroutine project_flat
 
   !> Newton's method from `foot%at`.
-  pure subroutine descend(patch, x, lower, upper, foot, ok)
+  pure subroutine descend(patch, x, lower, upper, foot, iteration, ok)
     !> The patch.
     type(patch_t), intent(in) :: patch
     !> The node relative to the patch's centre, mm.
@@ -189,12 +194,14 @@ contains
     real(wp), intent(in) :: lower(2), upper(2)
     !> Where to start; the foot.
     type(foot_t), intent(inout) :: foot
+    !> The iteration it ended in.
+    integer, intent(out) :: iteration
     !> Whether it converged.
     logical, intent(out) :: ok
 
     type(foot_t) :: trial
     real(wp) :: g(2), metric(3), step(2), slope, slack, reach
-    integer :: iteration, halving
+    integer :: halving
 
     ok = .false.
     foot%at = min(max(foot%at, lower), upper)
