@@ -1,6 +1,6 @@
 !> Fills the runs of single material points.
 module dd3_input_fill_point
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, entry_t
   use dd3_input_case, only : point_spec_t, point_goal_t
@@ -9,7 +9,7 @@ module dd3_input_fill_point
   public :: fill_point
 
   !> Degrees in a radian.
-  real(wp), parameter :: degrees = 180.0_wp/acos(-1.0_wp)
+  real(wp), parameter :: degrees = 180.0_wp/pi
 
 contains
 

@@ -6,7 +6,8 @@
 !> among the deviators. They are points of the additive sequence of M. Roberts (The unreasonable
 !> effectiveness of quasirandom sequences, extremelearning.com.au, 2018) inside the unit ball.
 module dd3_material_yield_convexity
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
+  use dd3_linalg_tensor, only : half_root
   use dd3_material_description, only : description_t, problem_t, add_problem
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
@@ -95,12 +96,12 @@ contains
 
     stress = 0.0_wp
     if (n <= angles) then
-      angle = 2*acos(-1.0_wp)*real(n, wp)/angles
+      angle = 2*pi*real(n, wp)/angles
       stress(1:3) = cos(angle)*[0.5_wp, -0.5_wp, 0.0_wp] + &
                     sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
     else
       k = n - angles
-      stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*sqrt(0.5_wp)
+      stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*half_root
     end if
   end function tried
 
