@@ -1,4 +1,4 @@
-!> The command line: options as values, and what is wrong with them.
+!> Command line: the options and their errors.
 module dd3_app_command_line
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : text_t, nearest_name, newline
@@ -6,35 +6,35 @@ module dd3_app_command_line
   private
   public :: options_t, read_command_line, parse_arguments, usage_text
 
-  !> The options there are.
+  !> Known options.
   character(len=9), parameter :: known(8) = [character(len=9) :: "--check", "--set", "--output", &
       "--restart", "--threads", "--quiet", "--version", "--help"]
 
-  !> What the user asks for.
+  !> Options of a call.
   type :: options_t
-    !> The input file; empty where none is needed.
+    !> Input file; empty if none is needed.
     character(len=:), allocatable :: file
     !> Parameters given as `name=value`.
     type(text_t), allocatable :: overrides(:)
-    !> Folder of the results; empty where not given.
+    !> Folder of the results; empty if not given.
     character(len=:), allocatable :: output
-    !> Number of threads.
+    !> Restart file to continue from; empty for none.
+    character(len=:), allocatable :: restart
     integer :: threads = 1
-    !> Whether to read, check, echo and stop; whether to keep the screen free.
+    !> Read, check, echo and stop; print nothing but errors.
     logical :: check = .false., quiet = .false.
-    !> Whether the version or help is asked for.
+    !> Print the version; print help.
     logical :: version = .false., help = .false.
-    !> What help is asked on; empty for all.
+    !> Topic of the help; empty for all.
     character(len=:), allocatable :: topic
   end type options_t
 
 contains
 
-  !> Takes the arguments of the program and reads them.
+  !> Read the arguments of the program.
   subroutine read_command_line(options, error)
-    !> What the user asks for.
     type(options_t), intent(out) :: options
-    !> What is wrong with it.
+    !> Set if an argument is wrong.
     type(error_t), allocatable, intent(out) :: error
 
     type(text_t), allocatable :: argument(:)
@@ -49,13 +49,11 @@ contains
     call parse_arguments(options, argument, error)
   end subroutine read_command_line
 
-  !> Reads arguments.
+  !> Parse arguments.
   subroutine parse_arguments(options, argument, error)
-    !> What the user asks for.
     type(options_t), intent(out) :: options
-    !> The arguments.
     type(text_t), intent(in) :: argument(:)
-    !> What is wrong with them.
+    !> Set if an argument is wrong.
     type(error_t), allocatable, intent(out) :: error
 
     logical :: plain
@@ -63,6 +61,7 @@ contains
 
     options%file = ""
     options%output = ""
+    options%restart = ""
     options%topic = ""
     allocate (options%overrides(0))
     i = 1
@@ -73,10 +72,10 @@ contains
       else if (index(argument(i)%s, "-") == 1 .and. len(argument(i)%s) > 1 .and. .not. plain) then
         call read_option(options, argument, i, error)
       else if (options%file /= "") then
-        call fatal_error(error, "one input file is asked for, not '"//options%file//"' and '"// &
+        call fatal_error(error, "expected one input file, got '"//options%file//"' and '"// &
             argument(i)%s//"'")
       else if (argument(i)%s == "") then
-        call fatal_error(error, "the input file's name is empty")
+        call fatal_error(error, "the name of the input file is empty")
       else
         options%file = argument(i)%s
       end if
@@ -88,15 +87,13 @@ contains
     end if
   end subroutine parse_arguments
 
-  !> Reads one option, and its value if it takes one.
+  !> Parse one option, and its value if it takes one.
   subroutine read_option(options, argument, i, error)
-    !> What the user asks for.
     type(options_t), intent(inout) :: options
-    !> The arguments.
     type(text_t), intent(in) :: argument(:)
     !> Position of the option; of its value afterwards.
     integer, intent(inout) :: i
-    !> What is wrong with it.
+    !> Set if an argument is wrong.
     type(error_t), allocatable, intent(out) :: error
 
     character(len=:), allocatable :: name, value
@@ -122,7 +119,9 @@ contains
           "--output is given twice")
       if (name == "--output") options%output = value
       if (name == "--threads") call read_threads(options%threads, value, error)
-      if (name == "--restart") call fatal_error(error, "--restart is not available in this version")
+      if (name == "--restart" .and. options%restart /= "") call fatal_error(error, &
+          "--restart is given twice")
+      if (name == "--restart") options%restart = value
       if (name == "--set") then
         override%s = value
         options%overrides = [options%overrides, override]
@@ -141,11 +140,10 @@ contains
     end select
   end subroutine read_option
 
-  !> Parts `--name=value`.
+  !> Split `--name=value`.
   pure subroutine split_option(argument, name, value)
-    !> The argument.
     character(len=*), intent(in) :: argument
-    !> The option's name, and its value; empty where none is attached.
+    !> The value is empty if none is attached.
     character(len=:), allocatable, intent(out) :: name, value
 
     integer :: equals
@@ -157,13 +155,11 @@ contains
     if (equals < len(argument)) value = argument(equals + 1:)
   end subroutine split_option
 
-  !> Reads the number of threads.
+  !> Parse the number of threads.
   subroutine read_threads(threads, value, error)
-    !> The number.
     integer, intent(inout) :: threads
-    !> The text.
     character(len=*), intent(in) :: value
-    !> Says that it is no such number.
+    !> Set if it is no positive integer.
     type(error_t), allocatable, intent(out) :: error
 
     integer :: status
@@ -172,10 +168,10 @@ contains
     if (verify(value, "0123456789") == 0 .and. len(value) < 5) read (value, *, &
         iostat=status) threads
     if (status == 0 .and. threads >= 1) return
-    call fatal_error(error, "--threads asks for a whole number of 1 or more, not '"//value//"'")
+    call fatal_error(error, "--threads: expected an integer >= 1, got '"//value//"'")
   end subroutine read_threads
 
-  !> How the program is called.
+  !> Return the usage of the program.
   function usage_text() result(text)
     character(len=:), allocatable :: text
 
@@ -183,10 +179,11 @@ contains
            "  --check              read the input, check it, show all values, stop"//newline// &
            "  --set name=value     gives a *PARAMETER of the input another value; repeatable"// &
            newline// &
-           "  --output DIR         folder of the results (job.out where nothing else is said)"// &
+           "  --output DIR         folder of the results (default: job.out)"// &
            newline// &
+           "  --restart FILE       continue the run that wrote the restart file FILE"//newline// &
            "  --threads N          number of threads (1)"//newline// &
-           "  --quiet              nothing on the screen but errors"//newline// &
+           "  --quiet              print nothing but errors"//newline// &
            "  --version            the program's version"//newline// &
            "  --help [name]        this text, or help on a block, key or law, or markdown"// &
            newline// &

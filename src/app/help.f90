@@ -6,7 +6,7 @@ module dd3_app_help
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
-  use dd3_model_law_help, only : help_law, help_laws, law_reference_markdown
+  use dd3_app_law_help, only : help_law, help_laws, law_reference_markdown
   implicit none
   private
   public :: show_help, show_version

@@ -4,8 +4,10 @@ module dd3_app_job
   use dd3_app_command_line, only : options_t
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
-  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_file, only : make_directory, remove_file
+  use dd3_base_file_system, only : folder_of, read_file
+  use dd3_base_interrupt, only : watch_interrupts
   use dd3_base_log, only : log_t
   use dd3_base_text, only : text_t, to_text, slice
   use dd3_base_version, only : version => program_version
@@ -15,9 +17,10 @@ module dd3_app_job
   use dd3_model_build, only : new_model
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
-  use dd3_output_interrupt, only : watch_interrupts
-  use dd3_process_points, only : run_points
-  use dd3_process_run, only : run_model, run_summary_t
+  use dd3_model_state, only : new_state
+  use dd3_output_restart, only : read_restart, restart_name
+  use dd3_point_run, only : run_points
+  use dd3_process_run, only : run_model, run_start_t, run_summary_t
   implicit none
   private
   public :: run_job
@@ -28,40 +31,68 @@ module dd3_app_job
   !> Most errors shown.
   integer, parameter :: most_errors = 100
   !> Files that a run may leave beside job.log.
-  character(len=14), parameter :: result_file(3) = [character(len=14) :: "history.csv", &
-      "status.csv", "fields.vtkhdf"]
+  character(len=14), parameter :: result_file(4) = [character(len=14) :: "history.csv", &
+      "status.csv", "fields.vtkhdf", restart_name]
 
 contains
 
-  !> Reads, checks and runs a job.
+  !> Read, check and run a job.
   subroutine run_job(options, exit_code)
-    !> What the user asks for.
     type(options_t), intent(in) :: options
     !> One of the `exit_*` values.
     integer, intent(out) :: exit_code
 
     type(case_t) :: case
     type(model_t) :: model
+    type(run_start_t) :: start
     type(error_list_t) :: errors
+    type(error_t), allocatable :: error
 
     call read_case(case, options%file, options%overrides, errors)
     call new_model(model, case, errors)
     if (errors%count > 0) then
       call report_errors(errors, options%file)
       exit_code = exit_input
+      return
+    end if
+    call set_start(start, options, case, model, error)
+    if (allocated(error)) then
+      write (error_unit, '(a)') "dd3imp: "//error%message
+      exit_code = exit_input
     else if (options%check) then
       if (.not. options%quiet) call show_checked(case, model)
       exit_code = exit_end
     else
-      call run_checked(options, case, model, exit_code)
+      call run_checked(options, start, case, model, exit_code)
     end if
   end subroutine run_job
 
-  !> Shows all values, and what is unusual among them.
-  subroutine show_checked(case, model)
-    !> The case.
+  !> Set what a run starts from: the initial state, or that of a restart file.
+  subroutine set_start(start, options, case, model, error)
+    type(run_start_t), intent(out) :: start
+    type(options_t), intent(in) :: options
     type(case_t), intent(in) :: case
-    !> The model.
+    type(model_t), intent(in) :: model
+    !> Set if the restart file cannot be used.
+    type(error_t), allocatable, intent(out) :: error
+
+    start%solver = case%solver
+    start%threads = options%threads
+    start%directory = results_directory(options, case)
+    if (size(case%point) > 0) then
+      if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &
+          "has no restart")
+    else if (options%restart == "") then
+      call new_state(start%state, model)
+    else
+      start%source = folder_of(options%restart)
+      call read_restart(options%restart, model, start%state, error)
+    end if
+  end subroutine set_start
+
+  !> Print all values and warnings.
+  subroutine show_checked(case, model)
+    type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
 
     type(text_t), allocatable :: warnings(:)
@@ -75,13 +106,11 @@ contains
     write (output_unit, '(a)') "checked: "//case%file
   end subroutine show_checked
 
-  !> Runs a job whose input is in order.
-  subroutine run_checked(options, case, model, exit_code)
-    !> What the user asks for.
+  !> Run a job whose input has no errors.
+  subroutine run_checked(options, start, case, model, exit_code)
     type(options_t), intent(in) :: options
-    !> The case.
+    type(run_start_t), intent(in) :: start
     type(case_t), intent(in) :: case
-    !> The model.
     type(model_t), intent(in) :: model
     !> One of the `exit_*` values.
     integer, intent(out) :: exit_code
@@ -89,20 +118,18 @@ contains
     type(log_t) :: log
     type(run_summary_t) :: summary
     type(error_t), allocatable :: error
-    character(len=:), allocatable :: directory
 
-    directory = results_directory(options, case)
     exit_code = exit_stopped
-    call make_directory(directory, error)
-    if (.not. allocated(error)) call log%open(directory//"/job.log", options%quiet, error)
+    call make_directory(start%directory, error)
+    if (.not. allocated(error)) call open_log(log, options%quiet, start, error)
     if (.not. allocated(error)) then
       call introduce(log, case, model)
-      call clear_directory(log, directory)
+      if (.not. allocated(start%source)) call clear_directory(log, start%directory)
       call watch_interrupts()
-      if (size(model%point) > 0) then
-        call run_points(model, directory, log, summary%increments, error)
+      if (size(case%point) > 0) then
+        call run_points(case, model%material, start%directory, log, summary%increments, error)
       else
-        call run_model(model, case%solver, options%threads, directory, log, summary, error)
+        call run_model(model, start, log, summary, error)
         call conclude(log, summary)
       end if
       if (.not. allocated(error)) exit_code = exit_end
@@ -111,7 +138,7 @@ contains
       call log%note("stopped: "//error%message)
       write (error_unit, '(a)') "dd3imp: stopped: "//error%message
     else
-      call log%say("reached the end; results in "//directory)
+      call log%say("reached the end; results in "//start%directory)
     end if
     call log%close(error)
     if (.not. allocated(error)) return
@@ -119,11 +146,26 @@ contains
     exit_code = exit_stopped
   end subroutine run_checked
 
-  !> Removes the results of an earlier run, so that nothing old lies beside the new.
-  subroutine clear_directory(log, directory)
-    !> Where it is said.
+  !> Open job.log; after a restart it continues the log of the earlier run.
+  subroutine open_log(log, quiet, start, error)
     type(log_t), intent(inout) :: log
-    !> The folder of the results.
+    logical, intent(in) :: quiet
+    type(run_start_t), intent(in) :: start
+    !> Set if the file cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=*), parameter :: name = "/job.log"
+    character(len=:), allocatable :: earlier
+    type(error_t), allocatable :: ignored
+
+    earlier = ""
+    if (allocated(start%source)) call read_file(start%source//name, earlier, ignored)
+    call log%open(start%directory//name, quiet, error, earlier)
+  end subroutine open_log
+
+  !> Remove the results of an earlier run.
+  subroutine clear_directory(log, directory)
+    type(log_t), intent(inout) :: log
     character(len=*), intent(in) :: directory
 
     character(len=:), allocatable :: names
@@ -138,13 +180,10 @@ contains
     if (names /= "") call log%note("removed from an earlier run:"//names)
   end subroutine clear_directory
 
-  !> Says what is run: version, title, sizes, laws; the echo of all values goes into the file.
+  !> Log version, title, sizes and laws; the echo of all values goes into the file only.
   subroutine introduce(log, case, model)
-    !> Where it is said.
     type(log_t), intent(inout) :: log
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The model.
     type(model_t), intent(in) :: model
 
     type(text_t), allocatable :: warnings(:)
@@ -156,8 +195,8 @@ contains
     if (len(model%title) > 0) call log%say(model%title)
     call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
         time(3:4))
-    if (size(model%point) > 0) then
-      call log%say("single points, without a mesh")
+    if (size(case%point) > 0) then
+      call log%say("material points, without a mesh")
     else
       call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("// &
         trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
@@ -176,11 +215,9 @@ contains
     end do
   end subroutine introduce
 
-  !> Says what the run took.
+  !> Log the totals of the run.
   subroutine conclude(log, summary)
-    !> Where it is said.
     type(log_t), intent(inout) :: log
-    !> The sums of the run.
     type(run_summary_t), intent(in) :: summary
 
     integer :: i
@@ -195,11 +232,9 @@ contains
     end do
   end subroutine conclude
 
-  !> Shows all errors of the input in the order of its lines.
+  !> Print all errors of the input in the order of its lines.
   subroutine report_errors(errors, file)
-    !> The errors.
     type(error_list_t), intent(inout) :: errors
-    !> The input file.
     character(len=*), intent(in) :: file
 
     integer :: i
@@ -216,12 +251,10 @@ contains
       " in "//file//"; nothing was computed"
   end subroutine report_errors
 
-  !> Folder of the results: as the command line says, else as the input says, else beside the input
-  !> file.
+  !> Return the folder of the results: that of the command line, else that of the input, else one
+  !> beside the input file.
   function results_directory(options, case) result(directory)
-    !> What the user asks for.
     type(options_t), intent(in) :: options
-    !> The case.
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: directory
 

@@ -5,7 +5,7 @@ module dd3_base_error
   use dd3_base_text, only : newline, same_name, slice
   implicit none
   private
-  public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written
+  public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written, keep_first
 
   !> Where a piece of input was written.
   type :: location_t
@@ -201,5 +201,14 @@ contains
 
     stands_before = a%order < b%order .or. (a%order == b%order .and. a%column < b%column)
   end function stands_before
+
+  !> Keep the first of two errors.
+  subroutine keep_first(error, late)
+    type(error_t), allocatable, intent(inout) :: error
+    !> Later error; it is moved.
+    type(error_t), allocatable, intent(inout) :: late
+
+    if (.not. allocated(error)) call move_alloc(late, error)
+  end subroutine keep_first
 
 end module dd3_base_error

@@ -65,7 +65,7 @@ contains
   end subroutine log_start
 
   !> Opens job.log and writes what was said before.
-  subroutine log_open(self, path, quiet, error)
+  subroutine log_open(self, path, quiet, error, earlier)
     !> The log.
     class(log_t), intent(inout) :: self
     !> Name of the file.
@@ -74,12 +74,15 @@ contains
     logical, intent(in) :: quiet
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
+    !> Log of an earlier run that is continued.
+    character(len=*), intent(in), optional :: earlier
 
     if (.not. allocated(self%held)) call self%start(quiet)
     self%quiet = quiet
     call self%file%create(path, error)
     if (.not. allocated(error)) call self%file%keep_room(error)
     if (allocated(error)) return
+    if (present(earlier)) self%held = earlier//self%held
     call self%file%put(self%held, error)
     self%held = ""
     if (.not. allocated(error)) call self%file%flush(error)

@@ -303,6 +303,8 @@ module dd3_input_case
   type :: output_spec_t
     !> A row of the history table every so many increments.
     integer :: history = 1
+    integer :: restart_every = 0
+    logical :: restart = .true.
     !> One of the `fields_*` values.
     integer :: fields = fields_ends
     !> Interval (mm, or increments), or the travels at which fields are written.

@@ -74,6 +74,7 @@ contains
     logical, intent(in) :: iterative, direct
 
     self%options = options
+    allocate (self%memory(0))
     self%has_iterative = iterative
     self%has_direct = direct
     call new_ilu(self%preconditioner, options%ilu_level, may_raise=iterative .and. direct)

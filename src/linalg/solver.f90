@@ -46,6 +46,7 @@ module dd3_linalg_solver
     type(solver_options_t) :: options
     !> What it does, for the log; known after the set-up.
     character(len=160) :: description = ""
+    integer, allocatable :: memory(:)
   contains
     !> Once per pattern.
     procedure(setup_interface), deferred :: setup

@@ -1,5 +1,5 @@
-!> Builds the model from the checked case: every name becomes a number, and what only the model can
-!> tell is checked, all errors of the input together.
+!> Build of the model from the checked case: names become numbers, and what needs the mesh or the
+!> tools is checked. All errors of the input are collected.
 module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t
@@ -16,58 +16,45 @@ module dd3_model_build
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
-  use dd3_model_points, only : new_points
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_tolerances, only : start_depth, start_search, wrong_side_depth
   implicit none
   private
   public :: new_model
 
-  !> How deep inside the sheet a tool may start, mm.
-  real(wp), parameter :: start_depth = 1.0e-3_wp
-  !> How deep a start inside the sheet is looked for, in thicknesses: farther behind a surface a
-  !> node may well lie beyond its border.
-  real(wp), parameter :: reach = 10.0_wp
-  !> How far a tool is looked for that turns away from the sheet, mm.
-  real(wp), parameter :: far = 1.0e4_wp
-
 contains
 
-  !> Builds the model; it may be used where the list holds no error. Of a case with errors only the
-  !> laws and the tools' files are checked, so that what is wrong with them is reported with the
-  !> rest.
+  !> Build the model. It may be used if the list holds no error. Of a case with errors only the laws
+  !> and the tool files are checked, to report their errors with the others. A case of material
+  !> points has no mesh; its model holds the materials.
   subroutine new_model(model, case, errors)
-    !> The model made.
     type(model_t), intent(out) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
 
-    call take_title(model, case)
+    call set_title(model, case)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
-    call new_points(model, case)
-    if (size(model%point) > 0) return
+    if (size(case%point) > 0) return
     call new_mesh(mesh, case, errors)
     if (errors%count > 0) return
-    call take_mesh(model, case, mesh, errors)
+    call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
     call find_candidates(model, case, mesh)
-    call take_supports(model, case, mesh)
+    call set_supports(model, case, mesh)
     call new_phases(model, case, mesh)
-    call take_output(model, case, mesh)
+    call set_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
   end subroutine new_model
 
-  !> Joins the lines of the title.
-  subroutine take_title(model, case)
-    !> The model.
+  !> Join the lines of the title.
+  subroutine set_title(model, case)
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
 
     integer :: i
@@ -77,15 +64,13 @@ contains
       if (i > 1) model%title = model%title//" "
       model%title = model%title//trim(adjustl(case%title(i)%s))
     end do
-  end subroutine take_title
+  end subroutine set_title
 
-  !> Reads the tools' surfaces.
+  !> Read the surfaces of the tools.
   subroutine read_tools(model, case, errors)
-    !> The model.
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives what is wrong with the files.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     integer :: t
@@ -102,15 +87,12 @@ contains
     end do
   end subroutine read_tools
 
-  !> Takes nodes and elements over and checks that no element is inside out.
-  subroutine take_mesh(model, case, mesh, errors)
-    !> The model.
+  !> Set nodes and elements and check that no element is inverted.
+  subroutine set_mesh(model, case, mesh, errors)
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     type(element_work_t) :: work
@@ -138,16 +120,12 @@ contains
           " has no volume", "a blank whose node lines do not cross")
       return
     end do
-  end subroutine take_mesh
+  end subroutine set_mesh
 
-  !> Numbers the nodes that may touch a tool, and the block rows of the tools that are pressed in
-  !> some phase.
+  !> Number the contact candidates, and the block rows of the tools that are pressed in some phase.
   subroutine find_candidates(model, case, mesh)
-    !> The model.
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
 
     logical, allocatable :: member(:, :)
@@ -162,20 +140,18 @@ contains
     model%candidate = member(:, model%contact_node)
     allocate (model%candidate_of(model%n_node), source=0)
     model%candidate_of(model%contact_node) = [(i, i=1, model%n_contact)]
-    allocate (model%tool_block(model%n_tool), source=0)
+    allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool
       if (.not. is_pressed(case, t)) cycle
       k = k + 1
-      model%tool_block(t) = k
+      model%tool_row(t) = k
     end do
   end subroutine find_candidates
 
-  !> Whether a force is put on the tool in some phase.
+  !> Whether a tool is pressed in some phase.
   pure logical function is_pressed(case, tool)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The tool.
     integer, intent(in) :: tool
 
     integer :: i
@@ -186,13 +162,10 @@ contains
     end do
   end function is_pressed
 
-  !> Takes the supports that hold in every phase.
-  subroutine take_supports(model, case, mesh)
-    !> The model.
+  !> Set the supports that hold in every phase.
+  subroutine set_supports(model, case, mesh)
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
 
     integer, allocatable :: node(:)
@@ -205,20 +178,19 @@ contains
         if (case%boundary(b)%fix(i)) model%fixed(i, node) = .true.
       end do
     end do
-  end subroutine take_supports
+  end subroutine set_supports
 
-  !> Takes the output settings and the node sets of the history table.
-  subroutine take_output(model, case, mesh)
-    !> The model.
+  !> Set the outputs and the node sets of history.csv.
+  subroutine set_output(model, case, mesh)
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
 
     integer :: h
 
     model%output%history_every = case%output%history
+    model%output%restart = case%output%restart
+    model%output%restart_every = case%output%restart_every
     select case (case%output%fields)
     case (fields_every)
       model%output%fields_every = case%output%fields_value(1)
@@ -235,15 +207,13 @@ contains
       model%history(h)%reaction = case%history(h)%reaction
       model%history(h)%position = case%history(h)%position
     end do
-  end subroutine take_output
+  end subroutine set_output
 
-  !> Refuses a tool that starts inside the sheet, and one whose normals all turn away from it.
+  !> Report a tool that starts inside the sheet, and one whose normals all point away from it.
   subroutine check_start(model, case, errors)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     type(hint_t) :: hint
@@ -253,17 +223,17 @@ contains
 
     do t = 1, model%n_tool
       deepest = -start_depth
-      nearest = far
+      nearest = start_search
       worst = 0
       do c = 1, model%n_contact
         if (.not. model%candidate(t, c)) cycle
         node = model%contact_node(c)
         hint = hint_t()
         call find_contact(model%tool(t)%surface, model%x0(:, node) - model%tool(t)%position, hint, &
-                          far, far, hit)
+                          start_search, start_search, hit)
         if (.not. hit%found) cycle
         if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
-        if (hit%distance >= deepest .or. hit%distance < -reach*model%thickness) cycle
+        if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth*model%thickness) cycle
         deepest = hit%distance
         worst = node
       end do
@@ -281,14 +251,12 @@ contains
     end do
   end subroutine check_start
 
-  !> Refuses the first phase in which the sheet is free to move as a rigid body and no tool is there
-  !> to hold it.
+  !> Report the first phase in which the sheet is free to move as a rigid body and no tool is
+  !> active.
   subroutine check_supports(model, case, errors)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     type(rigid_motion_t) :: body

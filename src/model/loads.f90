@@ -1,32 +1,29 @@
-!> Forces on the nodes from outside: the loads of the input, each the total force on a node set, and
-!> what the sheet still feels of tools that have been released.
+!> External forces on the nodes: the loads of the input, each the total force on a node set, and the
+!> fading contact forces of released tools.
 module dd3_model_loads
   use dd3_base_kinds, only : wp
   implicit none
   private
   public :: load_set_t, nodal_forces
 
-  !> A node set that carries a load in some phase.
+  !> Node set that carries a load in some phase, in equal parts.
   type :: load_set_t
-    !> Name of the set.
     character(len=:), allocatable :: name
-    !> Its nodes, which share the load equally.
     integer, allocatable :: node(:)
   end type load_set_t
 
 contains
 
-  !> The forces on the nodes.
+  !> Evaluate the external forces on the nodes.
   pure subroutine nodal_forces(set, load, contact_node, fading, force)
-    !> The sets with loads.
     type(load_set_t), intent(in) :: set(:)
-    !> Total force on each, `(3, size(set))`, N.
+    !> Total force on each set, `(3, size(set))`, N.
     real(wp), intent(in) :: load(:, :)
     !> Nodes of the contact candidates, `(n_contact)`.
     integer, intent(in) :: contact_node(:)
-    !> Push on released tools that has not faded yet, `(3, n_contact)`, N.
+    !> Forces of the candidates on released tools that have not faded yet, `(3, n_contact)`, N.
     real(wp), intent(in) :: fading(:, :)
-    !> The forces, `(3, n_node)`, N.
+    !> Nodal forces, `(3, n_node)`, N.
     real(wp), intent(out) :: force(:, :)
 
     integer :: s, k, c

@@ -1,6 +1,7 @@
 !> Materials from the case: the laws as written, checked against the registries, every problem shown
 !> where it stands.
 module dd3_model_materials
+  use dd3_base_digest, only : digest_t
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_parameter, only : parameter_t
   use dd3_base_text, only : newline
@@ -17,26 +18,24 @@ module dd3_model_materials
 
   !> What the kinds of laws are called in a message.
   character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", &
-      "hardening law", &
-                                                  "back-stress law"]
+      "hardening law", "back-stress law"]
   !> What may be given in place of a back-stress.
   character(len=24), parameter :: no_law = "none"
 
 contains
 
-  !> Makes the materials; incomplete where errors were added.
+  !> Make the materials; they are incomplete if errors were added.
   subroutine new_materials(model, case, errors)
-    !> The model.
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     integer :: m, n
 
     n = size(case%material)
     allocate (model%material(n), model%material_name(n), model%axes(3, 3, n))
+    allocate (model%material_digest(n), source=0)
     model%n_internal = 1
     do m = 1, n
       model%material_name(m) = case%material(m)%name
@@ -46,19 +45,17 @@ contains
     end do
   end subroutine new_materials
 
-  !> Makes one material.
+  !> Make one material.
   subroutine make_material(model, m, spec, errors)
-    !> The model.
     type(model_t), intent(inout) :: model
-    !> Number of the material.
     integer, intent(in) :: m
-    !> The material as written.
     type(material_spec_t), intent(in) :: spec
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     type(law_choice_t) :: yield, hardening
     type(law_choice_t), allocatable :: backstress(:)
+    type(digest_t) :: digest
     integer :: found, i
 
     found = errors%count
@@ -71,17 +68,37 @@ contains
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
     call new_material(model%material(m), spec%young, spec%poisson, yield, hardening, backstress)
+    call digest%add([spec%young, spec%poisson])
+    call add_law(digest, yield)
+    call add_law(digest, hardening)
+    do i = 1, size(backstress)
+      call add_law(digest, backstress(i))
+    end do
+    model%material_digest(m) = digest%value()
   end subroutine make_material
 
-  !> Checks a law as written and takes its values.
+  !> Add a law and its values to a check sum.
+  subroutine add_law(digest, law)
+    type(digest_t), intent(inout) :: digest
+    type(law_choice_t), intent(in) :: law
+
+    integer :: k
+
+    call digest%add(law%name)
+    do k = 1, size(law%values)
+      call digest%add(law%values(k)%name)
+      call digest%add([law%values(k)%abscissa, law%values(k)%value])
+    end do
+  end subroutine add_law
+
+  !> Check a law as written and set its values.
   subroutine choose(kind, spec, choice, errors)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
     !> The law with its values.
     type(law_choice_t), intent(out) :: choice
-    !> Receives what is wrong.
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
     character(len=24), allocatable :: names(:)
@@ -106,12 +123,11 @@ contains
     end do
   end subroutine choose
 
-  !> Where the value is written that a problem speaks of; the law's name where it speaks of the law
-  !> as a whole, or of a default.
+  !> Return the location of the value that a problem concerns; that of the law's name if it concerns
+  !> the whole law or a default.
   pure function problem_place(spec, origin, index) result(place)
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> Which parameter as written each of its values comes from.
+    !> Position among the parameters as written of each value; 0 for a default.
     integer, intent(in) :: origin(:)
     !> Position among the values, or 0.
     integer, intent(in) :: index
@@ -122,11 +138,9 @@ contains
     if (origin(index) > 0) place = spec%parameter(origin(index))%at
   end function problem_place
 
-  !> The laws of a material with their sources, as lines of text.
+  !> Return the laws of a material with their sources, a line each.
   function law_sources(name, material) result(text)
-    !> Name of the material.
     character(len=*), intent(in) :: name
-    !> The material.
     type(material_t), intent(in) :: material
     character(len=:), allocatable :: text
 
@@ -144,9 +158,8 @@ contains
     end do
   end function law_sources
 
-  !> One law with its source, on a line of its own.
+  !> Return the line of one law.
   pure function source_line(description) result(text)
-    !> What the law says of itself.
     type(description_t), intent(in) :: description
     character(len=:), allocatable :: text
 

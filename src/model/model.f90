@@ -7,7 +7,6 @@ module dd3_model_model
   use dd3_contact_tool, only : tool_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
-  use dd3_model_point, only : point_t
   implicit none
   private
   public :: model_t, history_set_t, output_t
@@ -16,9 +15,8 @@ module dd3_model_model
   type :: history_set_t
     !> Name of the block, the prefix of its columns.
     character(len=:), allocatable :: name
-    !> Nodes of the set.
     integer, allocatable :: node(:)
-    !> Which quantities are written.
+    !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false.
   end type history_set_t
 
@@ -32,13 +30,15 @@ module dd3_model_model
     real(wp), allocatable :: fields_at(:)
     !> Fields every so many increments; 0 for not so.
     integer :: fields_increments = 0
+    !> restart.h5 is written at the end of each phase and when a run stops, and every so many
+    !> increments; 0 for not so.
+    logical :: restart = .true.
+    integer :: restart_every = 0
   end type output_t
 
-  !> The model of a job.
+  !> Model of a job.
   type :: model_t
-    !> Title of the job.
     character(len=:), allocatable :: title
-    !> Sizes.
     integer :: n_node = 0, n_element = 0, n_contact = 0, n_tool = 0, n_internal = 0
     !> Initial positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x0(:, :)
@@ -46,19 +46,18 @@ module dd3_model_model
     integer, allocatable :: connectivity(:, :)
     !> The element all of the sheet is made of.
     type(element_t) :: element
-    !> Materials.
     type(material_t), allocatable :: material(:)
-    !> Their names.
     character(len=24), allocatable :: material_name(:)
     !> Material of each element, `(n_element)`.
     integer, allocatable :: material_of(:)
+    !> Check sums of their parameters.
+    integer, allocatable :: material_digest(:)
     !> Orthotropy axes of each material at the start, columns RD, TD, ND, `(3, 3, n_material)`.
     real(wp), allocatable :: axes(:, :, :)
     !> Thickness of the sheet at the start, mm.
     real(wp) :: thickness = 0.0_wp
     !> Depth inside a tool down to which a node still counts as touching it, mm.
     real(wp) :: contact_depth = 0.0_wp
-    !> Tools.
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.
     integer, allocatable :: contact_node(:)
@@ -68,18 +67,14 @@ module dd3_model_model
     logical, allocatable :: candidate(:, :)
     !> Block row of each tool behind the nodes' in the reduced system; 0 where the tool is never
     !> pressed, `(n_tool)`.
-    integer, allocatable :: tool_block(:)
+    integer, allocatable :: tool_row(:)
     !> Degrees of freedom held in every phase, `(3, n_node)`.
     logical, allocatable :: fixed(:, :)
     !> Sets that carry a load in some phase.
     type(load_set_t), allocatable :: load_set(:)
-    !> Phases, in order.
     type(phase_t), allocatable :: phase(:)
-    !> Runs of single points, in order; where there are any there is no mesh.
-    type(point_t), allocatable :: point(:)
     !> Node sets followed in history.csv.
     type(history_set_t), allocatable :: history(:)
-    !> Output settings.
     type(output_t) :: output
   end type model_t
 

@@ -13,193 +13,166 @@ module dd3_model_phases
 
 contains
 
-  !> Resolves all phases.
+  !> Resolve all phases of the case.
   subroutine new_phases(model, case, mesh)
     !> The model with its tools, candidates and supports.
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
 
     type(phase_t) :: before
     integer :: i
 
     call new_load_sets(model, case, mesh)
-    call new_phase(before, model)
+    call new_idle_phase(before, model)
     allocate (model%phase(size(case%phase)))
     do i = 1, size(case%phase)
-      call follow(model%phase(i), before)
-      call take_settings(model, case%phase(i), model%phase(i))
-      call take_tools(case%phase(i), model%phase(i))
-      call take_displacements(case%phase(i), mesh, model%phase(i))
-      call take_loads(case%phase(i), model, model%phase(i))
+      call new_phase_after(before, model%phase(i))
+      call set_settings(model, case%phase(i), model%phase(i))
+      call set_tools(case%phase(i), model%phase(i))
+      call set_displacements(case%phase(i), mesh, model%phase(i))
+      call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
   end subroutine new_phases
 
-  !> A phase in which nothing has happened yet.
-  subroutine new_phase(phase, model)
-    !> The phase.
+  !> Make the phase before the first one: no motion, no load.
+  subroutine new_idle_phase(phase, model)
     type(phase_t), intent(out) :: phase
-    !> The model.
     type(model_t), intent(in) :: model
 
-    integer :: n_tool, n_node
+    integer :: n_tool, n_node, n_load
 
     n_tool = model%n_tool
     n_node = model%n_node
+    n_load = size(model%load_set)
     phase%name = ""
-    allocate (phase%move(3, n_tool), phase%press_start(3, n_tool), phase%press_end(3, n_tool), &
-        source=0.0_wp)
-    allocate (phase%tool_start(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
+    allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
+    allocate (phase%tool_load_end(3, n_tool), phase%load_end(3, n_load), source=0.0_wp)
     allocate (phase%pressed(n_tool), source=.false.)
-    allocate (phase%active(n_tool), phase%keeps_press(n_tool), source=.true.)
-    allocate (phase%displacement(3, n_node), phase%fading(3, model%n_contact), source=0.0_wp)
-    allocate (phase%load_start(3, size(model%load_set)), phase%load_end(3, size(model%load_set)), &
-        source=0.0_wp)
-    allocate (phase%keeps_load(size(model%load_set)), source=.true.)
+    allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
+    allocate (phase%keeps_load(n_load), source=.true.)
+    allocate (phase%displacement(3, n_node), source=0.0_wp)
     phase%prescribed = model%fixed
-  end subroutine new_phase
+  end subroutine new_idle_phase
 
-  !> A phase that goes on where the one before ends.
-  subroutine follow(phase, before)
-    !> The phase.
-    type(phase_t), intent(out) :: phase
-    !> The one before.
+  !> Make a phase that changes nothing of what the phase before it left.
+  subroutine new_phase_after(before, phase)
     type(phase_t), intent(in) :: before
+    type(phase_t), intent(out) :: phase
 
     phase = before
     phase%move = 0.0_wp
     phase%displacement = 0.0_wp
-    phase%keeps_press = .true.
+    phase%keeps_tool_load = .true.
     phase%keeps_load = .true.
-  end subroutine follow
+  end subroutine new_phase_after
 
-  !> Takes name, control and limits.
-  subroutine take_settings(model, from, phase)
-    !> The model.
+  !> Set name, control, limits and end.
+  subroutine set_settings(model, spec, phase)
     type(model_t), intent(in) :: model
-    !> The phase of the case.
-    type(phase_spec_t), intent(in) :: from
-    !> The phase.
+    type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
 
-    phase%name = from%name
-    phase%control = from%control
-    phase%limits = from%limits
-    phase%newton = from%newton
-    phase%until = from%until
-    if (from%until%kind == until_never) phase%until%tool = 0
-    phase%penalty = from%contact%penalty
-    phase%search_distance = from%contact%search_distance
+    phase%name = spec%name
+    phase%control = spec%control
+    phase%limits = spec%limits
+    phase%newton = spec%newton
+    phase%until = spec%until
+    if (spec%until%kind == until_never) phase%until%tool = 0
+    phase%penalty = spec%contact%penalty
+    phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%thickness
-  end subroutine take_settings
+  end subroutine set_settings
 
-  !> Takes what the tools do, and the trial increment as a share of the phase.
-  subroutine take_tools(from, phase)
-    !> The phase of the case.
-    type(phase_spec_t), intent(in) :: from
-    !> The phase.
+  !> Set the motion and load of the tools, and the trial increment as a fraction of the phase.
+  subroutine set_tools(spec, phase)
+    type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
 
     integer :: i, t
 
-    do i = 1, size(from%hold)
-      t = from%hold(i)%tool
+    do i = 1, size(spec%hold)
+      t = spec%hold(i)%tool
       call stop_pressing(phase, t)
     end do
-    do i = 1, size(from%move)
-      t = from%move(i)%tool
+    do i = 1, size(spec%move)
+      t = spec%move(i)%tool
       call stop_pressing(phase, t)
-      phase%move(:, t) = from%move(i)%vector
-      if (norm2(from%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(from%move(i)%vector)
+      phase%move(:, t) = spec%move(i)%vector
+      if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
     end do
-    do i = 1, size(from%press)
-      call press(phase, from%press(i)%tool, from%press(i)%vector)
+    do i = 1, size(spec%press)
+      call press(phase, spec%press(i)%tool, spec%press(i)%vector)
     end do
-    do i = 1, size(from%release)
-      t = from%release(i)%tool
+    do i = 1, size(spec%release)
+      t = spec%release(i)%tool
       phase%active(t) = .false.
       call stop_pressing(phase, t)
     end do
-    phase%trial = from%trial
+    phase%trial = spec%trial
     phase%length = 0.0_wp
-    if (from%control == 0) return
-    phase%length = norm2(phase%move(:, from%control))
-    if (phase%length > 0.0_wp) phase%trial = from%trial/phase%length
-  end subroutine take_tools
+    if (spec%control == 0) return
+    phase%length = norm2(phase%move(:, spec%control))
+    if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
+  end subroutine set_tools
 
-  !> A tool that is held or moved carries no prescribed force.
+  !> Remove the force from a tool that is held or moved.
   subroutine stop_pressing(phase, tool)
-    !> The phase.
     type(phase_t), intent(inout) :: phase
-    !> The tool.
     integer, intent(in) :: tool
 
     phase%pressed(tool) = .false.
-    phase%press_end(:, tool) = 0.0_wp
+    phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
 
-  !> Puts a force on a tool; one of zero leaves a pressed tool its line.
+  !> Press a tool; a force of zero leaves the line of its motion unchanged.
   subroutine press(phase, tool, force)
-    !> The phase.
     type(phase_t), intent(inout) :: phase
-    !> The tool.
     integer, intent(in) :: tool
-    !> The force, N.
     real(wp), intent(in) :: force(3)
 
     if (norm2(force) > 0.0_wp) phase%direction(:, tool) = unit(force)
     phase%pressed(tool) = .true.
-    phase%keeps_press(tool) = .false.
-    phase%press_end(:, tool) = force
+    phase%keeps_tool_load(tool) = .false.
+    phase%tool_load_end(:, tool) = force
   end subroutine press
 
-  !> Takes prescribed displacements.
-  subroutine take_displacements(from, mesh, phase)
-    !> The phase of the case.
-    type(phase_spec_t), intent(in) :: from
-    !> The mesh.
+  !> Set the prescribed displacements.
+  subroutine set_displacements(spec, mesh, phase)
+    type(phase_spec_t), intent(in) :: spec
     type(mesh_t), intent(in) :: mesh
-    !> The phase.
     type(phase_t), intent(inout) :: phase
 
     integer, allocatable :: node(:)
     integer :: i
 
-    do i = 1, size(from%displace)
-      node = mesh%nodes_of(from%displace(i)%set)
-      phase%prescribed(from%displace(i)%axis, node) = .true.
-      phase%displacement(from%displace(i)%axis, node) = from%displace(i)%value
+    do i = 1, size(spec%displace)
+      node = mesh%nodes_of(spec%displace(i)%set)
+      phase%prescribed(spec%displace(i)%axis, node) = .true.
+      phase%displacement(spec%displace(i)%axis, node) = spec%displace(i)%value
     end do
-  end subroutine take_displacements
+  end subroutine set_displacements
 
-  !> Takes loads: a set that is named gets another force, the others keep theirs.
-  subroutine take_loads(from, model, phase)
-    !> The phase of the case.
-    type(phase_spec_t), intent(in) :: from
-    !> The model with its sets.
+  !> Set the loads of the sets that the phase names.
+  subroutine set_loads(spec, model, phase)
+    type(phase_spec_t), intent(in) :: spec
     type(model_t), intent(in) :: model
-    !> The phase.
     type(phase_t), intent(inout) :: phase
 
     integer :: i, s
 
-    do i = 1, size(from%load)
-      s = find_load_set(model%load_set, from%load(i)%set)
-      phase%load_end(:, s) = from%load(i)%force
+    do i = 1, size(spec%load)
+      s = find_load_set(model%load_set, spec%load(i)%set)
+      phase%load_end(:, s) = spec%load(i)%force
       phase%keeps_load(s) = .false.
     end do
-  end subroutine take_loads
+  end subroutine set_loads
 
-  !> Lists the sets that carry a load in some phase.
+  !> List the sets that carry a load in some phase, in the order of the phases.
   subroutine new_load_sets(model, case, mesh)
-    !> Gets the sets.
     type(model_t), intent(inout) :: model
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
 
     type(load_set_t), allocatable :: set(:)
@@ -220,11 +193,9 @@ contains
     model%load_set = set(:n)
   end subroutine new_load_sets
 
-  !> Position of a set; 0 where it is not among them.
+  !> Return the position of a set; 0 if it is not among them.
   pure integer function find_load_set(set, name) result(s)
-    !> The sets.
     type(load_set_t), intent(in) :: set(:)
-    !> The name looked for.
     character(len=*), intent(in) :: name
 
     do s = size(set), 1, -1
@@ -232,9 +203,8 @@ contains
     end do
   end function find_load_set
 
-  !> The vector with length one.
+  !> Return a vector scaled to length one.
   pure function unit(vector)
-    !> The vector, not zero.
     real(wp), intent(in) :: vector(3)
     real(wp) :: unit(3)
 

@@ -1,123 +1,156 @@
-!> What changes in a run. Two copies exist: the committed state (configuration N-1, equilibrated)
-!> and the trial state (configuration N); acceptance and cut-back are one `state_copy` each.
+!> State of a run: all that changes in it and decides how it continues. Two copies exist, the
+!> committed state (configuration N-1, in equilibrium) and the trial state (configuration N);
+!> acceptance and cut-back are assignments. The walk over the components in state_walk.f90 serves
+!> comparison and restart; a test checks that it names every component declared here.
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
-  use dd3_contact_operator, only : status_gap, status_slip, status_stick
+  use dd3_model_model, only : model_t
   implicit none
   private
-  public :: state_t, new_state, state_copy, status_gap, status_stick, status_slip
+  public :: state_t, phase_start_t, new_state
 
-  !> The state of a job at one configuration.
+  !> Values that a phase fixes when it begins: what it starts from, and the targets of quantities
+  !> that it leaves unchanged.
+  type :: phase_start_t
+    !> Displacement of the tools, `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool_displacement(:, :)
+    !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
+    real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
+    !> Total forces on the sets with loads at the start and at the end of the phase, `(3, n_load)`,
+    !> N.
+    real(wp), allocatable :: load(:, :), load_end(:, :)
+    !> Forces of the candidates on released tools that fade over the phase, `(3, n_contact)`, N.
+    real(wp), allocatable :: fading(:, :)
+    !> Equivalent plastic strain, `(n_point, n_element)`.
+    real(wp), allocatable :: plastic_strain(:, :)
+    !> The force of `until` is met from below.
+    logical :: until_from_below = .true.
+  end type phase_start_t
+
+  !> State at one configuration.
   type :: state_t
-    !> Number of accepted increments so far.
+    !> Accepted increments.
     integer :: increment = 0
     !> Running phase, from 1.
     integer :: phase = 1
+    !> The running phase has begun; false before the first one only.
+    logical :: begun = .false.
     !> Progress within the phase, 0 to 1.
     real(wp) :: progress = 0.0_wp
-    !> Path of the controlling tools since the job's start, mm.
+    !> Path of the controlling tools since the start of the job, mm.
     real(wp) :: travel = 0.0_wp
+    !> Upper bound of r after a cut-back.
+    real(wp) :: r_cap = huge(1.0_wp)
+    !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
+    integer :: history_increment = -1, fields_increment = -1
+    !> What the linear solver remembers from matrix to matrix.
+    integer, allocatable :: solver_memory(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
     !> Internal forces, `(3, n_node)`, N.
     real(wp), allocatable :: internal_force(:, :)
-    !> External forces, `(3, n_node)`, N: the loads, and what has not faded of released contacts.
+    !> External forces, `(3, n_node)`, N: loads, and the fading forces of released contacts.
     real(wp), allocatable :: external_force(:, :)
     !> Total forces on the sets with loads, `(3, n_load)`, N.
     real(wp), allocatable :: load(:, :)
-    !> Push of the candidate nodes on released tools that has not faded yet, `(3, n_contact)`, N.
-    real(wp), allocatable :: fading(:, :)
-    !> The tool each candidate was released by last, `(n_contact)`; 0 for none.
-    integer, allocatable :: fading_tool(:)
     !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
     real(wp), allocatable :: stress(:, :, :)
     !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the
     !> equivalent plastic strain.
-    real(wp), allocatable :: internal(:, :, :)
+    real(wp), allocatable :: internal_variables(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
-    !> Whether the last increment was plastic, `(n_point, n_element)`.
+    !> The last increment was plastic, `(n_point, n_element)`.
     logical, allocatable :: plastic(:, :)
-    !> Contact forces of the candidate nodes (the sheet's push on the tool), `(3, n_contact)`, N.
+    !> Contact forces of the candidates, sheet on tool, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
-    !> Contact status, `(n_contact)`: one of the `status_*` values.
+    !> Contact status, `(n_contact)`: one of the `status_*` values of dd3_contact_operator.
     integer, allocatable :: status(:)
-    !> Tool each candidate belongs to at present, `(n_contact)`; 0 for none.
+    !> Nearest tool of each candidate, `(n_contact)`; 0 for none.
     integer, allocatable :: contact_tool(:)
-    !> Where the closest point of each tool was found last, `(n_tool, n_contact)`.
+    !> Last closest point on each tool, `(n_tool, n_contact)`.
     type(hint_t), allocatable :: hint(:, :)
-    !> Displacement of the tools from where their files put them, `(3, n_tool)`, mm.
+    !> Forces of the candidates on released tools that have not faded yet, `(3, n_contact)`, N.
+    real(wp), allocatable :: fading(:, :)
+    !> Tool that released each candidate last, `(n_contact)`; 0 for none.
+    integer, allocatable :: fading_tool(:)
+    !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_displacement(:, :)
-    !> Force pressed on the tools from outside, `(3, n_tool)`, N.
+    !> Force pressed on the tools, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :)
-    !> Force of the sheet on the tools, that which fades included, `(3, n_tool)`, N.
+    !> Force of the sheet on the tools, fading forces included, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_force(:, :)
+    !> Values fixed at the start of the running phase.
+    type(phase_start_t) :: start
   end type state_t
 
 contains
 
-  !> Allocates a state and sets all to zero; no point is plastic, no node in contact.
-  subroutine new_state(self, n_node, n_point, n_element, n_internal, n_contact, n_tool, n_load)
-    !> The state made.
+  !> Make the initial state: a virgin sheet on the mesh, the tools at their initial positions.
+  subroutine new_state(self, model)
     type(state_t), intent(out) :: self
-    !> Its sizes.
-    integer, intent(in) :: n_node, n_point, n_element, n_internal, n_contact, n_tool, n_load
+    type(model_t), intent(in) :: model
 
-    allocate (self%x(3, n_node), self%internal_force(3, n_node), self%external_force(3, n_node))
-    allocate (self%stress(6, n_point, n_element), self%internal(n_internal, n_point, n_element))
-    allocate (self%orientation(3, 3, n_point, n_element), self%plastic(n_point, n_element))
-    allocate (self%lambda(3, n_contact), self%status(n_contact), self%contact_tool(n_contact))
-    allocate (self%hint(n_tool, n_contact))
-    allocate (self%load(3, n_load), self%fading(3, n_contact), self%fading_tool(n_contact))
-    allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), self%tool_force(3, &
-        n_tool))
-    self%x = 0.0_wp
-    self%internal_force = 0.0_wp
-    self%external_force = 0.0_wp
-    self%load = 0.0_wp
-    self%fading = 0.0_wp
-    self%fading_tool = 0
-    self%stress = 0.0_wp
-    self%internal = 0.0_wp
-    self%orientation = 0.0_wp
-    self%plastic = .false.
-    self%lambda = 0.0_wp
-    self%status = 0
-    self%contact_tool = 0
-    self%tool_displacement = 0.0_wp
-    self%tool_load = 0.0_wp
-    self%tool_force = 0.0_wp
+    integer :: e, p, t
+
+    allocate (self%solver_memory(0))
+    call new_sheet(self, model)
+    associate (n_contact => model%n_contact, n_tool => model%n_tool)
+      allocate (self%lambda(3, n_contact), self%fading(3, n_contact), source=0.0_wp)
+      allocate (self%status(n_contact), self%contact_tool(n_contact), source=0)
+      allocate (self%fading_tool(n_contact), source=0)
+      allocate (self%hint(n_tool, n_contact))
+      allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
+      allocate (self%tool_force(3, n_tool), source=0.0_wp)
+    end associate
+    self%x(:, :) = model%x0
+    do e = 1, model%n_element
+      do p = 1, model%element%n_point
+        self%orientation(:, :, p, e) = model%axes(:, :, model%material_of(e))
+      end do
+    end do
+    do t = 1, model%n_tool
+      self%tool_displacement(:, t) = model%tool(t)%position
+    end do
+    call new_phase_start(self%start, self)
   end subroutine new_state
 
-  !> Copies one state into another of the same sizes, without allocating.
-  subroutine state_copy(from, to)
-    !> The state copied.
-    type(state_t), intent(in) :: from
-    !> The copy.
-    type(state_t), intent(inout) :: to
+  !> Allocate what belongs to nodes, sets with loads and integration points, and set it to zero.
+  subroutine new_sheet(self, model)
+    type(state_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
 
-    to%increment = from%increment
-    to%phase = from%phase
-    to%progress = from%progress
-    to%travel = from%travel
-    to%x(:, :) = from%x
-    to%internal_force(:, :) = from%internal_force
-    to%external_force(:, :) = from%external_force
-    to%load(:, :) = from%load
-    to%fading(:, :) = from%fading
-    to%fading_tool(:) = from%fading_tool
-    to%stress(:, :, :) = from%stress
-    to%internal(:, :, :) = from%internal
-    to%orientation(:, :, :, :) = from%orientation
-    to%plastic(:, :) = from%plastic
-    to%lambda(:, :) = from%lambda
-    to%status(:) = from%status
-    to%contact_tool(:) = from%contact_tool
-    to%hint(:, :) = from%hint
-    to%tool_displacement(:, :) = from%tool_displacement
-    to%tool_load(:, :) = from%tool_load
-    to%tool_force(:, :) = from%tool_force
-  end subroutine state_copy
+    integer :: n_load
+
+    n_load = 0
+    if (allocated(model%load_set)) n_load = size(model%load_set)
+    associate (n_node => model%n_node, n_point => model%element%n_point, n => model%n_element)
+      allocate (self%x(3, n_node), self%internal_force(3, n_node), source=0.0_wp)
+      allocate (self%external_force(3, n_node), self%load(3, n_load), source=0.0_wp)
+      allocate (self%stress(6, n_point, n), source=0.0_wp)
+      allocate (self%internal_variables(model%n_internal, n_point, n), source=0.0_wp)
+      allocate (self%orientation(3, 3, n_point, n), source=0.0_wp)
+      allocate (self%plastic(n_point, n), source=.false.)
+    end associate
+  end subroutine new_sheet
+
+  !> Allocate the values at the start of a phase for a state and set them to zero.
+  subroutine new_phase_start(self, state)
+    type(phase_start_t), intent(out) :: self
+    type(state_t), intent(in) :: state
+
+    allocate (self%tool_displacement, mold=state%tool_displacement)
+    allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
+    allocate (self%load, self%load_end, mold=state%load)
+    allocate (self%fading, mold=state%fading)
+    allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)
+    self%tool_displacement = 0.0_wp
+    self%tool_load = 0.0_wp
+    self%tool_load_end = 0.0_wp
+    self%load = 0.0_wp
+    self%load_end = 0.0_wp
+    self%fading = 0.0_wp
+  end subroutine new_phase_start
 
 end module dd3_model_state

@@ -4,6 +4,7 @@ module dd3_output_csv
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
+  use dd3_base_file_system, only : part_of, read_file, replace_file
   use dd3_base_text, only : newline
   implicit none
   private
@@ -11,21 +12,20 @@ module dd3_output_csv
 
   !> Significant digits of a real number.
   integer, parameter :: digits = 10
-  !> The least whole number with one digit more.
+  !> Smallest integer with one digit more.
   integer(i8), parameter :: full = 10_i8**int(digits, i8)
 
-  !> A table open for writing.
+  !> Table open for writing.
   type :: table_t
-    !> The file.
     type(file_t) :: file
-    !> The row begun: `row(1:length)`.
+    !> Present row: `row(1:length)`.
     character(len=:), allocatable, private :: row
-    !> Characters in the row.
     integer(i8), private :: length = 0
-    !> Number of its cells.
+    !> Cells in the row.
     integer, private :: cells = 0
   contains
     procedure :: open => table_open
+    procedure :: resume => table_resume
     procedure :: add_text => table_add_text
     procedure :: add_integer => table_add_integer
     procedure :: add_real => table_add_real
@@ -37,13 +37,11 @@ module dd3_output_csv
 
 contains
 
-  !> Makes the file.
+  !> Make the file.
   subroutine table_open(self, path, error)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> Name of the file.
     character(len=*), intent(in) :: path
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     self%row = repeat(" ", 1024)
@@ -53,11 +51,65 @@ contains
     if (.not. allocated(error)) call self%file%keep_room(error)
   end subroutine table_open
 
-  !> Adds a cell with text, in quotes where it needs them.
-  subroutine table_add_text(self, text)
-    !> The table.
+  !> Make the file with the rows of an earlier table up to an increment, the first column. Without
+  !> an earlier table of the same columns it begins with the heading alone.
+  subroutine table_resume(self, source, path, heading, increment, found)
     class(table_t), intent(inout) :: self
-    !> The text; trailing blanks are left out.
+    !> Paths of the earlier table and of this one; they may be the same.
+    character(len=*), intent(in) :: source, path
+    !> Lines before the first row.
+    character(len=*), intent(in) :: heading
+    !> Increment of the last row to be kept.
+    integer, intent(in) :: increment
+    !> The rows up to that of the increment are there.
+    logical, intent(out) :: found
+
+    character(len=:), allocatable :: text
+    type(error_t), allocatable :: error
+    integer(i8) :: last
+
+    call read_file(source, text, error)
+    last = 0
+    if (.not. allocated(error)) last = end_of_rows(text, heading, increment)
+    found = last > len(heading, i8)
+    if (.not. found) text = heading
+    if (.not. found) last = len(heading, i8)
+    call self%open(part_of(path), error)
+    if (.not. allocated(error)) call self%file%put(text(:last), error)
+    if (.not. allocated(error)) call self%file%flush(error)
+    if (.not. allocated(error)) call replace_file(path, error)
+    if (allocated(error)) found = .false.
+    self%file%path = path
+  end subroutine table_resume
+
+  !> Return the length of a table up to the last row of an increment; 0 if the table has another
+  !> heading or lacks that increment.
+  pure integer(i8) function end_of_rows(text, heading, increment) result(last)
+    character(len=*), intent(in) :: text, heading
+    integer, intent(in) :: increment
+
+    integer(i8) :: first, next
+    integer :: row, status
+
+    last = 0
+    first = len(heading, i8) + 1
+    if (len(text, i8) < first) return
+    if (text(:first - 1) /= heading) return
+    do
+      next = index(text(first:), newline, kind=i8)
+      if (next == 0) exit
+      read (text(first:first + scan(text(first:), ",", kind=i8) - 2), *, iostat=status) row
+      if (status /= 0) exit
+      if (row > increment) exit
+      first = first + next
+      if (row == increment) last = first - 1
+    end do
+  end function end_of_rows
+
+  !> Add a cell with text, in quotes where it needs them.
+  subroutine table_add_text(self, text)
+    class(table_t), intent(inout) :: self
+    !> Trailing blanks are left out.
     character(len=*), intent(in) :: text
 
     if (scan(text, ',"'//achar(10)//achar(13)) > 0) then
@@ -67,11 +119,9 @@ contains
     end if
   end subroutine table_add_text
 
-  !> Adds a cell with a whole number.
+  !> Add a cell with an integer.
   subroutine table_add_integer(self, value)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> The number.
     integer, intent(in) :: value
     character(len=12) :: buffer
 
@@ -79,11 +129,9 @@ contains
     call add_cell(self, trim(buffer))
   end subroutine table_add_integer
 
-  !> Adds a cell with a real number.
+  !> Add a cell with a real number.
   subroutine table_add_real(self, value)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> The number.
     real(wp), intent(in) :: value
     character(len=24) :: buffer
     integer :: length
@@ -92,11 +140,9 @@ contains
     call add_cell(self, buffer(:length))
   end subroutine table_add_real
 
-  !> Adds a cell for each real number.
+  !> Add a cell per real number.
   subroutine table_add_reals(self, values)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> The numbers.
     real(wp), intent(in) :: values(:)
     integer :: i
 
@@ -105,11 +151,10 @@ contains
     end do
   end subroutine table_add_reals
 
-  !> Puts a cell behind the row.
+  !> Append a cell to the row.
   subroutine add_cell(self, text)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> The cell as it is to stand in the file.
+    !> The cell as written.
     character(len=*), intent(in) :: text
     integer(i8) :: n
 
@@ -126,11 +171,9 @@ contains
     self%cells = self%cells + 1
   end subroutine add_cell
 
-  !> Hands out the row, without its end of line, and begins the next.
+  !> Return the row, without its end of line, and begin the next.
   subroutine table_take_row(self, row)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> The row.
     character(len=:), allocatable, intent(out) :: row
 
     row = self%row(:self%length)
@@ -138,11 +181,10 @@ contains
     self%cells = 0
   end subroutine table_take_row
 
-  !> Writes the row and begins the next.
+  !> Write the row and begin the next.
   subroutine table_end_row(self, error)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     self%row(self%length + 1:self%length + 1) = newline
@@ -151,19 +193,17 @@ contains
     self%cells = 0
   end subroutine table_end_row
 
-  !> Closes the file.
+  !> Close the file.
   subroutine table_close(self, error)
-    !> The table.
     class(table_t), intent(inout) :: self
-    !> Says why the rest cannot be written.
+    !> Set if the rest cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     call self%file%close(error)
   end subroutine table_close
 
-  !> The text in double quotes, those inside doubled (RFC 4180); ends of lines become blanks.
+  !> Return a text in double quotes, those inside doubled (RFC 4180); ends of lines become blanks.
   pure function quoted(text)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: quoted
     integer :: i
@@ -182,14 +222,12 @@ contains
     quoted = quoted//'"'
   end function quoted
 
-  !> A real number with ten significant digits, as short as that can be written. Internal writes
-  !> take several times as long.
+  !> Write a real number with ten significant digits in its shortest form. Internal writes take
+  !> several times as long.
   pure subroutine short_real(value, text, length)
-    !> The number.
     real(wp), intent(in) :: value
-    !> The text: `text(1:length)`.
+    !> `text(1:length)`.
     character(len=24), intent(out) :: text
-    !> Its length.
     integer, intent(out) :: length
     real(wp) :: magnitude
     integer(i8) :: mantissa
@@ -218,9 +256,9 @@ contains
     call put_number(mantissa, e, value < 0.0_wp, text, length)
   end subroutine short_real
 
-  !> The number's first digits as a whole number.
+  !> Return the first digits of a number as an integer.
   pure integer(i8) function scaled(magnitude, e)
-    !> The number, positive.
+    !> Positive.
     real(wp), intent(in) :: magnitude
     !> Power of ten of its first digit.
     integer, intent(in) :: e
@@ -232,17 +270,14 @@ contains
     end if
   end function scaled
 
-  !> Writes digits with their point: plain where the number is neither large nor small.
+  !> Write digits with their decimal point, with an exponent only for large and small numbers.
   pure subroutine put_number(mantissa, e, negative, text, length)
-    !> The digits.
     integer(i8), intent(in) :: mantissa
     !> Power of ten of the first digit.
     integer, intent(in) :: e
-    !> Whether a minus stands before them.
     logical, intent(in) :: negative
-    !> The text: `text(1:length)`.
+    !> `text(1:length)`.
     character(len=24), intent(out) :: text
-    !> Its length.
     integer, intent(out) :: length
     character(len=digits) :: digit
     integer :: i, n
@@ -269,9 +304,9 @@ contains
     length = len_trim(text)
   end subroutine put_number
 
-  !> An exponent with its sign and two digits.
+  !> Return an exponent with its sign and two digits.
   pure function exponent_text(e) result(text)
-    !> The exponent, of at most two digits.
+    !> At most two digits.
     integer, intent(in) :: e
     character(len=3) :: text
 

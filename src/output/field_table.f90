@@ -1,57 +1,50 @@
-!> The table of the output fields: name, place, components, unit, meaning, and what fills them.
-!> A field of the integration points is written twice: its mean at the cells, and extrapolated at
-!> the nodes.
+!> Table of the output fields: name, location, components, unit, meaning, and procedure. A field of
+!> the integration points is written twice: its mean at the cells, and extrapolated at the nodes.
 module dd3_output_field_table
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : tensor_from_kelvin
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_output_columns, only : sheet_columns
+  use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
   public :: field_t, field_table, at_nodes_and_cells, at_points
 
-  !> The field has a value at each node.
+  !> Locations: a value at each node;
   integer, parameter :: at_nodes = 1
-  !> It has a value at each node; a cell has the mean of its nodes.
+  !> a value at each node, and the mean of its nodes at each cell;
   integer, parameter :: at_nodes_and_cells = 2
-  !> It has a value at each integration point.
+  !> a value at each integration point.
   integer, parameter :: at_points = 3
 
   !> An output field.
   type :: field_t
-    !> Name, as ParaView shows it.
     character(len=32) :: name = ""
     !> `at_nodes`, `at_nodes_and_cells` or `at_points`.
     integer :: location = at_nodes
-    !> Numbers at each place.
+    !> Components of a value.
     integer :: components = 1
-    !> Whether they are whole numbers; whether they are never negative: extrapolation stops at 0.
+    !> The values are integers; they are never negative: extrapolation is cut off at zero.
     logical :: whole = .false., positive = .false.
-    !> Unit; empty where it has none.
     character(len=8) :: unit = ""
-    !> Meaning, in a line.
     character(len=120) :: description = ""
-    !> What fills it.
-    procedure(fill_field), nopass, pointer :: fill => null()
+    procedure(fill_interface), nopass, pointer :: fill => null()
   end type field_t
 
   abstract interface
-    !> Fills a field.
-    subroutine fill_field(model, state, value)
+    !> Evaluate a field.
+    subroutine fill_interface(model, state, value)
       import :: model_t, state_t, wp
-      !> The model.
-      type(model_t), intent(in) :: model
-      !> The state.
-      type(state_t), intent(in) :: state
-      !> The field: components; nodes, or points of an element and elements behind each other.
+        type(model_t), intent(in) :: model
+        type(state_t), intent(in) :: state
+      !> `(components, n_node)`, or `(components, n_point*n_element)`, points first.
       real(wp), intent(out) :: value(:, :)
-    end subroutine fill_field
+    end subroutine fill_interface
   end interface
 
 contains
 
-  !> The table.
+  !> Return the table.
   function field_table() result(table)
     type(field_t), allocatable :: table(:)
 
@@ -61,27 +54,26 @@ contains
       row("contact_force", at_nodes, 3, "N", &
           "force of the tools on the sheet", fill_contact_force), &
       row("contact_status", at_nodes, 1, "", &
-          "0 gap or no candidate, 1 stick, 2 slip", fill_contact_status), &
+          "0 gap or no candidate, 1 stick, 2 slip", fill_contact_status, whole=.true.), &
       row("stress", at_points, 6, "MPa", &
           "Cauchy stress in global axes: 11 22 33 12 23 13", fill_stress), &
       row("equivalent_plastic_strain", at_points, 1, "", &
-          "equivalent plastic strain, conjugate to the equivalent stress", fill_plastic_strain), &
+          "equivalent plastic strain, conjugate to the equivalent stress", fill_plastic_strain, &
+          positive=.true.), &
       row("equivalent_stress", at_points, 1, "MPa", &
-          "equivalent stress of the material's yield criterion", fill_equivalent_stress), &
+          "equivalent stress of the material's yield criterion", fill_equivalent_stress, &
+          positive=.true.), &
       row("thickness", at_nodes_and_cells, 1, "mm", &
           "distance between the bottom and the top node through the thickness", fill_thickness)]
-    table(3)%whole = .true.
-    table(5:6)%positive = .true.
   end function field_table
 
-  !> A row of the table.
-  function row(name, location, components, unit, description, fill)
-    !> Name, unit and meaning.
+  !> Make a row of the table.
+  function row(name, location, components, unit, description, fill, whole, positive)
     character(len=*), intent(in) :: name, unit, description
-    !> Where it lives, and its numbers there.
     integer, intent(in) :: location, components
-    !> What fills it.
-    procedure(fill_field) :: fill
+    procedure(fill_interface) :: fill
+    !> The values are integers; extrapolation is cut off at zero. Default: no.
+    logical, intent(in), optional :: whole, positive
     type(field_t) :: row
 
     row%name = name
@@ -90,27 +82,23 @@ contains
     row%unit = unit
     row%description = description
     row%fill => fill
+    if (present(whole)) row%whole = whole
+    if (present(positive)) row%positive = positive
   end function row
 
-  !> Displacements.
+  !> Evaluate the displacements.
   subroutine fill_displacement(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
 
     value = state%x - model%x0
   end subroutine fill_displacement
 
-  !> Contact forces; the state keeps the sheet's push on the tools.
+  !> Evaluate the forces of the tools on the sheet, opposite to those of the state.
   subroutine fill_contact_force(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     integer :: i
 
@@ -120,13 +108,10 @@ contains
     end do
   end subroutine fill_contact_force
 
-  !> Contact status.
+  !> Evaluate the contact status.
   subroutine fill_contact_status(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     integer :: i
 
@@ -136,13 +121,10 @@ contains
     end do
   end subroutine fill_contact_status
 
-  !> Stress, turned from the axes of the material into the global ones.
+  !> Evaluate the stress in global axes.
   subroutine fill_stress(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     real(wp) :: q(3, 3), t(3, 3)
     integer :: p, e, i
@@ -159,29 +141,23 @@ contains
     end do
   end subroutine fill_stress
 
-  !> Equivalent plastic strain.
+  !> Evaluate the equivalent plastic strain.
   subroutine fill_plastic_strain(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     integer :: e, n
 
     n = model%element%n_point
     do e = 1, model%n_element
-      value(1, (e - 1)*n + 1:e*n) = state%internal(1, :, e)
+      value(1, (e - 1)*n + 1:e*n) = state%internal_variables(1, :, e)
     end do
   end subroutine fill_plastic_strain
 
-  !> Equivalent stress.
+  !> Evaluate the equivalent stress.
   subroutine fill_equivalent_stress(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     integer :: p, e, i, m
 
@@ -191,23 +167,20 @@ contains
       do p = 1, model%element%n_point
         i = i + 1
         value(1, i) = model%material(m)%equivalent_stress(state%stress(:, p, e), &
-                                                          state%internal(:, p, e))
+                                                          state%internal_variables(:, p, e))
       end do
     end do
   end subroutine fill_equivalent_stress
 
-  !> Thickness.
+  !> Evaluate the thickness.
   subroutine fill_thickness(model, state, value)
-    !> See `fill_field`.
     type(model_t), intent(in) :: model
-    !> See `fill_field`.
     type(state_t), intent(in) :: state
-    !> See `fill_field`.
     real(wp), intent(out) :: value(:, :)
     integer, allocatable :: column(:, :)
     integer :: i
 
-    call sheet_columns(model, column)
+    call thickness_columns(model, column)
     do i = 1, model%n_node
       value(1, i) = norm2(state%x(:, column(2, i)) - state%x(:, column(1, i)))
     end do

@@ -1,5 +1,5 @@
-!> Growing datasets of an HDF5 file. The default library version is the one whose files outlive a
-!> killed program when data, flush, number of steps, flush follow each other in this order.
+!> Growing datasets of an HDF5 file. Its files remain readable after a kill only with the default
+!> version of the library's format, and if data, flush, number of steps, flush follow in this order.
 module dd3_output_hdf5
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_null_char
   use dd3_base_kinds, only : wp, i8
@@ -7,8 +7,9 @@ module dd3_output_hdf5
                    h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, &
                    h5dwrite_f, h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, &
                    h5pclose_f, h5acreate_f, h5awrite_f, h5aclose_f, h5tcopy_f, h5tset_size_f, &
-                   h5tclose_f, h5gcreate_f, h5fflush_f, H5S_SELECT_SET_F, H5S_UNLIMITED_F, &
-                   H5S_SCALAR_F, H5P_DATASET_CREATE_F, H5T_FORTRAN_S1, H5T_NATIVE_DOUBLE, &
+                   h5tclose_f, h5gcreate_f, h5fflush_f, h5iget_name_f, H5S_SELECT_SET_F, &
+                   H5S_UNLIMITED_F, H5S_SCALAR_F, H5P_DATASET_CREATE_F, H5T_FORTRAN_S1, &
+                   H5T_NATIVE_DOUBLE, &
                    H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, H5T_STD_I64LE, H5T_STD_I32LE, &
                    H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
   implicit none
@@ -17,20 +18,20 @@ module dd3_output_hdf5
   public :: text_attribute, integer_attribute, rewrite_attribute
   public :: kind_real, kind_long, kind_int, kind_byte
 
-  !> How numbers stand in the file: reals of 8 bytes, whole numbers of 8, 4 and 1 bytes.
+  !> Types of numbers in the file: reals of 8 bytes, integers of 8, 4 and 1 bytes.
   integer, parameter :: kind_real = 1, kind_long = 2, kind_int = 3, kind_byte = 4
-  !> Largest number of rows stored together.
+  !> Largest number of rows in a chunk.
   integer, parameter :: largest_chunk = 32768
 
-  !> A dataset that grows by rows.
+  !> Dataset that grows by rows.
   type :: series_t
     !> Identifier; negative when closed.
     integer(hid_t) :: id = -1_hid_t
-    !> Numbers in a row, and whether the rows stand in a table (rank 2).
+    !> Values in a row.
     integer :: components = 1
-    !> Whether a row of one number still has an index of its own.
+    !> The dataset has rank 2.
     logical :: table = .false.
-    !> Rows so far, and rows that are stored together.
+    !> Rows so far, and rows in a chunk.
     integer(hsize_t) :: rows = 0, chunk = 1
   contains
     procedure :: create => series_create
@@ -39,30 +40,30 @@ module dd3_output_hdf5
     procedure :: append_long => series_append_long
     procedure :: describe => series_describe
     procedure :: room => series_room
+    procedure :: path => series_path
     procedure :: close => series_close
   end type series_t
 
   interface
-    !> Keeps the library from touching its files once more when the program ends.
+    !> Leave the files alone when the program ends.
     integer(c_int) function h5_dont_atexit() bind(c, name="H5dont_atexit")
       import :: c_int
     end function h5_dont_atexit
     !> setenv(3).
     integer(c_int) function c_setenv(name, value, overwrite) bind(c, name="setenv")
       import :: c_char, c_int
-      !> Name and value of the variable, each ended by a null.
+      !> Ended by a null.
       character(kind=c_char), intent(in) :: name(*), value(*)
-      !> Whether a value it has already is replaced.
+      !> Replace an existing value.
       integer(c_int), value :: overwrite
     end function c_setenv
   end interface
 
 contains
 
-  !> Readies the library: it keeps quiet, and locks no file, so that a run can be looked at. Files
-  !> that failed must not be touched when the program ends: that would spoil them, or crash.
+  !> Initialise the library without error messages and file locks: the results of a running job can
+  !> be read. Files that failed are not touched again when the program ends.
   subroutine start_hdf5(ok)
-    !> Whether all went well.
     logical, intent(out) :: ok
     integer :: status
     integer(c_int) :: set
@@ -74,21 +75,18 @@ contains
     if (ok) call h5eset_auto_f(0, status)
   end subroutine start_hdf5
 
-  !> Makes a dataset without rows.
+  !> Make a dataset without rows.
   subroutine series_create(self, parent, name, kind, components, table, chunk, ok)
-    !> The dataset.
     class(series_t), intent(inout) :: self
-    !> The group it stands in.
     integer(hid_t), intent(in) :: parent
-    !> Its name.
     character(len=*), intent(in) :: name
-    !> One of the `kind_*` values; numbers in a row.
+    !> One of the `kind_*` values; values in a row.
     integer, intent(in) :: kind, components
-    !> Whether rows of one number still make a table.
+    !> Rows of one number make a dataset of rank 2 too.
     logical, intent(in) :: table
-    !> Rows that are added at a time.
+    !> Rows added at a time.
     integer, intent(in) :: chunk
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: space, plist
     integer(hsize_t) :: size_now(2), size_most(2), size_chunk(2)
@@ -119,7 +117,7 @@ contains
     call h5sclose_f(space, ignored)
   end subroutine series_create
 
-  !> The library's name for a kind of number.
+  !> Return the type of a kind of number in the file.
   integer(hid_t) function file_type(kind)
     !> One of the `kind_*` values.
     integer, intent(in) :: kind
@@ -136,13 +134,11 @@ contains
     end select
   end function file_type
 
-  !> Adds rows of real numbers.
+  !> Append rows of real numbers.
   subroutine series_append_reals(self, values, ok)
-    !> The dataset.
     class(series_t), intent(inout) :: self
-    !> The rows, one behind the other.
     real(wp), intent(in) :: values(:)
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: memory, file
     integer :: status
@@ -155,13 +151,11 @@ contains
     call close_spaces(memory, file)
   end subroutine series_append_reals
 
-  !> Adds rows of whole numbers.
+  !> Append rows of integers.
   subroutine series_append_integers(self, values, ok)
-    !> The dataset.
     class(series_t), intent(inout) :: self
-    !> The rows, one behind the other.
     integer, intent(in) :: values(:)
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: memory, file
     integer :: status
@@ -174,13 +168,11 @@ contains
     call close_spaces(memory, file)
   end subroutine series_append_integers
 
-  !> Adds a row of one whole number that may be large.
+  !> Append a row of one long integer.
   subroutine series_append_long(self, value, ok)
-    !> The dataset.
     class(series_t), intent(inout) :: self
-    !> The number.
     integer(i8), intent(in), target :: value
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: memory, file
     integer :: status
@@ -193,15 +185,14 @@ contains
     call close_spaces(memory, file)
   end subroutine series_append_long
 
-  !> Makes room for new rows.
+  !> Extend a dataset and select the new rows.
   subroutine grow(self, count, memory, file, ok)
-    !> The dataset.
     type(series_t), intent(inout) :: self
-    !> Numbers to come.
+    !> Number of values.
     integer, intent(in) :: count
-    !> Where the numbers are, and where they go.
+    !> Dataspaces of the values and of the rows.
     integer(hid_t), intent(out) :: memory, file
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hsize_t) :: first(2), more(2), extent(2)
     integer :: status, rank
@@ -226,9 +217,8 @@ contains
     self%rows = self%rows + more(rank)
   end subroutine grow
 
-  !> Gives two dataspaces back.
+  !> Close two dataspaces.
   subroutine close_spaces(memory, file)
-    !> The dataspaces.
     integer(hid_t), intent(in) :: memory, file
     integer :: ignored
 
@@ -236,32 +226,40 @@ contains
     call h5sclose_f(file, ignored)
   end subroutine close_spaces
 
-  !> Says the unit and the meaning of a dataset, for those who open the file by hand.
+  !> Store the unit and the meaning of a dataset as attributes.
   subroutine series_describe(self, unit, description, ok)
-    !> The dataset.
     class(series_t), intent(in) :: self
-    !> The unit, and the meaning.
     character(len=*), intent(in) :: unit, description
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
     call text_attribute(self%id, "unit", unit, ok)
     call text_attribute(self%id, "description", description, ok)
   end subroutine series_describe
 
-  !> Bytes that new rows may take on the disk at most.
+  !> Return an upper bound of the size of new rows on the disk, bytes.
   pure integer(i8) function series_room(self, more)
-    !> The dataset.
     class(series_t), intent(in) :: self
-    !> Number of rows to come.
     integer, intent(in) :: more
 
     series_room = ((int(more, i8) - 1)/self%chunk + 2)*self%chunk*int(self%components, i8)*8 + 4096
   end function series_room
 
-  !> Closes a dataset.
+  !> Return the path of a dataset in its file.
+  function series_path(self) result(path)
+    class(series_t), intent(in) :: self
+    character(len=:), allocatable :: path
+
+    character(len=256) :: buffer
+    integer(size_t) :: length
+    integer :: status
+
+    call h5iget_name_f(self%id, buffer, len(buffer, kind=size_t), length, status)
+    path = trim(buffer(:length))
+  end function series_path
+
+  !> Close a dataset.
   subroutine series_close(self)
-    !> The dataset.
     class(series_t), intent(inout) :: self
     integer :: ignored
 
@@ -269,15 +267,12 @@ contains
     self%id = -1
   end subroutine series_close
 
-  !> Makes a group.
+  !> Make a group.
   subroutine make_group(parent, name, group, ok)
-    !> The group or file it stands in.
     integer(hid_t), intent(in) :: parent
-    !> Its name.
     character(len=*), intent(in) :: name
-    !> The group.
     integer(hid_t), intent(out) :: group
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer :: status
 
@@ -287,13 +282,11 @@ contains
     ok = status >= 0
   end subroutine make_group
 
-  !> Gives an object a text of fixed length.
+  !> Make a text attribute.
   subroutine text_attribute(object, name, text, ok)
-    !> The object.
     integer(hid_t), intent(in) :: object
-    !> Name of the attribute, and its text.
     character(len=*), intent(in) :: name, text
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: space, type, attribute
     integer :: status, ignored
@@ -316,17 +309,14 @@ contains
     call h5tclose_f(type, ignored)
   end subroutine text_attribute
 
-  !> Gives an object whole numbers: one as a scalar, several as a list.
+  !> Make an attribute of integers: one as a scalar, several as a list.
   subroutine integer_attribute(object, name, values, attribute, ok)
-    !> The object.
     integer(hid_t), intent(in) :: object
-    !> Name of the attribute.
     character(len=*), intent(in) :: name
-    !> The numbers.
     integer, intent(in) :: values(:)
-    !> The attribute, left open.
+    !> Left open.
     integer(hid_t), intent(out) :: attribute
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer(hid_t) :: space
     integer :: status, ignored
@@ -346,13 +336,11 @@ contains
     call rewrite_attribute(attribute, values, ok)
   end subroutine integer_attribute
 
-  !> Gives an attribute other numbers.
+  !> Overwrite an attribute.
   subroutine rewrite_attribute(attribute, values, ok)
-    !> The attribute.
     integer(hid_t), intent(in) :: attribute
-    !> The numbers.
     integer, intent(in) :: values(:)
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer :: status
 
@@ -361,11 +349,11 @@ contains
     ok = status >= 0
   end subroutine rewrite_attribute
 
-  !> Hands everything of a file to the system.
+  !> Write all that is buffered of a file.
   subroutine flush_hdf5(file, ok)
     !> The file.
     integer(hid_t), intent(in) :: file
-    !> Whether all went well so far; nothing is done where not.
+    !> Success flag; no-op if false.
     logical, intent(inout) :: ok
     integer :: status
 

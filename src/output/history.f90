@@ -1,63 +1,83 @@
-!> history.csv: travel, tools' displacements and forces, and the quantities of the followed node
-!> sets. One row for the initial state and one for every n-th accepted increment; the last state of
-!> a phase and of the run is always there.
+!> history.csv: travel, displacements and forces of the tools, and the quantities of the node sets
+!> of *HISTORY. One row for the initial state and for every n-th accepted increment; the last state
+!> of a phase and of the run always has a row.
 module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_base_text, only : newline
+  use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_state, only : state_t, status_gap
+  use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
   implicit none
   private
   public :: history_record_t
 
+  !> Name of the file in the folder of the results.
+  character(len=*), parameter :: file_name = "history.csv"
   !> Endings of the columns along the axes.
   character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
-  !> The history of a run.
+  !> History of a run.
   type :: history_record_t
-    !> The table.
     type(table_t), private :: table
-    !> A row that has not been written, because it is not its turn.
+    !> Row of a state that is not due; it is written if it becomes the last one of its phase.
     character(len=:), allocatable, private :: waiting
     !> Phase of the last state.
     integer, private :: phase = 0
   contains
     procedure :: open => history_open
+    procedure :: resume => history_resume
     procedure :: write => history_write
+    procedure :: flush => history_flush
     procedure :: close => history_close
   end type history_record_t
 
 contains
 
-  !> Makes the file with its two lines of heading.
+  !> Make the file with its two lines of heading.
   subroutine history_open(self, model, directory, error)
-    !> The record.
     class(history_record_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The directory.
+    !> Folder of the results.
     character(len=*), intent(in) :: directory
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: names, units
 
     self%waiting = ""
     self%phase = 0
-    call self%table%open(directory//"/history.csv", error)
+    call self%table%open(directory//"/"//file_name, error)
     if (allocated(error)) return
-    call heading(model, names, units)
-    call self%table%file%put("# units: "//units//newline//names//newline, error)
+    call self%table%file%put(heading(model), error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine history_open
 
-  !> Names and units of the columns.
-  subroutine heading(model, names, units)
-    !> The model.
+  !> Make the file with the rows of an earlier run up to a restart.
+  subroutine history_resume(self, model, state, source, directory, found)
+    class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The names, and the units, with commas between them.
-    character(len=:), allocatable, intent(out) :: names, units
+    !> State of the restart.
+    type(state_t), intent(in) :: state
+    !> Folders of the earlier results, and of the results.
+    character(len=*), intent(in) :: source, directory
+    !> The earlier rows are in the file.
+    logical, intent(out) :: found
+
+    self%waiting = ""
+    self%phase = state%phase
+    call self%table%resume(source//"/"//file_name, directory//"/"//file_name, heading(model), &
+        state%history_increment, found)
+    if (.not. found .or. state%history_increment >= state%increment) return
+    call fill_row(self%table, model, state)
+    call self%table%take_row(self%waiting)
+  end subroutine history_resume
+
+  !> Return the lines of the heading: units and names of the columns.
+  function heading(model) result(text)
+    type(model_t), intent(in) :: model
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: names, units
     integer :: i
 
     names = "increment,phase,travel,progress"
@@ -68,21 +88,21 @@ contains
       names = names//","//trim(model%tool(i)%name)//"_contacts"
       units = units//",-"
     end do
-    if (.not. allocated(model%history)) return
-    do i = 1, size(model%history)
-      if (model%history(i)%displacement) then
-        call add_vector(names, units, model%history(i)%name//"_u", "mm")
-      end if
-      if (model%history(i)%reaction) call add_vector(names, units, model%history(i)%name//"_r", "N")
-      if (model%history(i)%position) call add_vector(names, units, model%history(i)%name//"_", "mm")
-    end do
-  end subroutine heading
+    if (allocated(model%history)) then
+      do i = 1, size(model%history)
+        associate (set => model%history(i))
+          if (set%displacement) call add_vector(names, units, set%name//"_u", "mm")
+          if (set%reaction) call add_vector(names, units, set%name//"_r", "N")
+          if (set%position) call add_vector(names, units, set%name//"_", "mm")
+        end associate
+      end do
+    end if
+    text = "# units: "//units//newline//names//newline
+  end function heading
 
-  !> Adds the columns of a vector to the heading.
+  !> Add the columns of a vector.
   subroutine add_vector(names, units, prefix, unit)
-    !> The names and the units so far.
     character(len=:), allocatable, intent(inout) :: names, units
-    !> What stands before the axis, and the unit.
     character(len=*), intent(in) :: prefix, unit
     integer :: i
 
@@ -92,15 +112,14 @@ contains
     end do
   end subroutine add_vector
 
-  !> Adds the row of a state, or keeps it until its phase ends or the next one takes its place.
+  !> Write the row of a committed state if it is due; keep it otherwise, until the phase ends or the
+  !> next row replaces it.
   subroutine history_write(self, model, state, error)
-    !> The record.
     class(history_record_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The state, accepted.
-    type(state_t), intent(in) :: state
-    !> Says why it cannot be written.
+    !> Gets the increment of the last row written.
+    type(state_t), intent(inout) :: state
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
     logical :: due
 
@@ -113,18 +132,16 @@ contains
     call fill_row(self%table, model, state)
     if (due) then
       call self%table%end_row(error)
+      state%history_increment = state%increment
     else
       call self%table%take_row(self%waiting)
     end if
   end subroutine history_write
 
-  !> Fills the row of a state.
+  !> Fill the row of a state.
   subroutine fill_row(table, model, state)
-    !> The table.
     type(table_t), intent(inout) :: table
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The state.
     type(state_t), intent(in) :: state
     integer :: i
 
@@ -150,11 +167,9 @@ contains
     end do
   end subroutine fill_row
 
-  !> Mean of the vectors of some nodes.
+  !> Return the mean of the vectors of some nodes.
   pure function mean(vector, node)
-    !> The vectors of all nodes.
     real(wp), intent(in) :: vector(:, :)
-    !> The nodes.
     integer, intent(in) :: node(:)
     real(wp) :: mean(3)
     integer :: i
@@ -166,14 +181,11 @@ contains
     mean = mean/real(max(1, size(node)), wp)
   end function mean
 
-  !> Sum of the supports' forces on some nodes: what the internal forces leave when loads and tools
-  !> have done their part.
+  !> Return the sum of the support reactions of some nodes, N: internal forces less those of loads
+  !> and tools.
   pure function reaction(model, state, node)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The state.
     type(state_t), intent(in) :: state
-    !> The nodes.
     integer, intent(in) :: node(:)
     real(wp) :: reaction(3)
     integer :: i
@@ -187,11 +199,10 @@ contains
     end do
   end function reaction
 
-  !> Writes the row that waits.
+  !> Write the row that is kept.
   subroutine put_waiting(self, error)
-    !> The record.
     class(history_record_t), intent(inout) :: self
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. allocated(self%waiting)) return
@@ -199,11 +210,10 @@ contains
     self%waiting = ""
   end subroutine put_waiting
 
-  !> Writes what waits and closes the file.
+  !> Write what is kept and buffered, and close the file.
   subroutine history_close(self, error)
-    !> The record.
     class(history_record_t), intent(inout) :: self
-    !> Says why the rest cannot be written.
+    !> Set if the rest cannot be written.
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: second
 
@@ -211,5 +221,14 @@ contains
     call self%table%close(second)
     if (.not. allocated(error) .and. allocated(second)) call move_alloc(second, error)
   end subroutine history_close
+
+  !> Write what is buffered.
+  subroutine history_flush(self, error)
+    class(history_record_t), intent(inout) :: self
+    !> Set if the rows cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%table%file%flush(error)
+  end subroutine history_flush
 
 end module dd3_output_history

@@ -1,10 +1,9 @@
-!> The last step of a corrector that has found everything but the balance of a pressed tool.
+!> Last step of a corrector that has converged but for the force balance of a pressed tool.
 module dd3_process_balance
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_contact
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_process_residual, only : evaluate_forces, pressed_force, tool_force_tolerance
   use dd3_system_system, only : system_t
@@ -12,78 +11,73 @@ module dd3_process_balance
   private
   public :: balance_tools
 
-  !> Share of its force within which a tool's own motion may do the rest; attempts at that.
+  !> Relative residual up to which the motion of the tool alone restores its balance.
   real(wp), parameter :: nearly_met = 1.0e-4_wp
-  !> See above.
-  integer, parameter :: most_balances = 4
+  !> Largest number of such motions.
+  integer, parameter :: most_motions = 4
 
 contains
 
-  !> Meets the forces of the pressed tools by the tools' own motion, once all else is settled. Where
-  !> many nodes lie flat under a tool, the last of them open and close for many iterations with
-  !> forces of a millionth of the tool's: far below the nodes' own residuals, but not below what is
-  !> asked of the tool's balance. A force farther off than `nearly_met` is left to the iterations.
-  subroutine balance_tools(system, model, phase, old, new, moved)
-    !> The evaluated system.
-    type(system_t), intent(inout) :: system
-    !> The model.
+  !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has
+  !> converged. Where many nodes lie flat under a tool, the last of them open and close for many
+  !> iterations with forces of a millionth of the tool's: far below the tolerance of the nodes, but
+  !> not below that of the tool. Larger residuals are left to the iterations.
+  subroutine balance_tools(model, committed, trial, system, moved)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-    !> Whether a tool was moved.
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    !> Evaluated at the trial state.
+    type(system_t), intent(inout) :: system
+    !> A tool was moved.
     logical, intent(out) :: moved
 
-    real(wp) :: way(model%n_tool)
-    integer :: attempt, tool
+    real(wp) :: distance(model%n_tool)
+    integer :: k, tool
 
     moved = .false.
     call system%profile%start()
-    do attempt = 1, most_balances
-      way = 0.0_wp
-      do tool = 1, model%n_tool
-        if (.not. phase%pressed(tool)) cycle
-        associate (residual => abs(system%problem%tool_residual(tool)), &
-                   force => pressed_force(phase, new, tool))
-          if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
-            way(tool) = way_to_balance(system, phase, tool)
-        end associate
+    associate (phase => model%phase(trial%phase))
+      do k = 1, most_motions
+        distance = 0.0_wp
+        do tool = 1, model%n_tool
+          if (.not. phase%pressed(tool)) cycle
+          associate (residual => abs(system%problem%tool_residual(tool)), &
+                     force => pressed_force(trial, tool))
+            if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
+              distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
+          end associate
+        end do
+        if (all(abs(distance) <= 0.0_wp)) exit
+        do tool = 1, model%n_tool
+          trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
+              + distance(tool)*phase%direction(:, tool)
+        end do
+        moved = .true.
+        call evaluate_forces(model, committed, trial, system)
       end do
-      if (all(abs(way) <= 0.0_wp)) exit
-      do tool = 1, model%n_tool
-        new%tool_displacement(:, tool) = new%tool_displacement(:, tool) &
-            + way(tool)*phase%direction(:, tool)
-      end do
-      moved = .true.
-      call evaluate_forces(system, model, phase, old, new)
-    end do
+    end associate
     call system%profile%add(section_contact)
   end subroutine balance_tools
 
-  !> How far a pressed tool has to go along its line until its force is met; zero where nothing
-  !> resists it.
-  pure real(wp) function way_to_balance(system, phase, tool) result(way)
-    !> The system with its contact evaluated.
+  !> Return the distance along its line at which the force of a pressed tool is balanced, mm; zero
+  !> if nothing resists it.
+  pure real(wp) function distance_to_balance(system, line, tool) result(distance)
+    !> Evaluated at the trial state.
     type(system_t), intent(in) :: system
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The tool.
+    !> Unit vector along the line of motion.
+    real(wp), intent(in) :: line(3)
     integer, intent(in) :: tool
 
-    real(wp) :: stiffness, line(3)
+    real(wp) :: stiffness
     integer :: c
 
-    line = phase%direction(:, tool)
     stiffness = 0.0_wp
     do c = 1, size(system%contact%tool)
       if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
       stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
     end do
-    way = 0.0_wp
-    if (stiffness > 0.0_wp) way = system%problem%tool_residual(tool)/stiffness
-  end function way_to_balance
+    distance = 0.0_wp
+    if (stiffness > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness
+  end function distance_to_balance
 
 end module dd3_process_balance

@@ -1,352 +1,285 @@
-!> The corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations,
-!> contact, friction).
+!> Corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations, contact,
+!> friction).
 !> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
-!> the norm of the internal forces standing in for that of the contact forces where it is larger
-!> (and where there is no contact).
+!> scaled by the norm of the internal forces where it exceeds that of the contact forces.
 module dd3_process_corrector
   use dd3_base_kinds, only : wp
-  use dd3_base_clock, only : section_material, section_assembly, section_contact
+  use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
   use dd3_process_balance, only : balance_tools
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force, tool_force_tolerance
-  use dd3_system_internal, only : update_material, assemble_stiffness
+  use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_reduced, only : contact_force_increment
-  use dd3_system_solve, only : solve_reduced, solve_info_t
+  use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: correct, clear_correction, correction_t
+  public :: correct
 
-  !> Share of the criterion's tolerance below which all but the tools' forces counts as settled.
+  !> Fraction of the tolerance of the criterion below which all but the tool forces has converged.
   real(wp), parameter :: settled = 0.1_wp
-  !> The largest displacement an iteration may make, as a multiple of the sheet's thickness.
+  !> Largest displacement in an iteration, in thicknesses of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Forces this strain makes over the square of the thickness are no scale: a free sheet at rest
-  !> holds round-off alone.
+  !> Strain whose force on the square of the thickness is the least scale of the criterion: in a
+  !> free sheet at rest all forces are round-off.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
-  !> Status patterns remembered to see a cycle.
-  integer, parameter :: memory = 3
-
-  !> What the corrector leaves behind for the records.
-  type :: correction_t
-    !> Criterion of convergence, eq. (19), after each iteration.
-    real(wp), allocatable :: criterion(:)
-    !> Status of the candidates in the last iterations, the newest first, `(n_contact, memory)`.
-    integer, allocatable :: status(:, :)
-    !> Largest residual: node and value, N.
-    integer :: worst_node = 0
-    !> See above.
-    real(wp) :: worst_residual = 0.0_wp
-    !> Increment of the contact forces in the last iteration, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda_increment(:, :)
-  end type correction_t
+  !> Largest number of nodes listed in a message.
+  integer, parameter :: most_listed = 4
 
 contains
 
-  !> Corrects a trial state until it is in equilibrium and every contact condition holds.
-  subroutine correct(system, model, phase, old, new, info, correction, verdict)
-    !> Matrices and solver.
-    type(system_t), intent(inout) :: system
-    !> The model.
+  !> Correct a trial state until it is in equilibrium and every contact condition holds.
+  subroutine correct(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state: predicted at entry, corrected at return.
-    type(state_t), intent(inout) :: new
-    !> What the linear solver did.
-    type(solve_info_t), intent(inout) :: info
-    !> The course of the iterations.
-    type(correction_t), intent(inout) :: correction
-    !> Converged, or retry with the reason.
-    type(verdict_t), intent(out) :: verdict
+    type(state_t), intent(in) :: committed
+    !> Predicted on entry, corrected on return.
+    type(state_t), intent(inout) :: trial
+    type(system_t), intent(inout) :: system
+    !> Gets the course of the iterations and the verdict: converged, or retry with the reason.
+    type(attempt_t), intent(inout) :: attempt
 
     character(len=:), allocatable :: changes
 
-    call clear_correction(correction, model)
-    call iterate(system, model, phase, old, new, info, correction, verdict)
-    if (verdict%outcome == verdict_converged) return
-    if (len_trim(verdict%reason) == 0) call explain(system, model, phase, new, correction, verdict)
-    changes = status_changes(model, correction, len(verdict%reason) - len_trim(verdict%reason) - 2)
-    if (len(changes) == 0) return
-    if (len_trim(verdict%reason) > 0) changes = trim(verdict%reason)//"; "//changes
-    verdict%reason = changes
+    call clear_correction(attempt%correction, model%n_contact)
+    call iterate(model, committed, trial, system, attempt)
+    associate (verdict => attempt%verdict)
+      if (verdict%outcome == verdict_converged) return
+      if (len_trim(verdict%reason) == 0) call explain(model, trial, system, attempt)
+      changes = status_changes(model, attempt%correction, &
+          len(verdict%reason) - len_trim(verdict%reason) - 2)
+      if (len(changes) == 0) return
+      if (len_trim(verdict%reason) > 0) changes = trim(verdict%reason)//"; "//changes
+      verdict%reason = changes
+    end associate
   end subroutine correct
 
-  !> The iterations of the corrector; where they come to their end, the reason stays empty.
-  subroutine iterate(system, model, phase, old, new, info, correction, verdict)
-    !> Matrices and solver.
-    type(system_t), intent(inout) :: system
-    !> The model.
+  !> Iterate. The reason of the verdict stays empty if the iterations are used up.
+  subroutine iterate(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-    !> What the linear solver did.
-    type(solve_info_t), intent(inout) :: info
-    !> The course of the iterations.
-    type(correction_t), intent(inout) :: correction
-    !> Converged, or retry with the reason.
-    type(verdict_t), intent(inout) :: verdict
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    type(system_t), intent(inout) :: system
+    type(attempt_t), intent(inout) :: attempt
 
     integer :: j
     logical :: moved
 
-    system%problem%displacement = 0.0_wp
-    system%problem%tool_motion = 0.0_wp
-    do j = 1, phase%newton%iterations
-      verdict%iterations = j
-      call evaluate(system, model, phase, old, new, j, verdict)
-      if (verdict%outcome /= verdict_converged) return
-      correction%status(:, 2:) = correction%status(:, :memory - 1)
-      call judge(system, model, phase, new, j, correction, verdict)
-      if (verdict%outcome /= verdict_converged .and. j > 1 &
-          .and. verdict%norm < settled*phase%newton%tolerance) then
-        call balance_tools(system, model, phase, old, new, moved)
-        if (moved) call judge(system, model, phase, new, j, correction, verdict)
-      end if
-      if (verdict%outcome == verdict_converged) then
-        new%lambda = system%contact%force
-        return
-      end if
-      call system%profile%start()
-      if (j > 1) call assemble_stiffness(system, model, old, new)
-      call system%profile%add(section_assembly)
-      call solve_reduced(system, model, phase, info, verdict)
-      verdict%iterations = j
-      verdict%norm = correction%criterion(j)
-      if (verdict%outcome /= verdict_converged) return
-      call advance(system, model, phase, new, correction, verdict)
-      if (verdict%outcome /= verdict_converged) return
-    end do
-    verdict%outcome = verdict_retry
-    verdict%norm = correction%criterion(phase%newton%iterations)
+    system%problem%prescribed = 0.0_wp
+    system%problem%tool_prescribed = 0.0_wp
+    associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
+               correction => attempt%correction)
+      do j = 1, phase%newton%iterations
+        verdict%iterations = j
+        call evaluate(model, committed, trial, system, attempt)
+        if (verdict%outcome /= verdict_converged) return
+        correction%status(:, 2:) = correction%status(:, :status_memory - 1)
+        call check_convergence(model, trial, system, attempt)
+        if (verdict%outcome /= verdict_converged .and. j > 1 &
+            .and. verdict%norm < settled*phase%newton%tolerance) then
+          call balance_tools(model, committed, trial, system, moved)
+          if (moved) call check_convergence(model, trial, system, attempt)
+        end if
+        if (verdict%outcome == verdict_converged) then
+          trial%lambda = system%contact%force
+          return
+        end if
+        call system%profile%start()
+        if (j > 1) call assemble_stiffness(system, model, committed, trial)
+        call system%profile%add(section_assembly)
+        call solve_reduced(system, model, phase, attempt%solver, verdict)
+        verdict%iterations = j
+        verdict%norm = correction%criterion(j)
+        if (verdict%outcome /= verdict_converged) return
+        call advance(model, trial, system, attempt)
+        if (verdict%outcome /= verdict_converged) return
+      end do
+      verdict%outcome = verdict_retry
+      verdict%norm = correction%criterion(phase%newton%iterations)
+    end associate
   end subroutine iterate
 
-  !> Says what did not converge in the last iteration: a tool that presses on nothing, a tool's
-  !> force, or the residual of a node; nothing where there are nodes that find no status.
-  subroutine explain(system, model, phase, new, correction, verdict)
-    !> The evaluated system.
-    type(system_t), intent(in) :: system
-    !> The model.
+  !> Give the reason why the last iteration did not converge: a pressed tool without contact, the
+  !> force on a tool, or the residual of a node; none if the status of nodes has not settled.
+  subroutine explain(model, trial, system, attempt)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(in) :: new
-    !> The course of the iterations.
-    type(correction_t), intent(in) :: correction
-    !> Gets the reason and where it is.
-    type(verdict_t), intent(inout) :: verdict
+    type(state_t), intent(in) :: trial
+    type(system_t), intent(in) :: system
+    type(attempt_t), intent(inout) :: attempt
 
     character(len=:), allocatable :: reason
     integer :: tool
 
-    verdict%tool = lost_tool(system, model, phase, new)
-    if (verdict%tool > 0) then
-      verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
-      return
-    end if
-    verdict%node = correction%worst_node
-    if (any(unsettled(correction%status))) return
-    reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
-             //to_text(correction%worst_node)
-    if (verdict%norm < phase%newton%tolerance) then
-      tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
-      if (tool > 0) reason = "force on the pressed tool "//model%tool(tool)%name//" off by " &
+    associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
+               correction => attempt%correction)
+      verdict%tool = lost_tool(model, trial, system%contact)
+      if (verdict%tool > 0) then
+        verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
+        return
+      end if
+      verdict%node = correction%worst_node
+      if (any(unsettled(correction%status))) return
+      reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
+               //to_text(correction%worst_node)
+      if (verdict%norm < phase%newton%tolerance) then
+        tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
+        if (tool > 0) reason = "force on the pressed tool "//model%tool(tool)%name//" off by " &
           //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
-      verdict%node = 0
-    end if
-    verdict%reason = reason//" after "//to_text(phase%newton%iterations)//" iterations"
+        verdict%node = 0
+      end if
+      verdict%reason = reason//" after "//to_text(phase%newton%iterations)//" iterations"
+    end associate
   end subroutine explain
 
-  !> Makes the correction ready for a new increment.
-  subroutine clear_correction(correction, model)
-    !> The correction.
-    type(correction_t), intent(inout) :: correction
-    !> The model.
+  !> Evaluate stresses, internal forces, contact and residuals of the trial state; in the first
+  !> iteration, which is never the last, the stiffness too.
+  subroutine evaluate(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
-
-    if (allocated(correction%criterion)) deallocate (correction%criterion)
-    allocate (correction%criterion(0))
-    if (.not. allocated(correction%status)) allocate (correction%status(model%n_contact, memory))
-    if (.not. allocated(correction%lambda_increment)) &
-      allocate (correction%lambda_increment(3, model%n_contact))
-    correction%status = -1
-    correction%lambda_increment = 0.0_wp
-    correction%worst_node = 0
-    correction%worst_residual = 0.0_wp
-  end subroutine clear_correction
-
-  !> Stresses, internal forces and contact of the trial state, and the residuals from them; with the
-  !> stiffness in the first iteration, which is never the last.
-  subroutine evaluate(system, model, phase, old, new, j, verdict)
-    !> The system.
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
     type(system_t), intent(inout) :: system
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-    !> The iteration, from 1.
-    integer, intent(in) :: j
-    !> Whether the material could be integrated.
-    type(verdict_t), intent(inout) :: verdict
+    !> Holds the number of the iteration; gets a verdict on the material.
+    type(attempt_t), intent(inout) :: attempt
 
+    integer :: j
+
+    j = attempt%verdict%iterations
     call system%profile%start()
-    call update_material(system, model, old, new, j == 1, verdict)
-    verdict%iterations = j
+    call update_material(system, model, committed, trial, j == 1, attempt%verdict)
+    attempt%verdict%iterations = j
     call system%profile%add(section_material)
-    if (verdict%outcome /= verdict_converged) return
-    call evaluate_forces(system, model, phase, old, new)
+    if (attempt%verdict%outcome /= verdict_converged) return
+    call evaluate_forces(model, committed, trial, system)
     call system%profile%add(section_contact)
   end subroutine evaluate
 
-  !> The criterion of convergence, eq. (19), and whether it is met.
-  subroutine judge(system, model, phase, new, j, correction, verdict)
-    !> The evaluated system.
-    type(system_t), intent(in) :: system
-    !> The model.
+  !> Evaluate the criterion of convergence, eq. (19).
+  subroutine check_convergence(model, trial, system, attempt)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(in) :: new
-    !> The iteration, from 1.
-    integer, intent(in) :: j
-    !> Gets the criterion and the status.
-    type(correction_t), intent(inout) :: correction
-    !> Converged, or retry.
-    type(verdict_t), intent(inout) :: verdict
+    type(state_t), intent(in) :: trial
+    !> Evaluated at the trial state.
+    type(system_t), intent(in) :: system
+    !> Gets criterion, contact status and verdict: converged, or retry.
+    type(attempt_t), intent(inout) :: attempt
 
     real(wp) :: sum_of_squares, scale
-    integer :: tool
+    integer :: j, tool
     logical :: forces_met
 
-    call residual_norm(system, model, phase, correction, sum_of_squares)
-    forces_met = .true.
-    do tool = 1, model%n_tool
-      if (.not. phase%pressed(tool)) cycle
-      if (.not. any(system%contact%tool == tool .and. system%contact%status /= status_gap)) then
-        forces_met = forces_met .and. norm2(new%tool_load(:, tool)) <= 0.0_wp
-        cycle
-      end if
-      sum_of_squares = sum_of_squares + system%problem%tool_residual(tool)**2
-      forces_met = forces_met &
-          .and. abs(system%problem%tool_residual(tool)) &
-          <= tool_force_tolerance*pressed_force(phase, new, tool)
-    end do
-    associate (material => model%material(model%material_of(1)))
-      scale = max(norm2(new%lambda), norm2(new%internal_force), &
-          negligible_strain*material%laws%elasticity%shear*model%thickness**2)
+    call residual_norm(model, trial, system, attempt%correction, sum_of_squares)
+    associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
+               correction => attempt%correction, contact => system%contact, &
+               tool_residual => system%problem%tool_residual)
+      forces_met = .true.
+      do tool = 1, model%n_tool
+        if (.not. phase%pressed(tool)) cycle
+        if (.not. any(contact%tool == tool .and. contact%status /= status_gap)) then
+          forces_met = forces_met .and. norm2(trial%tool_load(:, tool)) <= 0.0_wp
+          cycle
+        end if
+        sum_of_squares = sum_of_squares + tool_residual(tool)**2
+        forces_met = forces_met &
+            .and. abs(tool_residual(tool)) <= tool_force_tolerance*pressed_force(trial, tool)
+      end do
+      associate (elasticity => model%material(model%material_of(1))%laws%elasticity)
+        scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
+            negligible_strain*elasticity%shear*model%thickness**2)
+      end associate
+      j = verdict%iterations
+      correction%criterion = [correction%criterion(:j - 1), &
+          (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
+      correction%status(:, 1) = contact%status
+      verdict%norm = correction%criterion(j)
+      verdict%outcome = verdict_retry
+      if (j > 1 .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
+        verdict%outcome = verdict_converged
     end associate
-    correction%criterion = [correction%criterion(:j - 1), &
-        (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
-    correction%status(:, 1) = system%contact%status
-    verdict%norm = correction%criterion(j)
-    verdict%outcome = verdict_retry
-    if (j > 1 .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
-      verdict%outcome = verdict_converged
-  end subroutine judge
+  end subroutine check_convergence
 
-  !> Sum of squares of the residuals of equilibrium and contact at the free degrees of freedom, with
-  !> the worst node.
-  subroutine residual_norm(system, model, phase, correction, sum_of_squares)
-    !> The evaluated system.
-    type(system_t), intent(in) :: system
-    !> The model.
+  !> Return the sum of squares of the residuals of equilibrium and contact at the free degrees of
+  !> freedom, N2, and the worst node.
+  subroutine residual_norm(model, trial, system, correction, sum_of_squares)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: trial
+    type(system_t), intent(in) :: system
     !> Gets the worst node.
     type(correction_t), intent(inout) :: correction
-    !> The sum, N2.
     real(wp), intent(out) :: sum_of_squares
 
-    real(wp) :: equilibrium(3), share
+    real(wp) :: equilibrium(3), contribution
     integer :: node, c
 
     sum_of_squares = 0.0_wp
     correction%worst_residual = -1.0_wp
-    do node = 1, model%n_node
-      c = model%candidate_of(node)
-      equilibrium = system%problem%residual(:, node)
-      share = 0.0_wp
-      if (c > 0) then
-        equilibrium = equilibrium + system%problem%excess(:, c)
-        share = sum(system%problem%excess(:, c)**2)
-      end if
-      share = share + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
-      sum_of_squares = sum_of_squares + share
-      if (share <= correction%worst_residual) cycle
-      correction%worst_residual = share
-      correction%worst_node = node
-    end do
+    associate (phase => model%phase(trial%phase), problem => system%problem)
+      do node = 1, model%n_node
+        c = model%candidate_of(node)
+        equilibrium = problem%residual(:, node)
+        contribution = 0.0_wp
+        if (c > 0) then
+          equilibrium = equilibrium + problem%contact_residual(:, c)
+          contribution = sum(problem%contact_residual(:, c)**2)
+        end if
+        contribution = contribution + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
+        sum_of_squares = sum_of_squares + contribution
+        if (contribution <= correction%worst_residual) cycle
+        correction%worst_residual = contribution
+        correction%worst_node = node
+      end do
+    end associate
     correction%worst_residual = sqrt(max(correction%worst_residual, 0.0_wp))
   end subroutine residual_norm
 
-  !> Adds the solution to the trial state.
-  subroutine advance(system, model, phase, new, correction, verdict)
-    !> The solved system.
-    type(system_t), intent(in) :: system
-    !> The model.
+  !> Add the solution to the trial state.
+  subroutine advance(model, trial, system, attempt)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-    !> Gets the increment of the contact forces.
-    type(correction_t), intent(inout) :: correction
-    !> Retry where the solution is out of all proportion.
-    type(verdict_t), intent(inout) :: verdict
+    type(state_t), intent(inout) :: trial
+    !> Solved.
+    type(system_t), intent(in) :: system
+    !> Gets the increment of the contact forces; a verdict to retry if the solution is too large.
+    type(attempt_t), intent(inout) :: attempt
 
     real(wp) :: largest
-    integer :: node, tool, block
+    integer :: node, worst, tool, row
 
-    largest = 0.0_wp
-    do node = 1, model%n_node
-      if (maxval(abs(system%problem%solution(3*node - 2:3*node))) <= largest) cycle
-      largest = maxval(abs(system%problem%solution(3*node - 2:3*node)))
-      verdict%node = node
-    end do
-    if (.not. largest <= largest_step*model%thickness) then
-      verdict%outcome = verdict_retry
-      verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
-      return
-    end if
-    verdict%node = 0
-    new%x = new%x + reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
-    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
-        correction%lambda_increment)
-    new%lambda = new%lambda + correction%lambda_increment
-    do tool = 1, model%n_tool
-      block = model%tool_block(tool)
-      if (block == 0) cycle
-      new%tool_displacement(:, tool) = new%tool_displacement(:, tool) &
-          + system%problem%solution(3*block - 2:3*block)
-    end do
+    associate (solution => system%problem%solution, verdict => attempt%verdict, &
+               increment => attempt%correction%lambda_increment)
+      largest = 0.0_wp
+      worst = 0
+      do node = 1, model%n_node
+        if (maxval(abs(solution(3*node - 2:3*node))) <= largest) cycle
+        largest = maxval(abs(solution(3*node - 2:3*node)))
+        worst = node
+      end do
+      if (.not. largest <= largest_step*model%thickness) then
+        verdict%outcome = verdict_retry
+        verdict%node = worst
+        verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
+        return
+      end if
+      trial%x = trial%x + reshape(solution(:3*model%n_node), [3, model%n_node])
+      call contact_force_increment(model, model%phase(trial%phase), system%contact, &
+          system%stiffness, system%problem, increment)
+      trial%lambda = trial%lambda + increment
+      do tool = 1, model%n_tool
+        row = model%tool_row(tool)
+        if (row == 0) cycle
+        trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
+            + solution(3*row - 2:3*row)
+      end do
+    end associate
   end subroutine advance
 
-  !> The nodes whose status did not settle in the last iterations, as far as there is room; empty
-  !> where there are none.
+  !> Return a text with the nodes whose status did not settle in the last iterations, empty if there
+  !> are none.
   function status_changes(model, correction, room) result(text)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The course of the iterations.
     type(correction_t), intent(in) :: correction
-    !> The longest text.
+    !> Largest length of the text.
     integer, intent(in) :: room
     character(len=:), allocatable :: text
 
@@ -364,23 +297,23 @@ contains
     do c = 1, model%n_contact
       if (.not. changing(c)) cycle
       node = "node "//to_text(model%contact_node(c))
-      do i = memory, 1, -1
+      do i = status_memory, 1, -1
         if (correction%status(c, i) >= 0) node = node//" "//trim(names(correction%status(c, i)))
       end do
       if (listed > 0) node = "; "//node
-      if (listed == 4 .or. len(text) + len(node) > room) return
+      if (listed == most_listed .or. len(text) + len(node) > room) return
       text = text//node
       listed = listed + 1
     end do
   end function status_changes
 
-  !> The candidates whose status did not stay the same in the iterations remembered.
+  !> Whether the status of each candidate changed in the iterations remembered.
   pure function unsettled(status) result(changing)
-    !> Status in the last iterations, the newest first, `(n_contact, memory)`; -1 for none.
+    !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
     integer, intent(in) :: status(:, :)
     logical :: changing(size(status, 1))
 
-    changing = any(status >= 0 .and. status /= spread(status(:, 1), 2, memory), dim=2)
+    changing = any(status >= 0 .and. status /= spread(status(:, 1), 2, status_memory), dim=2)
   end function unsettled
 
 end module dd3_process_corrector

@@ -1,328 +1,315 @@
-!> The limiters of the factor r: how much of the trial increment is taken.
-!> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
+!> Limiters of the factor r, the part of the trial increment that is made. Each limiter is a
+!> function that returns a bound with the place it comes from, and a row of the table. Source:
+!> Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
-  use dd3_base_text, only : to_text
-  use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
-  use dd3_input_case, only : until_displacement
   use dd3_contact_operator, only : status_gap
+  use dd3_input_case, only : until_displacement
+  use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_predictor, only : prediction_t
-  use dd3_process_stage, only : until_value
-  use dd3_system_contact, only : contact_work_t, touch
-  use dd3_system_system, only : system_t
+  use dd3_model_tolerances, only : touch
+  use dd3_process_attempt, only : limit_t
+  use dd3_process_phase_end, only : next_output_progress, until_value
+  use dd3_process_stepper, only : stepper_t
   implicit none
   private
-  public :: limit_t, limit_increment
+  public :: limit_increment
 
-  !> A bound on r with its reason.
-  type :: limit_t
-    !> The bound.
-    real(wp) :: r = huge(1.0_wp)
-    !> Which limiter it comes from.
+  abstract interface
+    !> Return the bound that a limiter sets; a huge r if it sets none.
+    function limiter_interface(model, state, stepper) result(limit)
+      import :: limit_t, model_t, state_t, stepper_t
+      type(model_t), intent(in) :: model
+      !> The committed state.
+      type(state_t), intent(in) :: state
+      !> Holds the prediction, the contact and the tangents at the committed state, and the smallest
+      !> bound so far: a limiter may skip what cannot fall below it.
+      type(stepper_t), intent(in) :: stepper
+      type(limit_t) :: limit
+    end function limiter_interface
+  end interface
+
+  !> A row of the table.
+  type :: limiter_t
     character(len=16) :: name = ""
-    !> The element and point, or the node and tool, that set it.
-    character(len=64) :: at = ""
-    !> What the limit on the contact forces alone allows, and the node, tool and B that set it;
-    !> empty where it is off or nothing touches.
-    real(wp) :: r_force = huge(1.0_wp)
-    !> See above.
-    character(len=64) :: force_at = ""
-  end type limit_t
+    procedure(limiter_interface), pointer, nopass :: evaluate => null()
+    !> The limiter does not lower r below r_min.
+    logical :: above_r_min = .false.
+  end type limiter_t
 
 contains
 
-  !> The factor r of this increment, with the limiter that won: eq. (18), and r never past the end
-  !> of the phase or the next output.
-  function limit_increment(model, phase, state, system, prediction, growth, &
-      next_output) result(limit)
-    !> The model.
+  !> Return the limiters in the order of their evaluation; the first of equal bounds wins.
+  function limiter_table() result(table)
+    type(limiter_t), allocatable :: table(:)
+
+    table = [limiter_t("strain", strain_limit, above_r_min=.true.), &
+             limiter_t("rotation", rotation_limit, above_r_min=.true.), &
+             limiter_t("stress", stress_limit, above_r_min=.true.), &
+             limiter_t("force", force_limit, above_r_min=.true.), &
+             limiter_t("gap", gap_limit), &
+             limiter_t("until", until_limit), &
+             limiter_t("output", output_limit)]
+  end function limiter_table
+
+  !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
+  !> overrides, then the bound after a cut-back, the end of the phase and the other limiters.
+  subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
     !> The committed state.
     type(state_t), intent(in) :: state
-    !> The predictor's system.
-    type(system_t), intent(in) :: system
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
-    !> Bound that grows again after a cut-back.
-    real(wp), intent(in) :: growth
-    !> Progress of the phase at the next output of fields.
-    real(wp), intent(in) :: next_output
+    !> Gets the limit, and that of the contact forces alone.
+    type(stepper_t), intent(inout) :: stepper
+
+    type(limiter_t), allocatable :: table(:)
+
+    table = limiter_table()
+    associate (limit => stepper%attempt%limit, limits => model%phase(state%phase)%limits)
+      limit = limit_t(r=limits%r_max%value, name="r_max")
+      call apply(pack(table, table%above_r_min), model, state, stepper)
+      if (limit%r < limits%r_min%value) then
+        limit%r = limits%r_min%value
+        limit%name = "r_min"
+      end if
+      call keep_smaller(limit, limit_t(r=state%r_cap, name="cutback"))
+      call keep_smaller(limit, &
+          limit_t(r=(1.0_wp - state%progress)/stepper%prediction%progress, name="phase"))
+      call apply(pack(table, .not. table%above_r_min), model, state, stepper)
+    end associate
+  end subroutine limit_increment
+
+  !> Apply limiters.
+  subroutine apply(table, model, state, stepper)
+    type(limiter_t), intent(in) :: table(:)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(inout) :: stepper
+
     type(limit_t) :: limit
+    integer :: i
 
-    type(limit_t) :: ends, force
+    do i = 1, size(table)
+      limit = table(i)%evaluate(model, state, stepper)
+      if (limit%name == "") limit%name = table(i)%name
+      call keep_smaller(stepper%attempt%limit, limit)
+      if (table(i)%name == "force") stepper%attempt%force_limit = limit
+    end do
+  end subroutine apply
 
-    limit = limit_t(phase%limits%r_max%value, "r_max", "")
-    call consider(limit, strain_limit(model, phase, prediction, limit%r))
-    call consider(limit, rotation_limit(phase, prediction))
-    call consider(limit, stress_limit(model, phase, state, system, prediction))
-    force = force_limit(model, phase, state, system%contact, prediction)
-    call consider(limit, force)
-    if (limit%r < phase%limits%r_min%value) &
-      limit = limit_t(phase%limits%r_min%value, "r_min", limit%at)
-    call consider(limit, limit_t(growth, "cutback", ""))
-    call consider(limit, gap_limit(model, phase, system%contact, prediction))
-    ends = limit_t((1.0_wp - state%progress)/prediction%progress, "phase", "")
-    call consider(ends, until_limit(model, phase, state, prediction))
-    if (next_output <= 1.0_wp) &
-      call consider(ends, limit_t((next_output - state%progress)/prediction%progress, "output", ""))
-    call consider(limit, ends)
-    limit%r_force = force%r
-    limit%force_at = force%at
-  end function limit_increment
-
-  !> Keeps the smaller bound.
-  subroutine consider(limit, candidate)
-    !> The bound so far.
+  !> Keep the smaller of two bounds, the first of equal ones.
+  subroutine keep_smaller(limit, candidate)
     type(limit_t), intent(inout) :: limit
-    !> Another one.
     type(limit_t), intent(in) :: candidate
 
     if (candidate%r < limit%r) limit = candidate
-  end subroutine consider
+  end subroutine keep_smaller
 
-  !> Text for a point.
-  function point_text(element, point) result(text)
-    !> Element and integration point.
-    integer, intent(in) :: element, point
-    character(len=:), allocatable :: text
-
-    text = "element "//to_text(element)//" point "//to_text(point)
-  end function point_text
-
-  !> Largest principal strain increment, eq. (9).
-  function strain_limit(model, phase, prediction, r) result(limit)
-    !> The model.
+  !> Limit the largest principal strain increment, eq. (9).
+  function strain_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
-    !> The bound so far: points that cannot come below it are passed over by their strain's norm.
-    real(wp), intent(in) :: r
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: values(3), vectors(3, 3), norm, largest
+    real(wp) :: values(3), vectors(3, 3), largest
     integer :: e, p
 
-    if (.not. phase%limits%strain%active) return
-    limit%name = "strain"
-    largest = phase%limits%strain%value/r
-    do e = 1, model%n_element
-      do p = 1, model%element%n_point
-        norm = norm2(prediction%strain(:, p, e))
-        if (norm <= largest) cycle
-        call symmetric_eigen(tensor_from_kelvin(prediction%strain(:, p, e)), values, vectors)
-        if (maxval(abs(values)) <= largest) cycle
-        largest = maxval(abs(values))
-        limit%r = phase%limits%strain%value/largest
-        limit%at = point_text(e, p)
+    associate (allowed => model%phase(state%phase)%limits%strain)
+      if (.not. allowed%active) return
+      largest = allowed%value/stepper%attempt%limit%r
+      do e = 1, model%n_element
+        do p = 1, model%element%n_point
+          associate (strain => stepper%prediction%strain(:, p, e))
+            if (norm2(strain) <= largest) cycle
+            call symmetric_eigen(tensor_from_kelvin(strain), values, vectors)
+          end associate
+          if (maxval(abs(values)) <= largest) cycle
+          largest = maxval(abs(values))
+          limit = limit_t(r=allowed%value/largest, element=e, point=p)
+        end do
       end do
-    end do
+    end associate
   end function strain_limit
 
-  !> Largest rotation increment, eq. (10).
-  function rotation_limit(phase, prediction) result(limit)
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
+  !> Limit the largest rotation increment, eq. (10).
+  function rotation_limit(model, state, stepper) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
     integer :: place(2)
 
-    if (.not. phase%limits%rotation%active) return
-    place = maxloc(prediction%rotation)
-    limit%name = "rotation"
-    limit%at = point_text(place(2), place(1))
-    if (prediction%rotation(place(1), place(2)) <= 0.0_wp) return
-    limit%r = phase%limits%rotation%value*pi/180.0_wp/prediction%rotation(place(1), place(2))
+    associate (allowed => model%phase(state%phase)%limits%rotation)
+      if (.not. allowed%active) return
+      place = maxloc(stepper%prediction%rotation)
+      associate (largest => stepper%prediction%rotation(place(1), place(2)))
+        if (largest <= 0.0_wp) return
+        limit = limit_t(r=allowed%value*pi/180.0_wp/largest, element=place(2), point=place(1))
+      end associate
+    end associate
   end function rotation_limit
 
-  !> Stress increments normal and tangential to the yield surface, eq. (11), with the modulus of
-  !> cos(theta): a negative one, in unloading, would enlarge the bound.
-  function stress_limit(model, phase, state, system, prediction) result(limit)
-    !> The model.
+  !> Limit the stress increments normal and tangential to the yield surface, eq. (11). The modulus
+  !> of cos(theta) is taken: in unloading its negative value would raise the bound.
+  function stress_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
     type(state_t), intent(in) :: state
-    !> Holds the continuum tangents.
-    type(system_t), intent(in) :: system
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: change(6), direction(6), size_of_change, normal, along, inverse_a, inverse_b, r
+    real(wp) :: change(6), direction(6), magnitude, normal, tangential, inverse_a, inverse_b, bound
     integer :: e, p
 
-    if (.not. (phase%limits%stress_tangential%active .or. phase%limits%stress_normal%active)) return
-    inverse_a = 0.0_wp
-    inverse_b = 0.0_wp
-    if (phase%limits%stress_tangential%active) &
-      inverse_a = 1.0_wp/phase%limits%stress_tangential%value
-    if (phase%limits%stress_normal%active) inverse_b = 1.0_wp/phase%limits%stress_normal%value
-    limit%name = "stress"
+    associate (limits => model%phase(state%phase)%limits)
+      if (.not. (limits%stress_tangential%active .or. limits%stress_normal%active)) return
+      inverse_a = 0.0_wp
+      inverse_b = 0.0_wp
+      if (limits%stress_tangential%active) inverse_a = 1.0_wp/limits%stress_tangential%value
+      if (limits%stress_normal%active) inverse_b = 1.0_wp/limits%stress_normal%value
+    end associate
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
-          change = matmul(system%tangent(:, :, p, e), prediction%strain(:, p, e))
-          size_of_change = norm2(change)
-          if (size_of_change <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
-          direction = material%plastic_direction(state%stress(:, p, e), state%internal(:, p, e))
-          normal = abs(dot_product(direction, change))/(norm2(direction)*size_of_change)
+          change = matmul(stepper%system%tangent(:, :, p, e), &
+              stepper%prediction%strain(:, p, e))
+          magnitude = norm2(change)
+          if (magnitude <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
+          direction = material%plastic_direction(state%stress(:, p, e), &
+              state%internal_variables(:, p, e))
+          normal = abs(dot_product(direction, change))/(norm2(direction)*magnitude)
           normal = min(1.0_wp, normal)
-          along = sqrt(1.0_wp - normal**2)
-          r = material%flow_stress(state%internal(:, p, e)) &
-              /(size_of_change*(normal*inverse_b + along*inverse_a))
-          if (r < limit%r) then
-            limit%r = r
-            limit%at = point_text(e, p)
-          end if
+          tangential = sqrt(1.0_wp - normal**2)
+          bound = material%flow_stress(state%internal_variables(:, p, e)) &
+              /(magnitude*(normal*inverse_b + tangential*inverse_a))
+          if (bound < limit%r) limit = limit_t(r=bound, element=e, point=p)
         end do
       end associate
     end do
   end function stress_limit
 
-  !> Increment of the contact forces inside an ellipsoid, eqs (15)-(17). The size B of the force has
-  !> a floor, a share of the mean contact force: to the letter, eq. (16), a node that has just
-  !> touched would stop the increment.
-  function force_limit(model, phase, state, contact, prediction) result(limit)
-    !> The model.
+  !> Limit the increment of the contact forces to an ellipsoid, eqs (15)-(17). The size B of the
+  !> force has a lower bound, a fraction of the mean contact force: with eq. (16) as printed a node
+  !> that has just come into contact would stop the increment.
+  function force_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
     type(state_t), intent(in) :: state
-    !> The contact at the committed state.
-    type(contact_work_t), intent(in) :: contact
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: b, mean, ellipsoid, r
+    real(wp) :: b, mean, ellipsoid
     integer :: c, n
 
-    if (.not. phase%limits%force(1)%active) return
-    limit%name = "force"
     n = count(state%status /= status_gap)
-    if (n == 0) return
-    mean = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)/real(n, wp)
-    do c = 1, model%n_contact
-      if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
-      b = max(norm2(state%lambda(:, c)), phase%limits%force_floor%value*mean)
-      ellipsoid = ellipsoid_norm(prediction%lambda(:, c), contact%normal(:, c), &
-          phase%limits%force%value)
-      if (ellipsoid <= 0.0_wp) cycle
-      r = b/ellipsoid
-      if (r < limit%r) then
-        limit%r = r
-        limit%at = "node "//to_text(model%contact_node(c))//" tool " &
-            //model%tool(contact%tool(c))%name &
-                   //" B="//to_text(b, 4)
-      end if
-    end do
+    associate (limits => model%phase(state%phase)%limits, contact => stepper%system%contact)
+      if (.not. limits%force(1)%active .or. n == 0) return
+      mean = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)/real(n, wp)
+      do c = 1, model%n_contact
+        if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
+        b = max(norm2(state%lambda(:, c)), limits%force_floor%value*mean)
+        ellipsoid = ellipsoid_norm(stepper%prediction%lambda(:, c), contact%normal(:, c), &
+            limits%force%value)
+        if (ellipsoid <= 0.0_wp) cycle
+        if (b/ellipsoid < limit%r) limit = limit_t(r=b/ellipsoid, node=model%contact_node(c), &
+          tool=contact%tool(c), force_size=b)
+      end do
+    end associate
   end function force_limit
 
-  !> Length of a force increment in the ellipsoid's measure, eq. (15); the first tangent is the
-  !> projection of the x axis, or of y where the normal is along x.
+  !> Return the norm of a force increment in the ellipsoid, eq. (15). The first tangent is the
+  !> projection of the x axis, or of y if the normal is close to x.
   pure real(wp) function ellipsoid_norm(force, normal, axes)
-    !> The force increment and the tool's normal.
-    real(wp), intent(in) :: force(3), normal(3)
-    !> The ellipsoid's axes c, d, e.
-    real(wp), intent(in) :: axes(3)
+    !> Force increment, normal of the tool, axes c, d, e of the ellipsoid.
+    real(wp), intent(in) :: force(3), normal(3), axes(3)
 
-    real(wp) :: first(3), along, along_first, across
+    real(wp) :: tangent(3), f_normal, f_first, f_second
 
-    first = [1.0_wp, 0.0_wp, 0.0_wp]
-    if (abs(normal(1)) > 0.9_wp) first = [0.0_wp, 1.0_wp, 0.0_wp]
-    first = first - dot_product(first, normal)*normal
-    first = first/norm2(first)
-    along = dot_product(force, normal)
-    along_first = dot_product(force, first)
-    across = norm2(force - along*normal - along_first*first)
-    ellipsoid_norm = sqrt((along/axes(1))**2 + (along_first/axes(2))**2 + (across/axes(3))**2)
+    tangent = [1.0_wp, 0.0_wp, 0.0_wp]
+    if (abs(normal(1)) > 0.9_wp) tangent = [0.0_wp, 1.0_wp, 0.0_wp]
+    tangent = tangent - dot_product(tangent, normal)*normal
+    tangent = tangent/norm2(tangent)
+    f_normal = dot_product(force, normal)
+    f_first = dot_product(force, tangent)
+    f_second = norm2(force - f_normal*normal - f_first*tangent)
+    ellipsoid_norm = sqrt((f_normal/axes(1))**2 + (f_first/axes(2))**2 + (f_second/axes(3))**2)
   end function ellipsoid_norm
 
-  !> First contact: a tool that touches nothing arrives at touch and no further. The predictor
-  !> closes no gap, so that without this bound it would see no resistance. A tool that touches
-  !> already runs over no node so deep that it would be lost on the wrong side.
-  function gap_limit(model, phase, contact, prediction) result(limit)
-    !> The model.
+  !> Limit the approach of candidates and tools. A tool without contact comes to contact and no
+  !> further: the predictor closes no gap and would not see its resistance. A tool in contact passes
+  !> no candidate so deep that it would be lost on the wrong side.
+  function gap_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The contact at the committed state.
-    type(contact_work_t), intent(in) :: contact
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: approach, depth, r
+    real(wp) :: approach, depth, bound
     logical :: touching(model%n_tool)
     integer :: c, node, tool
 
     touching = .false.
-    do c = 1, model%n_contact
-      if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
-    end do
-    do c = 1, model%n_contact
-      tool = contact%tool(c)
-      if (tool == 0 .or. contact%status(c) /= status_gap) cycle
-      if (.not. phase%active(tool)) cycle
-      node = model%contact_node(c)
-      approach = dot_product(prediction%tool_displacement(:, tool) &
-          - prediction%displacement(:, node), contact%normal(:, c))
-      if (approach <= 0.0_wp) cycle
-      depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
-      r = (max(contact%distance(c), 0.0_wp) + depth)/approach
-      if (r < limit%r) then
-        limit%name = merge("gap          ", "first contact", touching(tool))
-        limit%r = r
-        limit%at = "node "//to_text(node)//" tool "//model%tool(tool)%name
-      end if
-    end do
+    associate (contact => stepper%system%contact, prediction => stepper%prediction)
+      do c = 1, model%n_contact
+        if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
+      end do
+      do c = 1, model%n_contact
+        tool = contact%tool(c)
+        if (tool == 0 .or. contact%status(c) /= status_gap) cycle
+        if (.not. model%phase(state%phase)%active(tool)) cycle
+        node = model%contact_node(c)
+        approach = dot_product(prediction%tool_displacement(:, tool) &
+            - prediction%displacement(:, node), contact%normal(:, c))
+        if (approach <= 0.0_wp) cycle
+        depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
+        bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
+        if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
+          name=merge("gap          ", "first contact", touching(tool)))
+      end do
+    end associate
   end function gap_limit
 
-  !> An early end of the phase by a tool's displacement or force, extrapolated linearly. The size is
-  !> met with either sign: that in which the value goes, or, from above, comes.
-  function until_limit(model, phase, state, prediction) result(limit)
-    !> The model.
+  !> Return the bound at the early end of the phase, extrapolated linearly. The value is met with
+  !> either sign: that of its rate or, from above, the opposite one.
+  function until_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
     type(state_t), intent(in) :: state
-    !> The trial increment.
-    type(prediction_t), intent(in) :: prediction
+    type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: left, rate, line(3)
+    real(wp) :: left, rate, line(3), target
     integer :: tool, c
 
-    tool = phase%until%tool
-    if (tool == 0) return
-    limit%name = "until"
-    line = phase%direction(:, tool)
-    if (phase%until%kind == until_displacement) then
-      rate = dot_product(line, prediction%tool_displacement(:, tool))
-    else
-      rate = 0.0_wp
-      do c = 1, model%n_contact
-        if (state%contact_tool(c) == tool) rate = rate + dot_product(line, prediction%lambda(:, c))
-      end do
-    end if
-    if (phase%until_from_below) then
-      left = phase%until%value - sign(1.0_wp, rate)*until_value(phase, state)
-    else
-      left = -phase%until%value - sign(1.0_wp, rate)*until_value(phase, state)
-    end if
+    associate (phase => model%phase(state%phase))
+      tool = phase%until%tool
+      if (tool == 0) return
+      line = phase%direction(:, tool)
+      if (phase%until%kind == until_displacement) then
+        rate = dot_product(line, stepper%prediction%tool_displacement(:, tool))
+      else
+        rate = 0.0_wp
+        do c = 1, model%n_contact
+          if (state%contact_tool(c) == tool) &
+            rate = rate + dot_product(line, stepper%prediction%lambda(:, c))
+        end do
+      end if
+      target = merge(1.0_wp, -1.0_wp, state%start%until_from_below)*phase%until%value
+      left = target - sign(1.0_wp, rate)*until_value(phase, state)
+    end associate
     if (left > 0.0_wp .and. abs(rate) > 0.0_wp) limit%r = left/abs(rate)
   end function until_limit
+
+  !> Return the bound at the next output of fields.
+  function output_limit(model, state, stepper) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
+    type(limit_t) :: limit
+
+    real(wp) :: progress
+
+    progress = next_output_progress(model%output, model%phase(state%phase), state)
+    if (progress <= 1.0_wp) limit%r = (progress - state%progress)/stepper%prediction%progress
+  end function output_limit
 
 end module dd3_process_limiters

@@ -1,12 +1,12 @@
-!> The predictor: the tangent explicit method. The trial increment of the controlling tool, or of
-!> the loads, is imposed on the tangent system of the committed configuration; everything found is
-!> proportional to it, and the increment taken is r times the trial one.
+!> Predictor: the tangent explicit method. The trial increment of the controlling tool, or of the
+!> loads, is imposed on the tangent system of the committed configuration; the solution is linear in
+!> it, and the increment made is r times the trial one.
 !> Source: McMeeking and Rice 1975; Teodosiu and Cao 1988; Oliveira and Menezes 2004, eqs (7) and
 !> (8).
 module dd3_process_predictor
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
-  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_rate, only : element_rate
@@ -14,18 +14,19 @@ module dd3_process_predictor
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_process_attempt, only : attempt_t
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_reduced, only : contact_force_increment
-  use dd3_system_solve, only : solve_reduced, solve_info_t
+  use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
   public :: prediction_t, new_prediction, predict
 
-  !> The trial increment and what it does to the points.
+  !> Solution for the trial increment.
   type :: prediction_t
-    !> Progress of the phase in the trial increment.
+    !> Progress of the phase.
     real(wp) :: progress = 0.0_wp
     !> Displacement of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
@@ -37,21 +38,19 @@ module dd3_process_predictor
     real(wp), allocatable :: strain(:, :, :)
     !> Rotation increment, rad, `(n_point, n_element)`.
     real(wp), allocatable :: rotation(:, :)
-    !> Points taken as plastic, `(n_point, n_element)`.
+    !> Point taken as plastic, `(n_point, n_element)`.
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Times the plastic points that unload are switched to elastic before the prediction is taken as
-  !> it is.
+  !> Number of times that unloading plastic points are made elastic before the prediction is
+  !> accepted as it is.
   integer, parameter :: most_switches = 2
 
 contains
 
-  !> Allocates a prediction.
+  !> Allocate a prediction and set it to zero.
   subroutine new_prediction(self, model)
-    !> The prediction.
     type(prediction_t), intent(out) :: self
-    !> The model.
     type(model_t), intent(in) :: model
 
     integer :: n_point
@@ -64,136 +63,119 @@ contains
     allocate (self%plastic(n_point, model%n_element), source=.false.)
   end subroutine new_prediction
 
-  !> Finds the trial increment.
-  subroutine predict(self, system, model, phase, state, info, verdict)
-    !> The prediction.
+  !> Solve for the trial increment of the running phase.
+  subroutine predict(self, model, committed, system, attempt)
     type(prediction_t), intent(inout) :: self
-    !> Matrices and solver.
-    type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: state
-    !> What the linear solver did.
-    type(solve_info_t), intent(inout) :: info
-    !> Whether the linear system could be solved.
-    type(verdict_t), intent(out) :: verdict
+    type(state_t), intent(in) :: committed
+    type(system_t), intent(inout) :: system
+    !> Gets the work of the linear solver, and a verdict on the solution.
+    type(attempt_t), intent(inout) :: attempt
 
     integer :: switch
     logical :: switched
 
-    self%progress = phase%trial
-    self%plastic(:, :) = state%plastic
-    call system%profile%start()
-    call predictor_contact(system%contact, model, phase, state)
-    call system%profile%add(section_contact)
-    call impose_trial(self, system, model, phase)
-    do switch = 0, most_switches
-      call continuum_tangents(self, system, model, state)
-      call system%profile%add(section_material)
-      call assemble_stiffness(system, model, state)
-      call system%profile%add(section_assembly)
-      call solve_reduced(system, model, phase, info, verdict)
-      if (verdict%outcome /= verdict_converged) return
+    associate (phase => model%phase(committed%phase))
+      self%progress = phase%trial
+      self%plastic(:, :) = committed%plastic
       call system%profile%start()
-      self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
-      call point_increments(self, system, model, state)
-      call switch_unloading(self, model, state, switched)
-      if (.not. switched) exit
-    end do
-    call contact_force_increment(model, phase, system%contact, system%stiffness, system%problem, &
-        self%lambda)
-    where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
-    call tool_increments(self, system, model, phase)
+      call predictor_contact(system%contact, model, committed)
+      call system%profile%add(section_contact)
+      call impose_trial(self, model, phase, committed, system)
+      do switch = 0, most_switches
+        call continuum_tangents(self, model, committed, system)
+        call system%profile%add(section_material)
+        call assemble_stiffness(system, model, committed)
+        call system%profile%add(section_assembly)
+        call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
+        if (attempt%verdict%outcome /= verdict_converged) return
+        call system%profile%start()
+        self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), &
+            [3, model%n_node])
+        call point_increments(self, model, committed, system)
+        call switch_unloading(self, model, committed, switched)
+        if (.not. switched) exit
+      end do
+      call contact_force_increment(model, phase, system%contact, system%stiffness, &
+          system%problem, self%lambda)
+      where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
+      call tool_increments(self, model, phase, system)
+    end associate
   end subroutine predict
 
-  !> Right-hand sides of the trial increment: rates of the loads and motion of the tools.
-  subroutine impose_trial(self, system, model, phase)
-    !> The prediction.
+  !> Set the right-hand sides of the trial increment: increments of the loads, displacements of the
+  !> tools.
+  subroutine impose_trial(self, model, phase, committed, system)
     type(prediction_t), intent(in) :: self
-    !> Gets the linear problem.
-    type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: committed
+    type(system_t), intent(inout) :: system
 
     integer :: tool
 
-    associate (problem => system%problem)
-      call nodal_forces(model%load_set, -self%progress*(phase%load_end - phase%load_start), &
-          model%contact_node, self%progress*phase%fading, problem%residual)
-      problem%excess = 0.0_wp
-      problem%displacement = self%progress*phase%displacement
-      problem%tool_motion = self%progress*phase%move
+    associate (problem => system%problem, start => committed%start)
+      call nodal_forces(model%load_set, -self%progress*(start%load_end - start%load), &
+          model%contact_node, self%progress*start%fading, problem%residual)
+      problem%contact_residual = 0.0_wp
+      problem%prescribed = self%progress*phase%displacement
+      problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
-          *dot_product(phase%press_end(:, tool) - phase%press_start(:, tool), phase%direction(:, &
-          tool))
+            *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
+                         phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial
 
-  !> Continuum tangents at the points, elastic where a point is not taken as plastic.
-  subroutine continuum_tangents(self, system, model, state)
-    !> The prediction.
+  !> Evaluate the continuum tangents, elastic where a point is not taken as plastic.
+  subroutine continuum_tangents(self, model, committed, system)
     type(prediction_t), intent(in) :: self
-    !> Gets the tangents.
-    type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: state
+    type(state_t), intent(in) :: committed
+    type(system_t), intent(inout) :: system
 
     integer :: e, p
 
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
-          call material%continuum_tangent(state%stress(:, p, e), state%internal(:, p, e), &
-                                          self%plastic(p, e), system%tangent(:, :, p, e))
+          call material%continuum_tangent(committed%stress(:, p, e), &
+              committed%internal_variables(:, p, e), self%plastic(p, e), &
+              system%tangent(:, :, p, e))
         end do
       end associate
     end do
   end subroutine continuum_tangents
 
-  !> Strain and rotation increments of the trial displacement.
-  subroutine point_increments(self, system, model, state)
-    !> The prediction.
+  !> Evaluate the strain and rotation increments of the trial displacement.
+  subroutine point_increments(self, model, committed, system)
     type(prediction_t), intent(inout) :: self
-    !> Workspace.
-    type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: state
+    type(state_t), intent(in) :: committed
+    !> Provides the workspace.
+    type(system_t), intent(inout) :: system
 
     type(verdict_t) :: verdict
     integer :: e
 
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e), work => system%element(1))
-        work%x_old(:, :) = state%x(:, nodes)
+        work%x_old(:, :) = committed%x(:, nodes)
         call element_gradients(model%element, work%x_old, work, verdict)
         call element_rate(model%element, self%displacement(:, nodes), &
-                          state%orientation(:, :, :, e), work)
+            committed%orientation(:, :, :, e), work)
         self%strain(:, :, e) = work%strain_increment
         self%rotation(:, e) = work%rotation_increment
       end associate
     end do
   end subroutine point_increments
 
-  !> Makes plastic points elastic whose trial strain unloads them: V : C : D <= 0.
-  subroutine switch_unloading(self, model, state, switched)
-    !> The prediction.
+  !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
+  subroutine switch_unloading(self, model, committed, switched)
     type(prediction_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: state
-    !> Whether a point changed.
+    type(state_t), intent(in) :: committed
     logical, intent(out) :: switched
 
     real(wp) :: direction(6)
@@ -204,9 +186,10 @@ contains
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
           if (.not. self%plastic(p, e)) cycle
-          direction = material%plastic_direction(state%stress(:, p, e), state%internal(:, p, e))
-          if (dot_product(direction, matmul(material%laws%elasticity%stiffness, self%strain(:, p, &
-              e))) > 0.0_wp) cycle
+          direction = material%plastic_direction(committed%stress(:, p, e), &
+              committed%internal_variables(:, p, e))
+          if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
+              self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
           switched = .true.
         end do
@@ -214,24 +197,21 @@ contains
     end do
   end subroutine switch_unloading
 
-  !> Displacement of the tools: as solved for the pressed ones, as imposed for the others.
-  subroutine tool_increments(self, system, model, phase)
-    !> The prediction.
+  !> Set the displacement of the tools: the solution for pressed ones, the prescribed motion for the
+  !> others.
+  subroutine tool_increments(self, model, phase, system)
     type(prediction_t), intent(inout) :: self
-    !> The solved system.
-    type(system_t), intent(in) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
+    type(system_t), intent(in) :: system
 
-    integer :: tool, block
+    integer :: tool, row
 
     do tool = 1, model%n_tool
       self%tool_displacement(:, tool) = self%progress*phase%move(:, tool)
       if (.not. phase%pressed(tool)) cycle
-      block = model%tool_block(tool)
-      self%tool_displacement(:, tool) = system%problem%solution(3*block - 2:3*block)
+      row = model%tool_row(tool)
+      self%tool_displacement(:, tool) = system%problem%solution(3*row - 2:3*row)
     end do
   end subroutine tool_increments
 

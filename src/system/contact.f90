@@ -1,32 +1,24 @@
-!> Contact of the candidate nodes: which tool each belongs to, its status, force and linearisation,
-!> in a trial state (corrector) or at the committed state with the status it was left in
-!> (predictor).
+!> Contact of the candidates: nearest tool, status, force and linearisation, in a trial state
+!> (corrector) or at the committed state with its stored status (predictor).
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : contact_operator, contact_operator_of_status, round_off, &
       status_gap, status_stick
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : hysteresis, tool_search, touch
   implicit none
   private
-  public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact, touch
-
-  !> Distance up to which a tool that touches nothing counts as touching, mm.
-  real(wp), parameter :: touch = 1.0e-4_wp
-  !> How far the predictor looks for tools, mm: whatever comes near limits the increment.
-  real(wp), parameter :: far = 1.0e3_wp
-  !> A node stays with its tool unless another is nearer by this, mm.
-  real(wp), parameter :: hysteresis = 1.0e-6_wp
+  public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact
 
   !> Contact of the candidates.
   type :: contact_work_t
     !> One of the `status_*` values, `(n_contact)`.
     integer, allocatable :: status(:)
-    !> Nearest tool, `(n_contact)`; 0 where none is within the search distance.
+    !> Nearest tool, `(n_contact)`; 0 if none is within the search distance.
     integer, allocatable :: tool(:)
-    !> Gap, mm, `(n_contact)`; meaningful where there is a tool.
+    !> Gap, mm, `(n_contact)`; meaningful if there is a tool.
     real(wp), allocatable :: distance(:)
     !> Outward normal of the tool, `(3, n_contact)`.
     real(wp), allocatable :: normal(:, :)
@@ -40,11 +32,9 @@ module dd3_system_contact
 
 contains
 
-  !> Allocates the contact work for so many candidates.
+  !> Allocate the contact work.
   subroutine new_contact_work(self, n_contact)
-    !> The contact work.
     type(contact_work_t), intent(out) :: self
-    !> Number of candidates.
     integer, intent(in) :: n_contact
 
     allocate (self%status(n_contact), self%tool(n_contact), source=0)
@@ -54,108 +44,95 @@ contains
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
-  !> Contact in a trial state: search, status, force and linearisation; writes status, tool and
-  !> hints into the state.
-  subroutine evaluate_contact(self, model, phase, old, new)
-    !> The contact work.
+  !> Evaluate the contact in a trial state: search, status, force and linearisation.
+  subroutine evaluate_contact(self, model, committed, trial)
     type(contact_work_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state: the slip counts from it.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
+    !> Origin of the slip.
+    type(state_t), intent(in) :: committed
+    !> Gets status, tool and closest points.
+    type(state_t), intent(inout) :: trial
 
+    type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    real(wp) :: slip(3), reach(model%n_tool)
+    real(wp) :: slip(3)
     integer :: c, node, tool
 
-    reach = phase%search_distance
-    do c = 1, model%n_contact
-      node = model%contact_node(c)
-      call nearest_tool(model, phase, new%x(:, node), new%tool_displacement, c, reach, &
-                        new%contact_tool(c), new%hint(:, c), hit)
-      tool = new%contact_tool(c)
-      self%tool(c) = tool
-      self%lambda(:, c) = new%lambda(:, c)
-      if (tool == 0) then
-        call open_node(self, c)
-      else
-        slip = new%x(:, node) - old%x(:, node) - new%tool_displacement(:, tool) &
-            + old%tool_displacement(:, tool)
-        self%distance(c) = hit%distance
-        self%normal(:, c) = hit%normal
-        call contact_operator(hit%normal, hit%distance, hit%dnormal, self%lambda(:, c), slip, &
-            phase%penalty, &
-                              model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), &
-                              self%e(:, :, c), &
-                              self%status(c))
-      end if
-      new%status(c) = self%status(c)
-    end do
+    associate (phase => model%phase(trial%phase))
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        tool = trial%contact_tool(c)
+        hint = trial%hint(:, c)
+        call find_nearest_tool(model, trial, c, phase%search_distance, tool, hint, hit)
+        trial%contact_tool(c) = tool
+        trial%hint(:, c) = hint
+        self%tool(c) = tool
+        self%lambda(:, c) = trial%lambda(:, c)
+        if (tool == 0) then
+          call open_candidate(self, c)
+        else
+          slip = trial%x(:, node) - committed%x(:, node) - trial%tool_displacement(:, tool) &
+              + committed%tool_displacement(:, tool)
+          self%distance(c) = hit%distance
+          self%normal(:, c) = hit%normal
+          call contact_operator(hit%normal, hit%distance, hit%dnormal, self%lambda(:, c), slip, &
+              phase%penalty, model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), &
+              self%e(:, :, c), self%status(c))
+        end if
+        trial%status(c) = self%status(c)
+      end do
+    end associate
   end subroutine evaluate_contact
 
-  !> Contact of the predictor: the committed state with the status as it was stored (a slipping node
-  !> lies on the cone, round-off would make it stick). A tool that touches nothing takes the nodes
-  !> within `touch` as sticking, without pulling them, unless it moves away from them.
-  subroutine predictor_contact(self, model, phase, state)
-    !> The contact work.
+  !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
+  !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
+  !> candidates within `touch` of it stick without being pulled, unless it moves away from them.
+  subroutine predictor_contact(self, model, committed)
     type(contact_work_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: state
+    type(state_t), intent(in) :: committed
 
     real(wp), parameter :: no_slip(3) = 0.0_wp
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
     logical :: touching(model%n_tool), leaving
-    real(wp) :: reach(model%n_tool)
     integer :: c, tool
 
-    touching = .false.
-    do c = 1, model%n_contact
-      if (state%status(c) == status_gap) cycle
-      if (norm2(state%lambda(:, c)) <= phase%penalty*round_off) cycle
-      touching(state%contact_tool(c)) = .true.
-    end do
-    reach = far
-    do c = 1, model%n_contact
-      hint = state%hint(:, c)
-      self%tool(c) = state%contact_tool(c)
-      call nearest_tool(model, phase, state%x(:, model%contact_node(c)), state%tool_displacement, &
-          c, reach, &
-                        self%tool(c), hint, hit)
-      tool = self%tool(c)
-      self%lambda(:, c) = state%lambda(:, c)
-      self%status(c) = state%status(c)
-      if (tool == 0) then
-        call open_node(self, c)
-        cycle
-      end if
-      self%distance(c) = hit%distance
-      self%normal(:, c) = hit%normal
-      if (.not. touching(tool)) then
-        leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
-        self%status(c) = status_gap
-        if (hit%distance <= touch .and. .not. leaving) self%status(c) = status_stick
-      end if
-      call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          self%lambda(:, c), no_slip, &
-                                      phase%penalty, model%tool(tool)%friction, self%force(:, c), &
-                                      self%d(:, :, c), self%e(:, :, c))
-    end do
+    associate (phase => model%phase(committed%phase))
+      touching = .false.
+      do c = 1, model%n_contact
+        if (committed%status(c) == status_gap) cycle
+        if (norm2(committed%lambda(:, c)) <= phase%penalty*round_off) cycle
+        touching(committed%contact_tool(c)) = .true.
+      end do
+      do c = 1, model%n_contact
+        hint = committed%hint(:, c)
+        tool = committed%contact_tool(c)
+        call find_nearest_tool(model, committed, c, tool_search, tool, hint, hit)
+        self%tool(c) = tool
+        self%lambda(:, c) = committed%lambda(:, c)
+        self%status(c) = committed%status(c)
+        if (tool == 0) then
+          call open_candidate(self, c)
+          cycle
+        end if
+        self%distance(c) = hit%distance
+        self%normal(:, c) = hit%normal
+        if (.not. touching(tool)) then
+          leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
+          self%status(c) = status_gap
+          if (hit%distance <= touch .and. .not. leaving) self%status(c) = status_stick
+        end if
+        call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
+            self%lambda(:, c), no_slip, phase%penalty, model%tool(tool)%friction, &
+            self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+      end do
+    end associate
   end subroutine predictor_contact
 
-  !> A node without a tool near it.
-  subroutine open_node(self, c)
-    !> The contact work.
+  !> Set a candidate without a tool near it.
+  subroutine open_candidate(self, c)
     type(contact_work_t), intent(inout) :: self
-    !> The candidate.
     integer, intent(in) :: c
 
     self%status(c) = status_gap
@@ -164,27 +141,21 @@ contains
     self%force(:, c) = 0.0_wp
     self%d(:, :, c) = 0.0_wp
     self%e(:, :, c) = 0.0_wp
-  end subroutine open_node
+  end subroutine open_candidate
 
-  !> The tool a candidate belongs to: the nearest, or the one it is deepest in, with hysteresis.
-  subroutine nearest_tool(model, phase, x, tool_displacement, c, reach, tool, hint, nearest)
-    !> The model.
+  !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis.
+  subroutine find_nearest_tool(model, state, c, search_distance, tool, hint, nearest)
     type(model_t), intent(in) :: model
-    !> The running phase.
-    type(phase_t), intent(in) :: phase
-    !> Position of the node, mm.
-    real(wp), intent(in) :: x(3)
-    !> Displacement of the tools, mm.
-    real(wp), intent(in) :: tool_displacement(:, :)
-    !> The candidate.
+    type(state_t), intent(in) :: state
+    !> Number of the candidate.
     integer, intent(in) :: c
-    !> How far each tool's surface is looked for, mm.
-    real(wp), intent(in) :: reach(:)
-    !> Its tool until now; gets the nearest, 0 where none is within the search distance.
+    !> Distance up to which the tools are looked for, mm.
+    real(wp), intent(in) :: search_distance
+    !> Tool so far; gets the nearest, 0 if none is within the search distance.
     integer, intent(inout) :: tool
-    !> Where its closest points were, one for each tool.
+    !> Last closest point on each tool, `(n_tool)`.
     type(hint_t), intent(inout) :: hint(:)
-    !> The closest point on that tool.
+    !> Closest point on the nearest tool.
     type(hit_t), intent(out) :: nearest
 
     type(hit_t) :: hit
@@ -194,18 +165,20 @@ contains
     previous = tool
     tool = 0
     best = huge(1.0_wp)
-    do t = 1, model%n_tool
-      if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
-      call find_contact(model%tool(t)%surface, x - tool_displacement(:, t), hint(t), reach(t), &
-                        model%contact_depth, hit)
-      if (.not. hit%found) cycle
-      distance = hit%distance
-      if (t == previous) distance = distance - hysteresis
-      if (distance >= best) cycle
-      best = distance
-      tool = t
-      nearest = hit
-    end do
-  end subroutine nearest_tool
+    associate (phase => model%phase(state%phase), x => state%x(:, model%contact_node(c)))
+      do t = 1, model%n_tool
+        if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
+        call find_contact(model%tool(t)%surface, x - state%tool_displacement(:, t), hint(t), &
+            search_distance, model%contact_depth, hit)
+        if (.not. hit%found) cycle
+        distance = hit%distance
+        if (t == previous) distance = distance - hysteresis
+        if (distance >= best) cycle
+        best = distance
+        tool = t
+        nearest = hit
+      end do
+    end associate
+  end subroutine find_nearest_tool
 
 end module dd3_system_contact

@@ -1,9 +1,8 @@
-!> Internal forces and stiffness of the sheet: the loop over the elements and their integration
+!> Internal forces and stiffness of the sheet: the loops over the elements and their integration
 !> points.
 !>
-!> Blocks of elements of one colour share no node, so that threads may add up their forces side by
-!> side; the colours come one after the other, which makes every sum the same for any number of
-!> threads.
+!> Batches of elements of one colour share no node, so threads add their forces without conflict;
+!> the colours follow one another, which makes every sum independent of the number of threads.
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
@@ -23,42 +22,38 @@ module dd3_system_internal
 
 contains
 
-  !> Integrates the material from the old to the new configuration and adds up the internal forces,
-  !> and the stiffness where it is wanted too.
-  subroutine update_material(self, model, old, new, with_stiffness, verdict)
-    !> Gets the consistent tangents, and the stiffness.
-    type(system_t), intent(inout) :: self
-    !> The model.
+  !> Integrate the material from the committed to the trial configuration, and evaluate the internal
+  !> forces and, if wanted, the stiffness.
+  subroutine update_material(system, model, committed, trial, with_stiffness, verdict)
+    !> Gets the consistent tangents and the stiffness.
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state with its positions set; gets stresses, internal variables, axes and internal
-    !> forces.
-    type(state_t), intent(inout) :: new
-    !> Whether the stiffness is assembled as well.
+    type(state_t), intent(in) :: committed
+    !> Positions on entry; gets stresses, internal variables, axes and internal forces.
+    type(state_t), intent(inout) :: trial
     logical, intent(in) :: with_stiffness
-    !> Whether every element kept its shape and every point found its stress.
+    !> Retry if an element is inverted or a return mapping fails, with the lowest such element.
     type(verdict_t), intent(out) :: verdict
 
     type(verdict_t) :: mine
-    integer :: colour, k, e, block, thread
+    integer :: colour, k, e, batch, thread
 
     verdict%outcome = verdict_converged
-    new%internal_force = 0.0_wp
-    if (with_stiffness) call clear(self%stiffness)
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(mine, colour, k, e, block, thread)
+    trial%internal_force = 0.0_wp
+    if (with_stiffness) call clear(system%stiffness)
+    !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
+    !$omp& default(shared) private(mine, colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
-    do colour = 1, size(self%colour_start) - 1
+    do colour = 1, size(system%batches%colour_start) - 1
       !$omp do schedule(dynamic)
-      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        block = self%coloured_block(k)
-        do e = self%block_start(block), self%block_start(block + 1) - 1
-          call update_element(model, old, new, e, self%element(thread), &
-                              self%tangent(:, :, :, e), mine)
+      do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
+        batch = system%batches%coloured(k)
+        do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
+          call update_element(model, committed, trial, e, system%element(thread), &
+                              system%tangent(:, :, :, e), mine)
           if (mine%outcome == verdict_converged) then
-            if (with_stiffness) call add_stiffness(self, model, e, self%element(thread))
+            if (with_stiffness) call add_stiffness(system, model, e, system%element(thread))
           else
             !$omp critical (failed_element)
             if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
@@ -71,78 +66,71 @@ contains
     !$omp end parallel
   end subroutine update_material
 
-  !> One element of `update_material`.
-  subroutine update_element(model, old, new, e, work, tangent, verdict)
-    !> The model.
+  !> Update one element.
+  subroutine update_element(model, committed, trial, e, work, tangent, verdict)
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
-    !> The element.
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
     integer, intent(in) :: e
-    !> Workspace; left with all that the stiffness needs but the tangents.
+    !> Workspace; on return it holds all that the stiffness needs but the tangents.
     type(element_work_t), intent(inout) :: work
     !> Consistent tangents, `(6, 6, n_point)`, MPa.
     real(wp), intent(inout) :: tangent(:, :, :)
-    !> How it ended.
     type(verdict_t), intent(out) :: verdict
 
     integer :: p, a
 
     associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
-      work%x_old(:, :) = old%x(:, nodes)
-      work%x_new(:, :) = new%x(:, nodes)
+      work%x_old(:, :) = committed%x(:, nodes)
+      work%x_new(:, :) = trial%x(:, nodes)
       call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
-      call element_strain(model%element, old%orientation(:, :, :, e), work)
+      call element_strain(model%element, committed%orientation(:, :, :, e), work)
       do p = 1, model%element%n_point
-        call material%update(old%stress(:, p, e), old%internal(:material%n_internal, p, e), &
-                             work%strain(:, p), new%stress(:, p, e), &
-                             new%internal(:material%n_internal, p, e), tangent(:, :, p), &
-                             new%plastic(p, e), verdict)
+        call material%update(committed%stress(:, p, e), &
+            committed%internal_variables(:material%n_internal, p, e), &
+                             work%strain(:, p), trial%stress(:, p, e), &
+                             trial%internal_variables(:material%n_internal, p, e), tangent(:, :, &
+                             p), &
+                             trial%plastic(p, e), verdict)
         verdict%element = e
         verdict%point = p
         if (verdict%outcome /= verdict_converged) return
       end do
-      new%orientation(:, :, :, e) = work%rotation
-      work%stress(:, :) = new%stress(:, :, e)
+      trial%orientation(:, :, :, e) = work%rotation
+      work%stress(:, :) = trial%stress(:, :, e)
       call element_cauchy(model%element, work)
       call element_force(model%element, work)
       do a = 1, size(nodes)
-        new%internal_force(:, nodes(a)) = new%internal_force(:, nodes(a)) + work%force(:, a)
+        trial%internal_force(:, nodes(a)) = trial%internal_force(:, nodes(a)) + work%force(:, a)
       end do
     end associate
   end subroutine update_element
 
-  !> Assembles the exact stiffness of the new configuration from the tangents of the last update,
-  !> or, without a new one, that of the committed configuration with the tangents already in place:
-  !> the predictor's.
-  subroutine assemble_stiffness(self, model, old, new)
-    !> Gets the stiffness.
-    type(system_t), intent(inout) :: self
-    !> The model.
+  !> Assemble the exact stiffness of the trial configuration from the tangents of the last update
+  !> or, without a trial state, that of the committed configuration from the tangents in the system.
+  subroutine assemble_stiffness(system, model, committed, trial)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state after `update_material`.
-    type(state_t), intent(in), optional :: new
+    type(state_t), intent(in) :: committed
+    !> State after `update_material`.
+    type(state_t), intent(in), optional :: trial
 
-    integer :: colour, k, e, block, thread
+    integer :: colour, k, e, batch, thread
 
-    call clear(self%stiffness)
-    !$omp parallel if (self%parallel) num_threads(self%threads) default(shared) &
-    !$omp& private(colour, k, e, block, thread)
+    call clear(system%stiffness)
+    !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
+    !$omp& default(shared) private(colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
-    do colour = 1, size(self%colour_start) - 1
+    do colour = 1, size(system%batches%colour_start) - 1
       !$omp do schedule(dynamic)
-      do k = self%colour_start(colour), self%colour_start(colour + 1) - 1
-        block = self%coloured_block(k)
-        do e = self%block_start(block), self%block_start(block + 1) - 1
-          call take_element(model, e, self%element(thread), old, new)
-          call add_stiffness(self, model, e, self%element(thread))
+      do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
+        batch = system%batches%coloured(k)
+        do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
+          call set_element(model, e, system%element(thread), committed, trial)
+          call add_stiffness(system, model, e, system%element(thread))
         end do
       end do
       !$omp end do
@@ -150,62 +138,54 @@ contains
     !$omp end parallel
   end subroutine assemble_stiffness
 
-  !> Brings a workspace to an element's new configuration, or to the committed one.
-  subroutine take_element(model, e, work, old, new)
-    !> The model.
+  !> Set the workspace of an element to its trial configuration, or to the committed one.
+  subroutine set_element(model, e, work, committed, trial)
     type(model_t), intent(in) :: model
-    !> The element.
     integer, intent(in) :: e
     !> Gets all that the stiffness needs but the tangents.
     type(element_work_t), intent(inout) :: work
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state, of an element that has kept its shape.
-    type(state_t), intent(in), optional :: new
+    type(state_t), intent(in) :: committed
+    !> State in which the element is not inverted.
+    type(state_t), intent(in), optional :: trial
 
     type(verdict_t) :: verdict
 
-    work%x_old(:, :) = old%x(:, model%connectivity(:, e))
-    if (present(new)) then
-      work%x_new(:, :) = new%x(:, model%connectivity(:, e))
+    work%x_old(:, :) = committed%x(:, model%connectivity(:, e))
+    if (present(trial)) then
+      work%x_new(:, :) = trial%x(:, model%connectivity(:, e))
       call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
-      call element_strain(model%element, old%orientation(:, :, :, e), work)
-      work%stress(:, :) = new%stress(:, :, e)
+      call element_strain(model%element, committed%orientation(:, :, :, e), work)
+      work%stress(:, :) = trial%stress(:, :, e)
     else
       call element_gradients(model%element, work%x_old, work, verdict)
       work%strain = 0.0_wp
-      work%rotation(:, :, :) = old%orientation(:, :, :, e)
-      work%stress(:, :) = old%stress(:, :, e)
+      work%rotation(:, :, :) = committed%orientation(:, :, :, e)
+      work%stress(:, :) = committed%stress(:, :, e)
     end if
     call element_cauchy(model%element, work)
-  end subroutine take_element
+  end subroutine set_element
 
-  !> Computes an element's stiffness from what its workspace holds and adds its blocks.
-  subroutine add_stiffness(self, model, e, work)
-    !> The system.
-    type(system_t), intent(inout) :: self
-    !> The model.
+  !> Evaluate the stiffness of an element and add its blocks.
+  subroutine add_stiffness(system, model, e, work)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    !> The element.
     integer, intent(in) :: e
-    !> Its workspace with kinematics, strain, axes and stresses.
+    !> Holds kinematics, strain, axes and stresses.
     type(element_work_t), intent(inout) :: work
 
-    call take_tangents(size(work%tangent), self%tangent(:, :, :, e), work%tangent)
+    call copy_tangents(size(work%tangent), system%tangent(:, :, :, e), work%tangent)
     call element_stiffness(model%element, work)
-    call add_element(self%stiffness, model%element%n_node, self%position(:, :, e), work%stiffness)
+    call add_element(system%stiffness, model%element%n_node, system%position(:, :, e), &
+        work%stiffness)
   end subroutine add_stiffness
 
-  !> Copies an element's tangents in one stretch.
-  pure subroutine take_tangents(n, from, to)
-    !> Number of values.
+  !> Copy the tangents of an element as one contiguous array.
+  pure subroutine copy_tangents(n, from, to)
     integer, intent(in) :: n
-    !> The tangents of the element.
     real(wp), intent(in) :: from(n)
-    !> Those of the workspace.
     real(wp), intent(out) :: to(n)
 
     to = from
-  end subroutine take_tangents
+  end subroutine copy_tangents
 
 end module dd3_system_internal

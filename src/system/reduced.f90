@@ -1,5 +1,5 @@
-!> The reduced system: contact forces eliminated node by node from the mixed equations, supports,
-!> and a row of force balance for every pressed tool.
+!> Reduced system: contact forces eliminated node by node from the mixed equations, supports, and a
+!> row of force balance for every pressed tool.
 !>
 !> A candidate node A with residual r_A = F_int - F_ext + lambda and contact operator F_equ(u,
 !> lambda), linearised as dF_equ = D (du - dw) + E dlambda (dw: the tool's motion), gives
@@ -21,53 +21,49 @@ module dd3_system_reduced
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
-    !> Residual of the nodes' equilibrium, for candidates with their contact force: r_A, `(3,
-    !> n_node)`, N.
+    !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N.
     real(wp), allocatable :: residual(:, :)
-    !> F_equ - lambda of the candidates, `(3, n_contact)`, N.
-    real(wp), allocatable :: excess(:, :)
-    !> Prescribed displacement increments, `(3, n_node)`, mm.
-    real(wp), allocatable :: displacement(:, :)
-    !> Prescribed motion of the tools that are not pressed, or touch nothing, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_motion(:, :)
-    !> Out-of-balance force of the pressed tools along their line, `(n_tool)`, N.
+    !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
+    real(wp), allocatable :: contact_residual(:, :)
+    !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
+    real(wp), allocatable :: prescribed(:, :)
+    !> Prescribed displacement increments of the tools that are not pressed or have no contact,
+    !> `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool_prescribed(:, :)
+    !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
     real(wp), allocatable :: tool_residual(:)
-    !> Right-hand side of the reduced system, `3 * number of block rows`.
+    !> Right-hand side of the reduced system, `(3*n_row)`.
     real(wp), allocatable :: rhs(:)
-    !> Its solution: displacements of the nodes, then of the tools that can be pressed.
+    !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
     real(wp), allocatable :: solution(:)
   end type linear_problem_t
 
 contains
 
-  !> Allocates a linear problem and sets all to zero.
+  !> Allocate a linear problem and set it to zero.
   subroutine new_linear_problem(self, model, n_row)
-    !> The problem made.
     type(linear_problem_t), intent(out) :: self
-    !> The model.
     type(model_t), intent(in) :: model
     !> Number of block rows of the reduced system.
     integer, intent(in) :: n_row
 
-    allocate (self%residual(3, model%n_node), self%displacement(3, model%n_node), source=0.0_wp)
-    allocate (self%excess(3, model%n_contact), source=0.0_wp)
-    allocate (self%tool_motion(3, model%n_tool), self%tool_residual(model%n_tool), source=0.0_wp)
+    allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
+    allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
+    allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
+        source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
   end subroutine new_linear_problem
 
-  !> Builds the reduced matrix and its right-hand side from the stiffness and the contact operators.
+  !> Build the reduced matrix and its right-hand side.
   subroutine reduce(model, phase, contact, stiffness, problem, reduced)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Contact operators of the candidates.
     type(contact_work_t), intent(in) :: contact
-    !> Stiffness of the sheet; its tool blocks are zero.
+    !> Stiffness of the sheet, zero in the rows and columns of the tools.
     type(block_matrix_t), intent(in) :: stiffness
     !> Residuals and prescribed values; gets the right-hand side.
     type(linear_problem_t), intent(inout) :: problem
-    !> The reduced matrix, same pattern as the stiffness.
+    !> Has the pattern of the stiffness.
     type(block_matrix_t), intent(inout) :: reduced
 
     integer :: c, node
@@ -80,7 +76,8 @@ contains
     do c = 1, model%n_contact
       node = model%contact_node(c)
       if (contact%status(c) == status_gap) then
-        problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - problem%excess(:, c)
+        problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - &
+            problem%contact_residual(:, c)
         cycle
       end if
       call reduce_node(model, phase, contact, c, problem, reduced)
@@ -89,47 +86,42 @@ contains
     call prescribe(phase, problem, reduced)
   end subroutine reduce
 
-  !> Replaces a touching node's row by its reduced row, and adds its share to the row of a pressed
-  !> tool.
+  !> Replace the row of a candidate in contact by its reduced row, and add its contribution to the
+  !> row of a pressed tool.
   subroutine reduce_node(model, phase, contact, c, problem, reduced)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Contact operators of the candidates.
     type(contact_work_t), intent(in) :: contact
-    !> The candidate.
     integer, intent(in) :: c
     !> Residuals; gets the right-hand side.
     type(linear_problem_t), intent(inout) :: problem
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
-    real(wp) :: remaining(3, 3), d(3, 3), residual(3), share(3)
+    real(wp) :: remaining(3, 3), d(3, 3), residual(3), weight(3)
     integer :: node, tool, block, k, at, row
     logical :: pressed
 
     node = model%contact_node(c)
     tool = contact%tool(c)
-    block = model%tool_block(tool)
+    block = model%tool_row(tool)
     pressed = phase%pressed(tool)
     d = contact%d(:, :, c)
     remaining = identity - contact%e(:, :, c)
     residual = node_residual(phase, problem, node, c)
-    problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%excess(:, c)
+    problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
     if (.not. pressed) then
       problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
-                                       + matmul(d, problem%tool_motion(:, tool))
+                                       + matmul(d, problem%tool_prescribed(:, tool))
     else
       row = force_row(phase%direction(:, tool))
       problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
         + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
     end if
-    share = -matmul(phase%direction(:, tool), contact%e(:, :, c))
+    weight = -matmul(phase%direction(:, tool), contact%e(:, :, c))
     do k = 1, 3
       if (.not. phase%prescribed(k, node)) cycle
       remaining(:, k) = 0.0_wp
-      share(k) = 0.0_wp
+      weight(k) = 0.0_wp
     end do
     ! The columns of both rows ascend, and all of the node's are among the tool's.
     if (pressed) at = reduced%row_start(block)
@@ -139,7 +131,7 @@ contains
         do while (reduced%column(at) < reduced%column(k))
           at = at + 1
         end do
-        call add_share(share, reduced%value(:, :, k), row, reduced%value(:, :, at))
+        call add_weighted_rows(weight, reduced%value(:, :, k), row, reduced%value(:, :, at))
       end if
       call multiply_left(remaining, reduced%value(:, :, k))
     end do
@@ -148,17 +140,15 @@ contains
     if (pressed) then
       k = position_of(reduced, node, block)
       reduced%value(:, :, k) = -d
-      share = matmul(phase%direction(:, tool), d)
-      call add_to_tool_row(reduced, block, row, node, share)
-      call add_to_tool_row(reduced, block, row, block, -share)
+      weight = matmul(phase%direction(:, tool), d)
+      call add_to_tool_row(reduced, block, row, node, weight)
+      call add_to_tool_row(reduced, block, row, block, -weight)
     end if
   end subroutine reduce_node
 
-  !> block := factor times block.
+  !> Multiply a block by a factor from the left.
   pure subroutine multiply_left(factor, block)
-    !> The factor.
     real(wp), intent(in) :: factor(3, 3)
-    !> The block.
     real(wp), intent(inout) :: block(3, 3)
 
     real(wp) :: a, b, c
@@ -172,46 +162,41 @@ contains
     end do
   end subroutine multiply_left
 
-  !> Adds a share of a node's block to a row of a tool's block.
-  pure subroutine add_share(share, block, row, sum)
-    !> Shares of the block's rows.
-    real(wp), intent(in) :: share(3)
-    !> The node's block.
+  !> Add a weighted sum of the rows of a node's block to a row of a tool's block.
+  pure subroutine add_weighted_rows(weight, block, row, sum)
+    real(wp), intent(in) :: weight(3)
+    !> Block of the node.
     real(wp), intent(in) :: block(3, 3)
-    !> The row.
     integer, intent(in) :: row
-    !> The tool's block.
+    !> Block of the tool.
     real(wp), intent(inout) :: sum(3, 3)
 
     integer :: j
 
     do j = 1, 3
       sum(row, j) = sum(row, j) &
-        + (share(1)*block(1, j) + share(2)*block(2, j) + share(3)*block(3, j))
+        + (weight(1)*block(1, j) + weight(2)*block(2, j) + weight(3)*block(3, j))
     end do
-  end subroutine add_share
+  end subroutine add_weighted_rows
 
-  !> Residual of a touching node, with the rows of its supports replaced: there the equilibrium
-  !> holds the unknown reaction, and the contact force's component follows the contact law instead.
+  !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
+  !> equilibrium holds the unknown reaction, the contact force follows the contact law instead.
   pure function node_residual(phase, problem, node, c) result(residual)
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Residuals.
     type(linear_problem_t), intent(in) :: problem
     !> The node and its number among the candidates.
     integer, intent(in) :: node, c
     real(wp) :: residual(3)
 
-    residual = merge(-problem%excess(:, c), problem%residual(:, node), phase%prescribed(:, node))
+    residual = merge(-problem%contact_residual(:, c), problem%residual(:, node), &
+        phase%prescribed(:, node))
   end function node_residual
 
-  !> Adds a row vector to the force row of a pressed tool.
+  !> Add a row vector to the force row of a pressed tool.
   subroutine add_to_tool_row(reduced, block, row, column, values)
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
     !> Block row of the tool, the row in it, and the block column.
     integer, intent(in) :: block, row, column
-    !> What is added.
     real(wp), intent(in) :: values(3)
 
     integer :: k
@@ -220,21 +205,18 @@ contains
     reduced%value(row, :, k) = reduced%value(row, :, k) + values
   end subroutine add_to_tool_row
 
-  !> Clears the rows of the tools; those not pressed in this phase follow their prescribed motion.
+  !> Initialise the rows of the tools; those not pressed in this phase have a prescribed motion.
   subroutine start_tool_rows(model, phase, problem, reduced)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
     !> Prescribed motion and residuals; gets the right-hand side.
     type(linear_problem_t), intent(inout) :: problem
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
     integer :: tool, block, row, k
 
     do tool = 1, model%n_tool
-      block = model%tool_block(tool)
+      block = model%tool_row(tool)
       if (block == 0) cycle
       do k = reduced%row_start(block), reduced%row_start(block + 1) - 1
         reduced%value(:, :, k) = 0.0_wp
@@ -245,29 +227,25 @@ contains
         problem%rhs(3*(block - 1) + row) = -problem%tool_residual(tool)
       else
         reduced%value(:, :, reduced%diagonal(block)) = identity
-        problem%rhs(3*block - 2:3*block) = problem%tool_motion(:, tool)
+        problem%rhs(3*block - 2:3*block) = problem%tool_prescribed(:, tool)
       end if
     end do
   end subroutine start_tool_rows
 
-  !> Keeps the pressed tools on their line of motion; one that touches nothing makes
-  !> its prescribed motion.
+  !> Constrain the pressed tools to their lines of motion; one without contact has a prescribed
+  !> motion.
   subroutine finish_tool_rows(model, phase, contact, problem, reduced)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Contact operators of the candidates.
     type(contact_work_t), intent(in) :: contact
     !> Gets the right-hand side.
     type(linear_problem_t), intent(inout) :: problem
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
     integer :: tool, block, row, i, k
 
     do tool = 1, model%n_tool
-      block = model%tool_block(tool)
+      block = model%tool_row(tool)
       if (block == 0) cycle
       if (.not. phase%pressed(tool)) cycle
       row = force_row(phase%direction(:, tool))
@@ -279,26 +257,23 @@ contains
       end do
       if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
       reduced%value(row, row, k) = 1.0_wp
-      problem%rhs(3*(block - 1) + row) = problem%tool_motion(row, tool)
+      problem%rhs(3*(block - 1) + row) = problem%tool_prescribed(row, tool)
     end do
   end subroutine finish_tool_rows
 
-  !> The row of a pressed tool's block that holds its balance of force; the other two keep the tool
-  !> on its line of motion.
+  !> Return the row of a pressed tool's block that holds its force balance; the other two constrain
+  !> the tool to its line of motion.
   pure integer function force_row(direction) result(row)
-    !> The direction of the line.
     real(wp), intent(in) :: direction(3)
 
     row = maxloc(abs(direction), dim=1)
   end function force_row
 
-  !> Makes the rows of the prescribed displacements unit rows.
+  !> Make the rows of prescribed displacements unit rows.
   subroutine prescribe(phase, problem, reduced)
-    !> The running phase.
     type(phase_t), intent(in) :: phase
     !> Prescribed increments; gets the right-hand side.
     type(linear_problem_t), intent(inout) :: problem
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: reduced
 
     integer :: node, i, k
@@ -310,24 +285,20 @@ contains
           reduced%value(i, :, k) = 0.0_wp
         end do
         reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
-        problem%rhs(3*(node - 1) + i) = problem%displacement(i, node)
+        problem%rhs(3*(node - 1) + i) = problem%prescribed(i, node)
       end do
     end do
   end subroutine prescribe
 
-  !> Contact force increments of the touching nodes from the solution: dlambda_A = -r_A - K_A du.
+  !> Return the increments of the contact forces from the solution: dlambda_A = -r_A - K_A du.
   subroutine contact_force_increment(model, phase, contact, stiffness, problem, increment)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> Contact operators of the candidates.
     type(contact_work_t), intent(in) :: contact
-    !> Stiffness of the sheet.
     type(block_matrix_t), intent(in) :: stiffness
     !> Residuals and solution.
     type(linear_problem_t), intent(in) :: problem
-    !> The increments; a node in a gap loses its force, `(3, n_contact)`, N.
+    !> Increments, `(3, n_contact)`, N; a candidate in gap status loses its force.
     real(wp), intent(out) :: increment(:, :)
 
     real(wp) :: change(3)

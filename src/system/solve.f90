@@ -1,4 +1,4 @@
-!> One solution of the reduced system.
+!> Solution of the reduced system.
 module dd3_system_solve
   use dd3_base_clock, only : section_assembly, section_factorisation, section_solve
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
@@ -11,42 +11,40 @@ module dd3_system_solve
   private
   public :: solve_info_t, solve_reduced
 
-  !> What the linear solver did in an increment.
+  !> Work of the linear solver in an attempt.
   type :: solve_info_t
-    !> Sum of its iterations.
+    !> Sum over all solutions.
     integer :: iterations = 0
-    !> The solver that ran; where one stood in for another, that one.
+    !> Solver used; after a fallback, the one fallen back on.
     character(len=24) :: solver = ""
-    !> Why the iterative solver gave up, empty where it did not.
+    !> Reason of a fallback, empty without one.
     character(len=160) :: reason = ""
   end type solve_info_t
 
 contains
 
-  !> Builds the reduced system from stiffness, contact and right-hand sides, and solves it.
-  subroutine solve_reduced(self, model, phase, info, verdict)
-    !> Matrices, right-hand sides and solver; gets the solution.
-    type(system_t), intent(inout) :: self
-    !> The model.
+  !> Build the reduced system from stiffness, contact and right-hand sides, and solve it.
+  subroutine solve_reduced(system, model, phase, info, verdict)
+    !> Gets the solution.
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> What the solver did, added up over an increment.
+    !> Summed over the attempt.
     type(solve_info_t), intent(inout) :: info
-    !> Whether there is a solution.
+    !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
     type(solver_report_t) :: report
 
-    call self%profile%start()
-    call reduce(model, phase, self%contact, self%stiffness, self%problem, self%reduced)
-    call self%profile%add(section_assembly)
-    call self%solver%factor(self%reduced, verdict)
-    call self%profile%add(section_factorisation)
+    call system%profile%start()
+    call reduce(model, phase, system%contact, system%stiffness, system%problem, system%reduced)
+    call system%profile%add(section_assembly)
+    call system%solver%factor(system%reduced, verdict)
+    call system%profile%add(section_factorisation)
     if (verdict%node > model%n_node) call name_tool(model, verdict)
     if (verdict%outcome /= verdict_converged) return
-    call self%solver%solve(self%problem%rhs, self%problem%solution, report)
-    call self%profile%add(section_solve)
+    call system%solver%solve(system%problem%rhs, system%problem%solution, report)
+    call system%profile%add(section_solve)
     info%iterations = info%iterations + report%iterations
     if (len_trim(info%solver) == 0 .or. report%fallback) info%solver = report%method
     if (report%fallback) info%reason = report%reason
@@ -57,14 +55,12 @@ contains
     end if
   end subroutine solve_reduced
 
-  !> Puts the tool in the place of its block row, which is empty where nothing resists the tool.
+  !> Name the tool instead of its block row, which is empty if nothing resists the tool.
   subroutine name_tool(model, verdict)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The verdict on the matrix.
     type(verdict_t), intent(inout) :: verdict
 
-    verdict%tool = findloc(model%tool_block, verdict%node, dim=1)
+    verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
     verdict%node = 0
     verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
   end subroutine name_tool

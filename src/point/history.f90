@@ -1,7 +1,7 @@
 !> history.csv of single material points: strain, stress, plastic strain and flow stress, one row
 !> for the start of each point and one for every n-th step; the last step of a point is always
 !> there.
-module dd3_output_point_history
+module dd3_point_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_linalg_tensor, only : kelvin_factor
@@ -82,4 +82,4 @@ contains
     call self%table%close(error)
   end subroutine point_close
 
-end module dd3_output_point_history
+end module dd3_point_history

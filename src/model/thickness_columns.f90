@@ -1,15 +1,15 @@
 !> Columns of nodes through the thickness of the sheet, found from the pairs of nodes that face each
 !> other in the elements.
-module dd3_output_columns
+module dd3_model_thickness_columns
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: sheet_columns
+  public :: thickness_columns
 
 contains
 
   !> Bottom and top node of the column in which each node lies: `column(2, n_node)`.
-  subroutine sheet_columns(model, column)
+  subroutine thickness_columns(model, column)
     !> The model.
     type(model_t), intent(in) :: model
     !> The columns; a node of no column is its own bottom and top.
@@ -31,7 +31,7 @@ contains
       column(1, i) = last_of(next(1, :), i)
       column(2, i) = last_of(next(2, :), i)
     end do
-  end subroutine sheet_columns
+  end subroutine thickness_columns
 
   !> The last node of the chain that begins at a node.
   pure integer function last_of(next, first)
@@ -48,4 +48,4 @@ contains
     end do
   end function last_of
 
-end module dd3_output_columns
+end module dd3_model_thickness_columns

@@ -1,5 +1,5 @@
 !> Help on the laws, and the manual's reference of them, printed from the registries.
-module dd3_model_law_help
+module dd3_app_law_help
   use dd3_base_text, only : newline, same_name
   use dd3_input_help, only : describe_key, escaped
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
@@ -82,4 +82,4 @@ contains
     end do
   end function law_reference_markdown
 
-end module dd3_model_law_help
+end module dd3_app_law_help

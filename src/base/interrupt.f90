@@ -1,7 +1,7 @@
 !> A wish to stop, from the keyboard (SIGINT) or the system (SIGTERM): the run ends after the
 !> current increment with whole results. A second signal of the kind stops at once.
 !> The flag is a variable of the module: a signal handler has no arguments, nothing else reaches it.
-module dd3_output_interrupt
+module dd3_base_interrupt
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
@@ -50,4 +50,4 @@ contains
     previous = c_signal(number, c_null_funptr)
   end subroutine remember
 
-end module dd3_output_interrupt
+end module dd3_base_interrupt

@@ -1,0 +1,92 @@
+!> Files as a whole: reading, replacing one by another, waiting until one is on the disk.
+module dd3_base_file_system
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_file, only : file_t
+  use dd3_base_kinds, only : i8
+  implicit none
+  private
+  public :: read_file, replace_file, sync_file, folder_of, part_of
+
+  interface
+    !> rename(2).
+    integer(c_int) function posix_rename(from, to) bind(c, name="rename")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: from(*), to(*)
+    end function posix_rename
+    !> fsync(2).
+    integer(c_int) function posix_fsync(descriptor) bind(c, name="fsync")
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function posix_fsync
+  end interface
+
+contains
+
+  !> Read a file.
+  subroutine read_file(path, text, error)
+    character(len=*), intent(in) :: path
+    !> Content of the file, ends of lines included.
+    character(len=:), allocatable, intent(out) :: text
+    !> Set if the file cannot be read.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=256) :: message
+    integer(i8) :: length
+    integer :: unit, status
+
+    text = ""
+    open (newunit=unit, file=path, access="stream", status="old", action="read", iostat=status, &
+        iomsg=message)
+    if (status == 0) then
+      inquire (unit, size=length)
+      deallocate (text)
+      allocate (character(len=max(0_i8, length)) :: text)
+      read (unit, iostat=status, iomsg=message) text
+      close (unit)
+    end if
+    if (status /= 0) call fatal_error(error, "cannot read '"//path//"': "//trim(message))
+  end subroutine read_file
+
+  !> Return the name under which a file is written aside, before it replaces the old one.
+  pure function part_of(path) result(part)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: part
+
+    part = path//".part"
+  end function part_of
+
+  !> Replace a file by the one written aside, in one step.
+  subroutine replace_file(path, error)
+    character(len=*), intent(in) :: path
+    !> Set if the file cannot be replaced.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (posix_rename(part_of(path)//c_null_char, path//c_null_char) /= 0) &
+      call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
+  end subroutine replace_file
+
+  !> Wait until all that was written to an open file is on the disk. File systems that cannot tell
+  !> are trusted.
+  subroutine sync_file(file)
+    type(file_t), intent(in) :: file
+
+    integer(c_int) :: ignored
+
+    ignored = posix_fsync(file%descriptor)
+  end subroutine sync_file
+
+  !> Return the folder of a path, without the last slash; `.` if it names none.
+  pure function folder_of(path) result(folder)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: folder
+
+    integer :: slash
+
+    slash = index(path, "/", back=.true.)
+    folder = "."
+    if (slash == 1) folder = "/"
+    if (slash > 1) folder = path(:slash - 1)
+  end function folder_of
+
+end module dd3_base_file_system

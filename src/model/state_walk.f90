@@ -1,0 +1,256 @@
+!> Walk over the components of a state: `visit_state` hands every component with its name to a
+!> visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
+!> component is named in one place only.
+module dd3_model_state_walk
+  use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : hint_t
+  use dd3_model_state, only : phase_start_t, state_t
+  implicit none
+  private
+  public :: state_visitor_t, visit_state, first_difference
+
+  !> Operation on the components of a state; it may change them.
+  type, abstract :: state_visitor_t
+  contains
+    procedure(visit_reals_interface), deferred :: reals
+    procedure(visit_integers_interface), deferred :: integers
+    procedure, private :: logicals
+    procedure, private :: one_real
+    procedure, private :: one_integer
+    procedure, private :: one_logical
+  end type state_visitor_t
+
+  abstract interface
+    !> Visit a component of real numbers.
+    subroutine visit_reals_interface(self, name, n, values)
+      import :: state_visitor_t, wp
+      class(state_visitor_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: n
+      !> The component in array element order.
+      real(wp), intent(inout) :: values(n)
+    end subroutine visit_reals_interface
+
+    !> Visit a component of integers; logical components come as 0 and 1.
+    subroutine visit_integers_interface(self, name, n, values)
+      import :: state_visitor_t
+      class(state_visitor_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: n
+      !> The component in array element order.
+      integer, intent(inout) :: values(n)
+    end subroutine visit_integers_interface
+  end interface
+
+  !> Visitor that gathers names and values.
+  type, extends(state_visitor_t) :: gatherer_t
+    !> Names of the components, and where the values of each one end.
+    character(len=32), allocatable :: name(:)
+    integer, allocatable :: last(:)
+    real(wp), allocatable :: value(:)
+  contains
+    procedure :: reals => gather_reals
+    procedure :: integers => gather_integers
+  end type gatherer_t
+
+contains
+
+  !> Hand every component of a state to a visitor, always in the same order.
+  subroutine visit_state(state, visitor)
+    type(state_t), intent(inout) :: state
+    class(state_visitor_t), intent(inout) :: visitor
+
+    call visitor%one_integer("increment", state%increment)
+    call visitor%one_integer("phase", state%phase)
+    call visitor%one_logical("begun", state%begun)
+    call visitor%one_real("progress", state%progress)
+    call visitor%one_real("travel", state%travel)
+    call visitor%one_real("r_cap", state%r_cap)
+    call visitor%one_integer("history_increment", state%history_increment)
+    call visitor%one_integer("fields_increment", state%fields_increment)
+    call visitor%integers("solver_memory", size(state%solver_memory), state%solver_memory)
+    call visitor%reals("x", size(state%x), state%x)
+    call visitor%reals("internal_force", size(state%internal_force), state%internal_force)
+    call visitor%reals("external_force", size(state%external_force), state%external_force)
+    call visitor%reals("load", size(state%load), state%load)
+    call visitor%reals("stress", size(state%stress), state%stress)
+    call visitor%reals("internal_variables", size(state%internal_variables), &
+        state%internal_variables)
+    call visitor%reals("orientation", size(state%orientation), state%orientation)
+    call visitor%logicals("plastic", size(state%plastic), state%plastic)
+    call visitor%reals("lambda", size(state%lambda), state%lambda)
+    call visitor%integers("status", size(state%status), state%status)
+    call visitor%integers("contact_tool", size(state%contact_tool), state%contact_tool)
+    call visit_hints("hint", size(state%hint), state%hint, visitor)
+    call visitor%reals("fading", size(state%fading), state%fading)
+    call visitor%integers("fading_tool", size(state%fading_tool), state%fading_tool)
+    call visitor%reals("tool_displacement", size(state%tool_displacement), &
+        state%tool_displacement)
+    call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
+    call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
+    call visit_phase_start(state%start, visitor)
+  end subroutine visit_state
+
+  !> Hand every component of the values at the start of a phase to a visitor.
+  subroutine visit_phase_start(start, visitor)
+    type(phase_start_t), intent(inout) :: start
+    class(state_visitor_t), intent(inout) :: visitor
+
+    call visitor%reals("start_tool_displacement", size(start%tool_displacement), &
+        start%tool_displacement)
+    call visitor%reals("start_tool_load", size(start%tool_load), start%tool_load)
+    call visitor%reals("start_tool_load_end", size(start%tool_load_end), start%tool_load_end)
+    call visitor%reals("start_load", size(start%load), start%load)
+    call visitor%reals("start_load_end", size(start%load_end), start%load_end)
+    call visitor%reals("start_fading", size(start%fading), start%fading)
+    call visitor%reals("start_plastic_strain", size(start%plastic_strain), start%plastic_strain)
+    call visitor%one_logical("start_until_from_below", start%until_from_below)
+  end subroutine visit_phase_start
+
+  !> Hand every component of the closest points to a visitor.
+  subroutine visit_hints(name, n, hint, visitor)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    type(hint_t), intent(inout) :: hint(n)
+    class(state_visitor_t), intent(inout) :: visitor
+
+    real(wp), allocatable :: anchor(:, :), u(:), v(:), clearance(:)
+    integer, allocatable :: patch(:)
+    logical, allocatable :: due(:)
+    integer :: i
+
+    patch = hint%patch
+    u = hint%u
+    v = hint%v
+    due = hint%due
+    clearance = hint%clearance
+    allocate (anchor(3, n))
+    do i = 1, n
+      anchor(:, i) = hint(i)%anchor
+    end do
+    call visitor%integers(name//"_patch", n, patch)
+    call visitor%reals(name//"_u", n, u)
+    call visitor%reals(name//"_v", n, v)
+    call visitor%logicals(name//"_due", n, due)
+    call visitor%reals(name//"_anchor", 3*n, anchor)
+    call visitor%reals(name//"_clearance", n, clearance)
+    do i = 1, n
+      hint(i) = hint_t(patch=patch(i), u=u(i), v=v(i), due=due(i), anchor=anchor(:, i), &
+          clearance=clearance(i))
+    end do
+  end subroutine visit_hints
+
+  !> Visit a component of logical values as integers 0 and 1.
+  subroutine logicals(self, name, n, values)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    logical, intent(inout) :: values(n)
+
+    integer, allocatable :: number(:)
+
+    number = merge(1, 0, values)
+    call self%integers(name, n, number)
+    values = number /= 0
+  end subroutine logicals
+
+  !> Visit a scalar.
+  subroutine one_real(self, name, value)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    real(wp), intent(inout) :: value
+
+    real(wp) :: values(1)
+
+    values = value
+    call self%reals(name, 1, values)
+    value = values(1)
+  end subroutine one_real
+
+  !> Visit a scalar.
+  subroutine one_integer(self, name, value)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: value
+
+    integer :: values(1)
+
+    values = value
+    call self%integers(name, 1, values)
+    value = values(1)
+  end subroutine one_integer
+
+  !> Visit a scalar.
+  subroutine one_logical(self, name, value)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    logical, intent(inout) :: value
+
+    logical :: values(1)
+
+    values = value
+    call self%logicals(name, 1, values)
+    value = values(1)
+  end subroutine one_logical
+
+  !> Return the name of the first component in which two states differ, bit for bit; empty where
+  !> they are equal.
+  function first_difference(a, b) result(name)
+    type(state_t), intent(in) :: a, b
+    character(len=:), allocatable :: name
+
+    type(gatherer_t) :: left, right
+    integer :: i, first
+
+    call gather(a, left)
+    call gather(b, right)
+    name = ""
+    first = 1
+    do i = 1, size(left%last)
+      name = trim(left%name(i))
+      if (left%last(i) /= right%last(i)) return
+      if (any(transfer(left%value(first:left%last(i)), [0]) /= &
+              transfer(right%value(first:right%last(i)), [0]))) return
+      first = left%last(i) + 1
+    end do
+    name = ""
+  end function first_difference
+
+  !> Gather the values of a state.
+  subroutine gather(state, values)
+    type(state_t), intent(in) :: state
+    type(gatherer_t), intent(out) :: values
+
+    type(state_t) :: copy
+
+    allocate (values%name(0), values%last(0), values%value(0))
+    copy = state
+    call visit_state(copy, values)
+  end subroutine gather
+
+  !> Append a component of real numbers.
+  subroutine gather_reals(self, name, n, values)
+    class(gatherer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: values(n)
+
+    self%value = [self%value, values]
+    self%name = [character(len=len(self%name)) :: self%name, name]
+    self%last = [self%last, size(self%value)]
+  end subroutine gather_reals
+
+  !> Append a component of integers, which are exact as real numbers.
+  subroutine gather_integers(self, name, n, values)
+    class(gatherer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    integer, intent(inout) :: values(n)
+
+    real(wp) :: number(n)
+
+    number = real(values, wp)
+    call self%reals(name, n, number)
+  end subroutine gather_integers
+
+end module dd3_model_state_walk

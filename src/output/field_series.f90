@@ -1,0 +1,133 @@
+!> Datasets of fields.vtkhdf: those of a field with the offsets of its steps, constant ones, and
+!> their copies from an earlier file.
+module dd3_output_field_series
+  use dd3_base_kinds, only : wp, i8
+  use dd3_output_field_table, only : field_t
+  use dd3_output_hdf5, only : kind_int, kind_long, kind_real, series_t
+  use dd3_output_hdf5_read, only : read_rows
+  use hdf5, only : hid_t, hsize_t, h5aclose_f, h5gclose_f
+  implicit none
+  private
+  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series
+  public :: close_target, close_group, close_attribute
+
+  !> Rows per chunk of the datasets with one row per step.
+  integer, parameter :: step_chunk = 64
+
+  !> Datasets of a field: its values, and the position of the first row of each step.
+  type :: target_t
+    type(series_t) :: data, offset
+  end type target_t
+
+contains
+
+  !> Make the datasets of fields and of their offsets.
+  subroutine make_targets(field, place, data, offsets, chunk, ok)
+    type(field_t), intent(in) :: field(:)
+    type(target_t), allocatable, intent(out) :: place(:)
+    !> Groups of the values and of the offsets.
+    integer(hid_t), intent(in) :: data, offsets
+    !> Rows of a step.
+    integer, intent(in) :: chunk
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    integer :: i, kind
+
+    allocate (place(size(field)))
+    do i = 1, size(field)
+      kind = merge(kind_int, kind_real, field(i)%whole)
+      call place(i)%data%create(data, trim(field(i)%name), kind, field(i)%components, .false., &
+          chunk, ok)
+      call place(i)%data%describe(trim(field(i)%unit), trim(field(i)%description), ok)
+      call place(i)%offset%create(offsets, trim(field(i)%name), kind_long, 1, .false., &
+          step_chunk, ok)
+    end do
+  end subroutine make_targets
+
+  !> Make a dataset that does not change.
+  subroutine put_constant(parent, name, kind, values, ok)
+    integer(hid_t), intent(in) :: parent
+    character(len=*), intent(in) :: name
+    !> One of the `kind_*` values.
+    integer, intent(in) :: kind
+    integer, intent(in) :: values(:)
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    type(series_t) :: series
+
+    call series%create(parent, name, kind, 1, .false., size(values), ok)
+    call series%append_integers(values, ok)
+    call series%close()
+  end subroutine put_constant
+
+  !> Add the values of a step and the position of their first row.
+  subroutine append(place, values, ok)
+    type(target_t), intent(inout) :: place
+    real(wp), intent(in) :: values(:)
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    integer(i8) :: first
+
+    first = int(place%data%rows, i8)
+    call place%data%append_reals(values, ok)
+    call place%offset%append_long(first, ok)
+  end subroutine append
+
+  !> Copy the datasets of a field for some steps.
+  subroutine copy_target(place, old, n, rows, ok)
+    type(target_t), intent(inout) :: place
+    integer(hid_t), intent(in) :: old
+    !> Number of steps, and rows of a step.
+    integer, intent(in) :: n, rows
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    call copy_series(place%offset, old, n, ok)
+    call copy_series(place%data, old, n*rows, ok)
+  end subroutine copy_target
+
+  !> Copy the first rows of a dataset.
+  subroutine copy_series(series, old, rows, ok)
+    type(series_t), intent(inout) :: series
+    integer(hid_t), intent(in) :: old
+    integer, intent(in) :: rows
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    real(wp), allocatable :: values(:)
+
+    call read_rows(old, series%path(), 0_hsize_t, int(rows, hsize_t), values, ok)
+    call series%append_reals(values, ok)
+  end subroutine copy_series
+
+  !> Close the datasets of a field.
+  subroutine close_target(place)
+    type(target_t), intent(inout) :: place
+
+    call place%data%close()
+    call place%offset%close()
+  end subroutine close_target
+
+  !> Close a group.
+  subroutine close_group(group)
+    integer(hid_t), intent(in) :: group
+
+    integer :: ignored
+
+    if (group >= 0) call h5gclose_f(group, ignored)
+  end subroutine close_group
+
+  !> Close an attribute.
+  subroutine close_attribute(attribute)
+    integer(hid_t), intent(inout) :: attribute
+
+    integer :: ignored
+
+    if (attribute >= 0) call h5aclose_f(attribute, ignored)
+    attribute = -1
+  end subroutine close_attribute
+
+end module dd3_output_field_series

@@ -1,0 +1,194 @@
+!> Records of a run: history.csv, status.csv, fields.vtkhdf and restart.h5.
+module dd3_output_records
+  use dd3_base_error, only : error_t, keep_first
+  use dd3_base_text, only : to_text
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_output_fields, only : field_record_t
+  use dd3_output_history, only : history_record_t
+  use dd3_output_restart, only : write_restart
+  use dd3_output_status, only : status_record_t, status_row_t
+  implicit none
+  private
+  public :: records_t
+
+  !> Records of a run.
+  type :: records_t
+    type(history_record_t), private :: history
+    type(status_record_t), private :: status
+    type(field_record_t), private :: fields
+    character(len=:), allocatable, private :: directory
+    !> Increment of the last restart file.
+    integer, private :: restart_increment = 0
+  contains
+    procedure :: open => records_open
+    procedure :: resume => records_resume
+    procedure :: add_attempt
+    procedure :: write_increment
+    procedure :: write_phase_end
+    procedure :: close => records_close
+  end type records_t
+
+contains
+
+  !> Open the records and write the initial state.
+  subroutine records_open(self, model, directory, state, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Folder of the results; it exists.
+    character(len=*), intent(in) :: directory
+    !> Initial state; gets the increments written.
+    type(state_t), intent(inout) :: state
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    self%directory = directory
+    self%restart_increment = state%increment
+    call self%history%open(model, directory, error)
+    if (.not. allocated(error)) call self%status%open(directory, error)
+    if (.not. allocated(error)) call self%fields%open(model, directory, error)
+    if (.not. allocated(error)) call self%history%write(model, state, error)
+    if (.not. allocated(error)) call write_fields(self, model, state, error)
+  end subroutine records_open
+
+  !> Continue the records of an earlier run from a restart on. Rows and steps after the restart are
+  !> dropped; a record that cannot be continued begins at the restart.
+  subroutine records_resume(self, model, source, directory, state, lost, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Folder of the earlier results, and of the results; it exists.
+    character(len=*), intent(in) :: source, directory
+    !> State of the restart; gets the increments written.
+    type(state_t), intent(inout) :: state
+    !> Names of the records that begin at the restart, separated by blanks.
+    character(len=:), allocatable, intent(out) :: lost
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    logical :: found
+
+    self%directory = directory
+    self%restart_increment = state%increment
+    lost = ""
+    call self%history%resume(model, state, source, directory, found)
+    if (.not. found) then
+      lost = lost//" history.csv"
+      call self%history%open(model, directory, error)
+      if (.not. allocated(error)) call self%history%write(model, state, error)
+    end if
+    if (allocated(error)) return
+    call self%status%resume(state, source, directory, found)
+    if (.not. found) then
+      lost = lost//" status.csv"
+      call self%status%open(directory, error)
+    end if
+    if (allocated(error)) return
+    call self%fields%resume(model, state, source, directory, found)
+    if (.not. found) then
+      lost = lost//" fields.vtkhdf"
+      call self%fields%open(model, directory, error)
+      if (.not. allocated(error)) call write_fields(self, model, state, error)
+    end if
+  end subroutine records_resume
+
+  !> Add the row of an attempt to status.csv.
+  subroutine add_attempt(self, row, error)
+    class(records_t), intent(inout) :: self
+    type(status_row_t), intent(in) :: row
+    !> Set if the row cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%status%add(row, error)
+  end subroutine add_attempt
+
+  !> Write an accepted increment.
+  subroutine write_increment(self, model, state, fields_due, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Gets the increments written.
+    type(state_t), intent(inout) :: state
+    !> The progress of the phase asks for fields.
+    logical, intent(in) :: fields_due
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%history%write(model, state, error)
+    if (allocated(error)) return
+    if (fields_due .or. every(model%output%fields_increments, state)) &
+      call write_fields(self, model, state, error)
+    if (allocated(error)) return
+    if (every(model%output%restart_every, state)) call save(self, model, state, error)
+  end subroutine write_increment
+
+  !> Whether an output of every n-th increment is due.
+  pure logical function every(n, state)
+    !> 0 for never.
+    integer, intent(in) :: n
+    type(state_t), intent(in) :: state
+
+    every = .false.
+    if (n > 0) every = mod(state%increment, n) == 0
+  end function every
+
+  !> Write the fields and the restart file at the end of a phase.
+  subroutine write_phase_end(self, model, state, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Gets the increments written.
+    type(state_t), intent(inout) :: state
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call write_fields(self, model, state, error)
+    if (.not. allocated(error)) call save(self, model, state, error)
+  end subroutine write_phase_end
+
+  !> Write the fields of a state.
+  subroutine write_fields(self, model, state, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%fields%write(model, state, error)
+    if (.not. allocated(error)) state%fields_increment = state%increment
+  end subroutine write_fields
+
+  !> Write the restart file, once per increment; the rows before it go to the disk first.
+  subroutine save(self, model, state, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. model%output%restart .or. state%increment == self%restart_increment) return
+    call self%history%flush(error)
+    if (.not. allocated(error)) call self%status%flush(error)
+    if (.not. allocated(error)) call write_restart(self%directory, model, state, error)
+    if (.not. allocated(error)) self%restart_increment = state%increment
+  end subroutine save
+
+  !> Write the last state and close the records. The fields of the last state are no output that was
+  !> asked for: a restart drops them.
+  subroutine records_close(self, model, state, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Reason of the end of the run; set if it is not yet and a record cannot be closed.
+    type(error_t), allocatable, intent(inout) :: error
+
+    type(error_t), allocatable :: late
+
+    call save(self, model, state, late)
+    call keep_first(error, late)
+    call self%fields%write(model, state, late)
+    call keep_first(error, late)
+    call self%history%close(late)
+    call keep_first(error, late)
+    call self%status%close(late)
+    call keep_first(error, late)
+    call self%fields%close(late)
+    call keep_first(error, late)
+  end subroutine records_close
+
+end module dd3_output_records

@@ -1,0 +1,354 @@
+!> restart.h5: the committed state of a run and the fingerprint of its model. The file is written
+!> aside, synced and renamed, so that a run that is killed leaves the last whole one.
+module dd3_output_restart
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_file, only : file_t
+  use dd3_base_file_system, only : part_of, replace_file, sync_file
+  use dd3_base_kinds, only : wp, i8
+  use dd3_base_text, only : to_text
+  use dd3_base_version, only : program_version
+  use dd3_model_fingerprint, only : changed_parts, fingerprint_t, model_fingerprint
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : new_state, state_t
+  use dd3_model_state_walk, only : state_visitor_t, visit_state
+  use dd3_output_hdf5, only : integer_attribute, kind_int, kind_real, make_group, series_t, &
+      start_hdf5, text_attribute
+  use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integer_attribute, &
+      read_integers, read_reals, read_text_attribute
+  use hdf5, only : hid_t, h5aclose_f, h5fclose_f, h5fcreate_f, h5gclose_f, H5F_ACC_TRUNC_F
+  implicit none
+  private
+  public :: write_restart, read_restart, restart_name
+
+  !> Name of the file in the folder of the results.
+  character(len=*), parameter :: restart_name = "restart.h5"
+  !> Mark of the file, and the version of its format. Version 1 holds the components of `state_t` by
+  !> name; a change of their meaning makes a new version.
+  character(len=*), parameter :: mark = "dd3imp restart"
+  integer, parameter :: format_version = 1
+  !> Room on the disk for what is not the values, bytes.
+  integer(i8), parameter :: overhead = 1000000_i8
+
+  !> Visitor that writes the components into a group, a dataset each.
+  type, extends(state_visitor_t) :: writer_t
+    integer(hid_t) :: group = -1
+    logical :: ok = .true.
+    !> Counts the bytes instead of writing them.
+    logical :: counting = .false.
+    integer(i8) :: bytes = 0
+  contains
+    procedure :: reals => write_reals
+    procedure :: integers => write_integers
+  end type writer_t
+
+  !> Visitor that reads the components from a group.
+  type, extends(state_visitor_t) :: reader_t
+    integer(hid_t) :: file = -1
+    !> What is wrong with the first unreadable component; empty if none is.
+    character(len=:), allocatable :: problem
+  contains
+    procedure :: reals => reader_reals
+    procedure :: integers => reader_integers
+  end type reader_t
+
+contains
+
+  !> Write the committed state.
+  subroutine write_restart(directory, model, state, error)
+    !> Folder of the results.
+    character(len=*), intent(in) :: directory
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Set if the file cannot be written; an older one is left as it is.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(file_t) :: guard
+    type(state_t) :: copy
+    type(writer_t) :: writer
+    character(len=:), allocatable :: path
+    type(error_t), allocatable :: ignored
+
+    path = directory//"/"//restart_name
+    copy = state
+    writer%counting = .true.
+    call visit_state(copy, writer)
+    call guard%create(part_of(path), error)
+    if (allocated(error)) return
+    call guard%reserve(0_i8, writer%bytes + overhead, error)
+    if (.not. allocated(error)) then
+      call write_content(part_of(path), model_fingerprint(model, state%phase), copy, writer%ok)
+      if (writer%ok) then
+        call sync_file(guard)
+        call replace_file(path, error)
+      else
+        call fatal_error(error, "cannot write '"//path//"': the disk is full or cannot be reached")
+      end if
+    end if
+    call guard%release()
+    call guard%close(ignored)
+  end subroutine write_restart
+
+  !> Write marks, fingerprint and state into a new file.
+  subroutine write_content(path, fingerprint, state, ok)
+    character(len=*), intent(in) :: path
+    type(fingerprint_t), intent(in) :: fingerprint(:)
+    !> Only read, but handed to a visitor.
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: ok
+
+    type(writer_t) :: writer
+    integer(hid_t) :: file, attribute
+    integer :: status
+
+    call start_hdf5(ok)
+    if (.not. ok) return
+    call h5fcreate_f(path, H5F_ACC_TRUNC_F, file, status)
+    ok = status >= 0
+    call text_attribute(file, "program", mark, ok)
+    call integer_attribute(file, "format", [format_version], attribute, ok)
+    if (ok) call h5aclose_f(attribute, status)
+    call text_attribute(file, "version", program_version, ok)
+    writer%ok = ok
+    call make_group(file, "state", writer%group, writer%ok)
+    call visit_state(state, writer)
+    if (writer%group >= 0) call h5gclose_f(writer%group, status)
+    call make_group(file, "model", writer%group, writer%ok)
+    call visit_fingerprint(fingerprint, writer)
+    if (writer%group >= 0) call h5gclose_f(writer%group, status)
+    ok = writer%ok
+    if (.not. ok) return
+    call h5fclose_f(file, status)
+    ok = status >= 0
+  end subroutine write_content
+
+  !> Write a fingerprint: the names as character codes, and the check sums.
+  subroutine visit_fingerprint(fingerprint, writer)
+    type(fingerprint_t), intent(in) :: fingerprint(:)
+    type(writer_t), intent(inout) :: writer
+
+    integer :: code(len(fingerprint%part), size(fingerprint)), digest(size(fingerprint)), i, k
+
+    do i = 1, size(fingerprint)
+      code(:, i) = [(iachar(fingerprint(i)%part(k:k)), k=1, len(fingerprint%part))]
+    end do
+    digest = fingerprint%digest
+    call writer%integers("part", size(code), code)
+    call writer%integers("digest", size(digest), digest)
+  end subroutine visit_fingerprint
+
+  !> Write a component of real numbers.
+  subroutine write_reals(self, name, n, values)
+    class(writer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: values(n)
+
+    type(series_t) :: series
+
+    self%bytes = self%bytes + 8*int(n, i8)
+    if (self%counting) return
+    call series%create(self%group, name, kind_real, 1, .false., max(1, n), self%ok)
+    if (n > 0) call series%append_reals(values, self%ok)
+    call series%close()
+  end subroutine write_reals
+
+  !> Write a component of integers.
+  subroutine write_integers(self, name, n, values)
+    class(writer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    integer, intent(inout) :: values(n)
+
+    type(series_t) :: series
+
+    self%bytes = self%bytes + 4*int(n, i8)
+    if (self%counting) return
+    call series%create(self%group, name, kind_int, 1, .false., max(1, n), self%ok)
+    if (n > 0) call series%append_integers(values, self%ok)
+    call series%close()
+  end subroutine write_integers
+
+  !> Read a restart file for a model.
+  subroutine read_restart(path, model, state, error)
+    character(len=*), intent(in) :: path
+    type(model_t), intent(in) :: model
+    type(state_t), intent(out) :: state
+    !> Set if the file cannot be read or is that of another model, with what differs.
+    type(error_t), allocatable, intent(out) :: error
+
+    integer(hid_t) :: file
+    logical :: ok
+
+    call open_hdf5(path, file, ok)
+    if (ok) then
+      call check_origin(path, file, error)
+      if (.not. allocated(error)) call check_model(path, file, model, error)
+      if (.not. allocated(error)) call read_state(path, file, model, state, error)
+      call close_hdf5(file)
+    else
+      call fatal_error(error, "'"//path//"' cannot be read as a restart file: it is missing, "// &
+          "truncated or no HDF5 file")
+    end if
+  end subroutine read_restart
+
+  !> Check that a file is a restart file of this version of the format.
+  subroutine check_origin(path, file, error)
+    character(len=*), intent(in) :: path
+    integer(hid_t), intent(in) :: file
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: program_mark, version
+    integer :: found
+
+    call read_text_attribute(file, "program", program_mark)
+    call read_text_attribute(file, "version", version)
+    found = read_integer_attribute(file, "format")
+    if (program_mark /= mark) then
+      call fatal_error(error, "'"//path//"' is no restart file of dd3imp")
+    else if (found /= format_version) then
+      call fatal_error(error, "'"//path//"' has restart format "//to_text(found)// &
+          ", written by dd3imp "//version//"; this version reads format "// &
+          to_text(format_version))
+    end if
+  end subroutine check_origin
+
+  !> Check that a restart file belongs to a model, up to the phase that it has reached.
+  subroutine check_model(path, file, model, error)
+    character(len=*), intent(in) :: path
+    integer(hid_t), intent(in) :: file
+    type(model_t), intent(in) :: model
+    type(error_t), allocatable, intent(out) :: error
+
+    type(fingerprint_t), allocatable :: before(:)
+    integer, allocatable :: code(:, :)
+    character(len=:), allocatable :: names
+    integer :: phase(1), n_part, n_code, i, k
+    logical :: ok
+
+    call dataset_size(file, "model/digest", n_part)
+    call dataset_size(file, "model/part", n_code)
+    allocate (before(max(0, n_part)))
+    ok = n_part > 0 .and. n_code == len(before%part)*n_part
+    if (ok) then
+      allocate (code(len(before%part), size(before)))
+      call read_integers(file, "state/phase", phase, ok)
+      call read_integers(file, "model/digest", before%digest, ok)
+      call read_codes(file, size(code), code, ok)
+    end if
+    if (.not. ok) then
+      call fatal_error(error, "'"//path//"' holds no fingerprint of its model")
+      return
+    end if
+    do i = 1, size(before)
+      do k = 1, len(before%part)
+        before(i)%part(k:k) = achar(code(k, i))
+      end do
+    end do
+    names = changed_parts(before, model_fingerprint(model, phase(1)))
+    if (len(names) > 0) call fatal_error(error, "'"//path//"' belongs to another model; "// &
+      "different: "//names)
+  end subroutine check_model
+
+  !> Read the names of a fingerprint as character codes.
+  subroutine read_codes(file, n, code, ok)
+    integer(hid_t), intent(in) :: file
+    integer, intent(in) :: n
+    integer, intent(out) :: code(n)
+    logical, intent(inout) :: ok
+
+    call read_integers(file, "model/part", code, ok)
+  end subroutine read_codes
+
+  !> Read all components of the state.
+  subroutine read_state(path, file, model, state, error)
+    character(len=*), intent(in) :: path
+    integer(hid_t), intent(in) :: file
+    type(model_t), intent(in) :: model
+    type(state_t), intent(out) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    type(reader_t) :: reader
+    integer :: n
+
+    call new_state(state, model)
+    call dataset_size(file, "state/solver_memory", n)
+    deallocate (state%solver_memory)
+    allocate (state%solver_memory(max(0, n)))
+    reader%file = file
+    reader%problem = ""
+    call visit_state(state, reader)
+    if (len(reader%problem) > 0) call fatal_error(error, "'"//path//"': "//reader%problem)
+  end subroutine read_state
+
+  !> Read a component of real numbers. Sets with loads that later phases have added or dropped come
+  !> last and have no load yet.
+  subroutine reader_reals(self, name, n, values)
+    class(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: values(n)
+
+    real(wp), allocatable :: found(:)
+    integer :: there
+    logical :: ok
+
+    call dataset_size(self%file, "state/"//name, there)
+    if (name == "load" .or. name == "start_load" .or. name == "start_load_end") then
+      ok = there >= 0
+    else
+      ok = there == n
+    end if
+    if (.not. ok) then
+      call note_size(self, name, there, n)
+      return
+    end if
+    allocate (found(there))
+    call read_reals(self%file, "state/"//name, found, ok)
+    if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
+    there = min(there, n)
+    values(:there) = found(:there)
+  end subroutine reader_reals
+
+  !> Read a component of integers.
+  subroutine reader_integers(self, name, n, values)
+    class(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    integer, intent(inout) :: values(n)
+
+    integer :: there
+    logical :: ok
+
+    call dataset_size(self%file, "state/"//name, there)
+    ok = there == n
+    if (.not. ok) then
+      call note_size(self, name, there, n)
+      return
+    end if
+    call read_integers(self%file, "state/"//name, values, ok)
+    if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
+  end subroutine reader_integers
+
+  !> Record a component of the wrong size.
+  subroutine note_size(self, name, found, expected)
+    type(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: found, expected
+
+    if (found < 0) then
+      call note_problem(self, "component '"//name//"' is missing")
+    else
+      call note_problem(self, "component '"//name//"': expected "//to_text(expected)// &
+          " values, got "//to_text(found))
+    end if
+  end subroutine note_size
+
+  !> Record the first problem.
+  subroutine note_problem(self, text)
+    type(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+
+    if (self%problem == "") self%problem = text
+  end subroutine note_problem
+
+end module dd3_output_restart

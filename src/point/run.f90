@@ -1,0 +1,210 @@
+!> Runs of material points, without a mesh: segment by segment, step by step, with their history. A
+!> prescribed deformation gradient is integrated with the incremental kinematics of the elements:
+!> polar decomposition of the step, logarithmic strain, material axes that turn with the rotation.
+module dd3_point_run
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_t, fatal_error, keep_first
+  use dd3_base_interrupt, only : interrupted
+  use dd3_base_log, only : log_t
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_element_increment, only : polar_increment
+  use dd3_input_case, only : case_t
+  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
+      kelvin_from_tensor, symmetric_eigen
+  use dd3_material_material, only : material_t
+  use dd3_material_point, only : global_stress, lead_point, new_point_state, point_state_t, &
+      strain_point
+  use dd3_point_history, only : point_record_t, point_row_t
+  use dd3_point_path, only : new_path, path_t, segment_t
+  implicit none
+  private
+  public :: run_points
+
+  !> Logarithmic strain above which a warning is given: a stretch of more than seven.
+  real(wp), parameter :: notable_strain = 2.0_wp
+
+  !> A material point during its run.
+  type :: walker_t
+    type(point_state_t) :: state
+    !> Deformation gradient, if it is prescribed.
+    real(wp) :: gradient(3, 3) = 0.0_wp
+    !> Steps made.
+    integer :: increment = 0
+    !> A row is written every so many steps.
+    integer :: every = 1
+    !> The last row was not due and is not written yet.
+    logical :: waiting = .false.
+  end type walker_t
+
+contains
+
+  !> Run all material points of a case. The history is whole whether they reach their end or not.
+  subroutine run_points(case, material, directory, log, increments, error)
+    type(case_t), intent(in) :: case
+    !> Materials of the case.
+    type(material_t), intent(in) :: material(:)
+    !> Folder of the results; it exists.
+    character(len=*), intent(in) :: directory
+    type(log_t), intent(inout) :: log
+    !> Steps made by all points.
+    integer, intent(out) :: increments
+    !> Set if a run stopped before its end.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(point_record_t) :: record
+    type(path_t) :: path
+    type(error_t), allocatable :: late
+    integer :: i, steps
+
+    increments = 0
+    call record%open(directory, error)
+    do i = 1, size(case%point)
+      if (allocated(error)) exit
+      call new_path(path, case%point(i))
+      call run_point(path, material(path%material), case%output%history, record, log, steps, error)
+      increments = increments + steps
+    end do
+    call record%close(late)
+    call keep_first(error, late)
+  end subroutine run_points
+
+  !> Run one material point.
+  subroutine run_point(path, material, every, record, log, steps, error)
+    type(path_t), intent(in) :: path
+    type(material_t), intent(in) :: material
+    !> A row is written every so many steps.
+    integer, intent(in) :: every
+    type(point_record_t), intent(inout) :: record
+    type(log_t), intent(inout) :: log
+    !> Steps made.
+    integer, intent(out) :: steps
+    !> Set if the run stopped before its end.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(walker_t) :: walker
+    type(error_t), allocatable :: late
+    real(wp) :: strain
+    integer :: i
+
+    strain = 0.0_wp
+    call new_point_state(walker%state, material, path%axes)
+    walker%gradient = identity
+    walker%every = max(1, every)
+    call write_row(walker, material, path, record, error)
+    do i = 1, size(path%segment)
+      if (allocated(error)) exit
+      call run_segment(walker, material, path, path%segment(i), record, error)
+      strain = max(strain, maxval(abs(walker%state%strain/kelvin_factor)))
+    end do
+    steps = walker%increment
+    if (.not. allocated(error)) call log%say("point "//path%name//": "//to_text(steps)//" steps")
+    if (strain > notable_strain) call log%say("warning: point "//path%name// &
+        ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
+    if (walker%waiting) call write_row(walker, material, path, record, late)
+    call keep_first(error, late)
+  end subroutine run_point
+
+  !> Run one segment of a path.
+  subroutine run_segment(walker, material, path, segment, record, error)
+    type(walker_t), intent(inout) :: walker
+    type(material_t), intent(in) :: material
+    type(path_t), intent(in) :: path
+    type(segment_t), intent(in) :: segment
+    type(point_record_t), intent(inout) :: record
+    !> Set if the run stopped before its end.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(verdict_t) :: verdict
+    real(wp) :: start(6), gradient(3, 3), fraction
+    integer :: k
+
+    start = merge(global_stress(walker%state), walker%state%strain, path%by_stress)
+    gradient = walker%gradient
+    do k = 1, segment%steps
+      fraction = real(k, wp)/real(segment%steps, wp)
+      if (path%by_gradient) then
+        call apply_gradient(walker, material, &
+            gradient + fraction*(segment%gradient - gradient), verdict)
+      else
+        call lead_point(walker%state, material, path%by_stress, &
+            start + fraction*(segment%goal - start), verdict)
+      end if
+      if (verdict%outcome /= verdict_converged) then
+        call fatal_error(error, "point "//path%name//", step "// &
+            to_text(walker%increment + 1)//": "//trim(verdict%reason))
+        return
+      end if
+      walker%increment = walker%increment + 1
+      walker%waiting = mod(walker%increment, walker%every) /= 0
+      if (.not. walker%waiting) call write_row(walker, material, path, record, error)
+      if (allocated(error)) return
+      if (interrupted()) then
+        call fatal_error(error, "interrupted by the user in point "//path%name//", step "// &
+            to_text(walker%increment))
+        return
+      end if
+    end do
+  end subroutine run_segment
+
+  !> Bring a material point to a deformation gradient.
+  subroutine apply_gradient(walker, material, gradient, verdict)
+    type(walker_t), intent(inout) :: walker
+    type(material_t), intent(in) :: material
+    !> Relative to the start.
+    real(wp), intent(in) :: gradient(3, 3)
+    type(verdict_t), intent(out) :: verdict
+
+    real(wp) :: inverse_before(3, 3), strain(6), rotation(3, 3)
+    logical :: regular
+
+    call inverse(walker%gradient, inverse_before, regular)
+    regular = regular .and. determinant(gradient) > 0.0_wp
+    if (.not. regular) verdict%reason = "det F is not positive"
+    if (.not. regular) return
+    call polar_increment(matmul(gradient, inverse_before), strain, rotation)
+    call strain_point(walker%state, material, kelvin_factor*strain, rotation, verdict)
+    if (verdict%outcome /= verdict_converged) return
+    walker%gradient = gradient
+    walker%state%strain = left_strain(gradient)
+  end subroutine apply_gradient
+
+  !> Return the logarithm of the left stretch, ln V of F = V R, Kelvin: the strain in the axes of
+  !> the stress.
+  function left_strain(gradient) result(strain)
+    !> Deformation gradient F.
+    real(wp), intent(in) :: gradient(3, 3)
+    real(wp) :: strain(6)
+
+    real(wp) :: values(3), vectors(3, 3), logarithm(3, 3)
+    integer :: i
+
+    call symmetric_eigen(matmul(gradient, transpose(gradient)), values, vectors)
+    do i = 1, 3
+      logarithm(:, i) = 0.5_wp*log(values(i))*vectors(:, i)
+    end do
+    strain = kelvin_from_tensor(matmul(logarithm, transpose(vectors)))
+  end function left_strain
+
+  !> Write the row of a state.
+  subroutine write_row(walker, material, path, record, error)
+    type(walker_t), intent(inout) :: walker
+    type(material_t), intent(in) :: material
+    type(path_t), intent(in) :: path
+    type(point_record_t), intent(inout) :: record
+    !> Set if the row cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(point_row_t) :: row
+
+    row%increment = walker%increment
+    row%point = path%name
+    row%strain = walker%state%strain
+    row%stress = global_stress(walker%state)
+    row%plastic = walker%state%internal(1)
+    row%flow_stress = material%flow_stress(walker%state%internal)
+    call record%write(row, error)
+    walker%waiting = .false.
+  end subroutine write_row
+
+end module dd3_point_run

@@ -1,0 +1,81 @@
+!> One attempt at an increment: what limited it, how the corrector and the linear solver proceeded,
+!> how it ended. The records and the messages to the user are made from it.
+module dd3_process_attempt
+  use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_t
+  use dd3_system_solve, only : solve_info_t
+  implicit none
+  private
+  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction, status_memory
+
+  !> Number of iterations whose contact status is kept, to detect cycles.
+  integer, parameter :: status_memory = 3
+
+  !> Upper bound of the factor r, and where it comes from; 0 for what has no meaning.
+  type :: limit_t
+    real(wp) :: r = huge(1.0_wp)
+    !> Name of the limiter.
+    character(len=16) :: name = ""
+    integer :: element = 0, point = 0, node = 0, tool = 0
+    !> Size B of the contact force, eq. (16), of the limiter of contact forces, N.
+    real(wp) :: force_size = 0.0_wp
+  end type limit_t
+
+  !> Course of the corrector.
+  type :: correction_t
+    !> Criterion of convergence, eq. (19), after each iteration.
+    real(wp), allocatable :: criterion(:)
+    !> Contact status in the last iterations, the newest first, `(n_contact, status_memory)`; -1
+    !> before the first one.
+    integer, allocatable :: status(:, :)
+    !> Node with the largest residual, and that residual, N.
+    integer :: worst_node = 0
+    real(wp) :: worst_residual = 0.0_wp
+    !> Increment of the contact forces in the last iteration, `(3, n_contact)`, N.
+    real(wp), allocatable :: lambda_increment(:, :)
+  end type correction_t
+
+  !> An attempt.
+  type :: attempt_t
+    !> Number of the attempt at this increment, from 1.
+    integer :: number = 1
+    !> Factor r with its limiter.
+    type(limit_t) :: limit
+    !> Bound by the limiter of contact forces alone; its name is empty if it sets none.
+    type(limit_t) :: force_limit
+    type(correction_t) :: correction
+    type(solve_info_t) :: solver
+    type(verdict_t) :: verdict
+  end type attempt_t
+
+contains
+
+  !> Make the first attempt at an increment.
+  subroutine new_attempt(self, n_contact)
+    type(attempt_t), intent(inout) :: self
+    !> Number of contact candidates.
+    integer, intent(in) :: n_contact
+
+    self%number = 1
+    self%limit = limit_t()
+    self%force_limit = limit_t()
+    self%solver = solve_info_t()
+    self%verdict = verdict_t()
+    call clear_correction(self%correction, n_contact)
+  end subroutine new_attempt
+
+  !> Reset the course of the corrector before its first iteration.
+  subroutine clear_correction(self, n_contact)
+    type(correction_t), intent(inout) :: self
+    integer, intent(in) :: n_contact
+
+    self%criterion = [real(wp) ::]
+    if (.not. allocated(self%status)) &
+      allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
+    self%status = -1
+    self%lambda_increment = 0.0_wp
+    self%worst_node = 0
+    self%worst_residual = 0.0_wp
+  end subroutine clear_correction
+
+end module dd3_process_attempt

@@ -1,0 +1,114 @@
+!> Reports on an attempt: its row of status.csv, and the message if it was the last one.
+module dd3_process_attempt_report
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_converged
+  use dd3_contact_operator, only : status_gap, status_slip, status_stick
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_output_status, only : status_row_t
+  use dd3_process_stepper, only : stepper_t
+  implicit none
+  private
+  public :: status_row, failure_message
+
+contains
+
+  !> Return the row of status.csv, as if no further attempt followed.
+  function status_row(model, committed, stepper) result(row)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(stepper_t), intent(in) :: stepper
+    type(status_row_t) :: row
+
+    associate (attempt => stepper%attempt, phase => model%phase(committed%phase))
+      row%increment = committed%increment + 1
+      row%attempt = attempt%number
+      row%phase = phase%name
+      row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
+      row%r = attempt%limit%r
+      row%limiter = attempt%limit%name
+      row%limiter_element = attempt%limit%element
+      row%limiter_point = attempt%limit%point
+      row%limiter_node = attempt%limit%node
+      row%limiter_tool = tool_name(model, attempt%limit%tool)
+      row%r_force = attempt%force_limit%r
+      row%force_node = attempt%force_limit%node
+      row%force_tool = tool_name(model, attempt%force_limit%tool)
+      row%force_size = attempt%force_limit%force_size
+      row%solver_iterations = attempt%solver%iterations
+      row%solver = attempt%solver%solver(:len(row%solver))
+      associate (status => stepper%system%contact%status)
+        row%gap = count(status == status_gap)
+        row%stick = count(status == status_stick)
+        row%slip = count(status == status_slip)
+      end associate
+      if (attempt%verdict%outcome == verdict_converged) then
+        row%outcome = "accepted"
+        row%reason = attempt%solver%reason
+      else
+        row%outcome = "failed"
+        row%reason = attempt%verdict%reason
+      end if
+    end associate
+    call add_corrector(row, stepper)
+  end function status_row
+
+  !> Add the course of the corrector to a row.
+  subroutine add_corrector(row, stepper)
+    type(status_row_t), intent(inout) :: row
+    type(stepper_t), intent(in) :: stepper
+
+    associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
+      row%iterations = verdict%iterations
+      if (size(correction%criterion) > 0) &
+        row%criterion = correction%criterion(size(correction%criterion))
+      if (verdict%element > 0) then
+        row%worst_element = verdict%element
+        row%worst_point = verdict%point
+      else if (correction%worst_node > 0) then
+        row%worst_node = correction%worst_node
+        row%worst_residual = correction%worst_residual
+      end if
+    end associate
+  end subroutine add_corrector
+
+  !> Return the name of a tool; empty for 0.
+  function tool_name(model, tool) result(name)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: name
+
+    name = ""
+    if (tool > 0) name = model%tool(tool)%name
+  end function tool_name
+
+  !> Return what the user is told if an increment fails: where, and why.
+  function failure_message(model, committed, stepper) result(message)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(stepper_t), intent(in) :: stepper
+    character(len=:), allocatable :: message
+
+    integer :: c
+
+    associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
+      message = "increment "//to_text(committed%increment + 1)//" of phase '" &
+        //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel) &
+        //" mm) did not converge"
+      if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
+      message = message//": "//trim(verdict%reason)
+      if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
+        //" point "//to_text(verdict%point)
+      if (verdict%node == 0) return
+      associate (x => committed%x(:, verdict%node))
+        message = message//", node "//to_text(verdict%node)//" at "//to_text(x(1), 5)//" " &
+          //to_text(x(2), 5)//" "//to_text(x(3), 5)
+      end associate
+      c = model%candidate_of(verdict%node)
+      if (c == 0) return
+      if (stepper%system%contact%tool(c) > 0) message = message//", tool " &
+        //model%tool(stepper%system%contact%tool(c))%name
+    end associate
+  end function failure_message
+
+end module dd3_process_attempt_report

@@ -1,0 +1,88 @@
+!> End of a phase and its outputs of fields, as progress of the phase.
+module dd3_process_phase_end
+  use dd3_base_kinds, only : wp
+  use dd3_input_case, only : until_displacement
+  use dd3_model_model, only : model_t, output_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: phase_is_over, next_output_progress, until_value, progress_tolerance
+
+  !> Fraction of a phase within which its end, or an output, is met.
+  real(wp), parameter :: progress_tolerance = 1.0e-9_wp
+  !> Relative tolerances of an early end by displacement and by force.
+  real(wp), parameter :: displacement_tolerance = 1.0e-6_wp, force_tolerance = 1.0e-3_wp
+
+contains
+
+  !> Whether the running phase of a state has come to its end, or to its early end.
+  logical function phase_is_over(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    associate (phase => model%phase(state%phase))
+      phase_is_over = state%progress >= 1.0_wp - progress_tolerance
+      if (phase%until%tool > 0) phase_is_over = phase_is_over .or. until_met(phase, state)
+    end associate
+  end function phase_is_over
+
+  !> Whether the early end is met.
+  logical function until_met(phase, state)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
+
+    real(wp) :: tolerance, value
+
+    tolerance = force_tolerance
+    if (phase%until%kind == until_displacement) tolerance = displacement_tolerance
+    value = abs(until_value(phase, state))
+    if (state%start%until_from_below) then
+      until_met = value >= phase%until%value*(1.0_wp - tolerance)
+    else
+      until_met = value <= phase%until%value*(1.0_wp + tolerance)
+    end if
+  end function until_met
+
+  !> Return the quantity that ends a phase early: the displacement of its tool along its line since
+  !> the start of the phase, mm, or the force on it along that line, N.
+  pure real(wp) function until_value(phase, state) result(value)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
+
+    associate (tool => phase%until%tool)
+      if (phase%until%kind == until_displacement) then
+        value = dot_product(phase%direction(:, tool), &
+            state%tool_displacement(:, tool) - state%start%tool_displacement(:, tool))
+      else
+        value = dot_product(phase%direction(:, tool), state%tool_force(:, tool))
+      end if
+    end associate
+  end function until_value
+
+  !> Return the progress at the next output of fields; a huge value if none is left in the phase.
+  pure real(wp) function next_output_progress(output, phase, state) result(progress)
+    type(output_t), intent(in) :: output
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
+
+    real(wp) :: travel
+    integer :: i
+
+    progress = huge(1.0_wp)
+    if (phase%length <= 0.0_wp) return
+    travel = state%progress*phase%length
+    if (output%fields_every > 0.0_wp) then
+      progress = (aint(travel/output%fields_every + progress_tolerance) + 1) &
+        *output%fields_every/phase%length
+    else if (allocated(output%fields_at)) then
+      do i = 1, size(output%fields_at)
+        if (output%fields_at(i) <= travel + progress_tolerance*phase%length) cycle
+        progress = output%fields_at(i)/phase%length
+        exit
+      end do
+    end if
+    if (progress > 1.0_wp) progress = huge(1.0_wp)
+  end function next_output_progress
+
+end module dd3_process_phase_end

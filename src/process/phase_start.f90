@@ -1,0 +1,151 @@
+!> Start of a phase: a transition from the state at the end of the phase before. It depends on the
+!> model and the state alone, and stores all that the phase starts from in the state.
+module dd3_process_phase_start
+  use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_operator, only : status_gap
+  use dd3_input_case, only : until_force
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : closed, tangential, tool_search
+  use dd3_process_phase_end, only : until_value
+  implicit none
+  private
+  public :: begin_phase, gap_of_tool
+
+  !> Largest number of advances of a pressed tool towards the sheet; each covers the smallest gap.
+  integer, parameter :: most_advances = 200
+
+contains
+
+  !> Begin a phase: forces continue from their present values, released contacts become forces that
+  !> fade over the phase, and a pressed tool without contact approaches the sheet.
+  !>
+  !> A release is predicted elastic: beyond the largest force that a tool can bear, the tangents of
+  !> loading would continue along the falling branch instead of unloading.
+  subroutine begin_phase(model, number, state)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> The committed state.
+    type(state_t), intent(inout) :: state
+
+    integer :: tool
+
+    state%phase = number
+    state%begun = .true.
+    state%progress = 0.0_wp
+    associate (phase => model%phase(number), start => state%start)
+      start%load = state%load
+      start%load_end = phase%load_end
+      where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
+      call set_tool_loads(phase, state)
+      if (phase%until%kind == until_force) start%until_from_below = &
+        abs(until_value(phase, state)) <= phase%until%value
+      call release_contacts(phase, state)
+      do tool = 1, model%n_tool
+        if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
+      end do
+      start%tool_displacement = state%tool_displacement
+      start%plastic_strain = state%internal_variables(1, :, :)
+    end associate
+  end subroutine begin_phase
+
+  !> Set the forces pressed on the tools at the start and at the end of a phase. A tool that was
+  !> held or moved until now starts from the force that it bears along its line.
+  subroutine set_tool_loads(phase, state)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(inout) :: state
+
+    integer :: tool
+
+    associate (start => state%start)
+      start%tool_load = 0.0_wp
+      do tool = 1, size(phase%pressed)
+        if (.not. phase%pressed(tool)) cycle
+        if (norm2(state%tool_load(:, tool)) > 0.0_wp) then
+          start%tool_load(:, tool) = state%tool_load(:, tool)
+        else
+          start%tool_load(:, tool) = phase%direction(:, tool) &
+              *max(0.0_wp, -dot_product(phase%direction(:, tool), state%tool_force(:, tool)))
+        end if
+      end do
+      start%tool_load_end = phase%tool_load_end
+      where (spread(phase%pressed .and. phase%keeps_tool_load, 1, 3)) &
+        start%tool_load_end = start%tool_load
+    end associate
+  end subroutine set_tool_loads
+
+  !> Turn the contact forces of released tools into fading forces.
+  subroutine release_contacts(phase, state)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(inout) :: state
+
+    integer :: c, tool
+    logical :: released
+
+    released = .false.
+    do c = 1, size(state%contact_tool)
+      tool = state%contact_tool(c)
+      if (tool == 0) cycle
+      if (phase%active(tool)) cycle
+      state%fading(:, c) = state%fading(:, c) + state%lambda(:, c)
+      state%fading_tool(c) = tool
+      state%lambda(:, c) = 0.0_wp
+      state%status(c) = status_gap
+      state%contact_tool(c) = 0
+      released = .true.
+    end do
+    state%start%fading = state%fading
+    if (released) state%plastic = .false.
+  end subroutine release_contacts
+
+  !> Move a pressed tool without contact along its line to first contact.
+  subroutine approach(model, tool, state)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    type(state_t), intent(inout) :: state
+
+    real(wp) :: gap, facing
+    integer :: k
+
+    if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
+    do k = 1, most_advances
+      call gap_of_tool(model, tool, state, gap, facing)
+      if (gap <= closed .or. gap > tool_search .or. facing <= tangential) return
+      state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
+          + gap*model%phase(state%phase)%direction(:, tool)
+    end do
+  end subroutine approach
+
+  !> Find the smallest gap between a pressed tool and its candidates.
+  subroutine gap_of_tool(model, tool, state, gap, facing)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    type(state_t), intent(in) :: state
+    !> Smallest gap, mm; a huge value if no candidate lies before the tool.
+    real(wp), intent(out) :: gap
+    !> Largest component of the tool's normals at these candidates along the direction of its
+    !> force; negative if the force points away from the sheet.
+    real(wp), intent(out) :: facing
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    integer :: c
+
+    gap = huge(1.0_wp)
+    facing = -1.0_wp
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      hint = hint_t()
+      call find_contact(model%tool(tool)%surface, &
+          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
+          tool_search, model%contact_depth, hit)
+      if (.not. hit%found) cycle
+      gap = min(gap, hit%distance)
+      facing = max(facing, dot_product(hit%normal, model%phase(state%phase)%direction(:, tool)))
+    end do
+  end subroutine gap_of_tool
+
+end module dd3_process_phase_start

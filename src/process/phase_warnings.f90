@@ -1,0 +1,131 @@
+!> Warnings at the start and at the end of a phase: a pressed tool that does not meet the sheet, an
+!> unsupported sheet, yielding during a release.
+module dd3_process_phase_warnings
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_operator, only : status_gap
+  use dd3_linalg_tensor, only : identity
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : tangential, tool_search, touch
+  use dd3_process_phase_start, only : gap_of_tool
+  implicit none
+  private
+  public :: press_warning, release_warning, support_warning
+
+  !> Increase of plastic strain in a release that is reported.
+  real(wp), parameter :: notable_strain = 1.0e-3_wp
+
+contains
+
+  !> Return a warning if a pressed tool does not come to contact at the start of a phase: its force
+  !> points the wrong way, or no candidate lies ahead of it. Empty otherwise.
+  function press_warning(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the start of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: gap, facing
+    integer :: tool
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      do tool = 1, model%n_tool
+        if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
+        if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
+        call gap_of_tool(model, tool, state, gap, facing)
+        if (facing > tangential .and. gap <= touch) cycle
+        text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
+          "' does not meet the sheet along its force"
+        if (gap <= tool_search .and. facing < -tangential) text = "warning: in phase '"// &
+          phase%name//"' the force on tool '"//model%tool(tool)%name// &
+          "' points away from the sheet; is its sign wrong?"
+        return
+      end do
+    end associate
+  end function press_warning
+
+  !> Return a warning if neither supports nor tools in contact hold the sheet at the start of a
+  !> phase. Empty otherwise.
+  function support_warning(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the start of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    type(rigid_motion_t) :: body
+    integer :: tool
+
+    associate (phase => model%phase(state%phase))
+      call new_rigid_motion(body, state%x)
+      call body%hold_prescribed(state%x, phase%prescribed)
+      text = body%free_motion()
+      if (len(text) == 0) return
+      do tool = 1, model%n_tool
+        if (phase%active(tool)) call hold_in_contact(body, model, phase, state, tool)
+      end do
+      text = body%free_motion()
+      if (len(text) > 0) text = "warning: at the start of phase '"//phase%name// &
+        "' nothing holds the sheet: it is free to "//text//"; supports are missing, or a tool "// &
+        "in contact from the start"
+    end associate
+  end function support_warning
+
+  !> Hold a body where a tool is in contact, in the normal direction and, with friction, in the
+  !> tangential ones; a pressed tool does not hold along its line.
+  subroutine hold_in_contact(body, model, phase, state, tool)
+    type(rigid_motion_t), intent(inout) :: body
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    real(wp) :: direction(3)
+    integer :: c, d
+
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      associate (x => state%x(:, model%contact_node(c)))
+        hint = hint_t()
+        call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
+            touch, model%contact_depth, hit)
+        if (.not. hit%found) cycle
+        do d = 0, 3
+          direction = hit%normal
+          if (d > 0) direction = model%tool(tool)%friction*identity(:, d)
+          if (phase%pressed(tool)) direction = direction &
+            - dot_product(direction, phase%direction(:, tool))*phase%direction(:, tool)
+          call body%hold(x, direction)
+        end do
+      end associate
+    end do
+  end subroutine hold_in_contact
+
+  !> Return a warning if the sheet yields while forces of released tools fade: as loads of constant
+  !> direction they may deform it where withdrawn tools would not. Empty otherwise.
+  function release_warning(phase, state) result(text)
+    type(phase_t), intent(in) :: phase
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: increase(size(state%plastic, 1), size(state%plastic, 2))
+    integer :: place(2)
+
+    text = ""
+    if (all(abs(state%start%fading) <= 0.0_wp)) return
+    increase = state%internal_variables(1, :, :) - state%start%plastic_strain
+    place = maxloc(increase)
+    if (increase(place(1), place(2)) > notable_strain) text = "warning: in phase '"// &
+      phase%name//"' the plastic strain of element "//to_text(place(2))//" increased by "// &
+      to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
+      "compare with tools withdrawn by `move`"
+  end function release_warning
+
+end module dd3_process_phase_warnings

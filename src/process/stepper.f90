@@ -1,0 +1,17 @@
+!> What increments are made with: the system of equations, the prediction and the present attempt.
+module dd3_process_stepper
+  use dd3_process_attempt, only : attempt_t
+  use dd3_process_predictor, only : prediction_t
+  use dd3_system_system, only : system_t
+  implicit none
+  private
+  public :: stepper_t
+
+  !> Work data of the increments; nothing in it outlives an increment but the solver's memory.
+  type :: stepper_t
+    type(system_t) :: system
+    type(prediction_t) :: prediction
+    type(attempt_t) :: attempt
+  end type stepper_t
+
+end module dd3_process_stepper
