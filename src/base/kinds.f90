@@ -1,15 +1,17 @@
-!> The kinds of numbers used everywhere.
+!> Kinds and mathematical constants.
 module dd3_base_kinds
   use, intrinsic :: iso_fortran_env, only : real64, int64
   implicit none
   private
-  public :: wp, i8, pi
+  public :: wp, i8, pi, sqrt2, half_sqrt2
 
-  !> Working precision of every real number.
+  !> Working precision of real numbers.
   integer, parameter :: wp = real64
   !> Long integers: clocks and hashes.
   integer, parameter :: i8 = int64
   !> Ratio of a circle's circumference to its diameter.
   real(wp), parameter :: pi = 3.141592653589793_wp
+  !> Square root of two, and half of it; 1/sqrt2 differs from the latter in the last bit.
+  real(wp), parameter :: sqrt2 = sqrt(2.0_wp), half_sqrt2 = 0.5_wp*sqrt2
 
 end module dd3_base_kinds

@@ -1,6 +1,5 @@
-!> Innermost kernel of the incomplete factorisation. It has a file of its own so that it is not
-!> merged into its caller: as arguments its arrays are known not to overlap, and the loop is free of
-!> tests.
+!> Innermost kernel of the incomplete factorisation, in a file of its own so that it is not inlined:
+!> as dummy arguments its arrays cannot overlap, so the loop vectorises without run-time tests.
 module dd3_linalg_elimination
   use dd3_base_kinds, only : wp
   implicit none
@@ -9,16 +8,12 @@ module dd3_linalg_elimination
 
 contains
 
-  !> Innermost kernel: (w1, w2, w3) := (w1, w2, w3) - l (u1, u2, u3), along a stretch.
+  !> Kernel: subtract l times three scalar rows u of U from the three scalar rows w.
   pure subroutine subtract(n, l, u1, u2, u3, w1, w2, w3)
-    !> Length of the stretch.
     integer, intent(in) :: n
-    !> The multiplier.
-    real(wp), intent(in) :: l(3, 3)
-    !> Plain rows of U.
-    real(wp), intent(in) :: u1(n), u2(n), u3(n)
-    !> Plain rows worked on.
+    real(wp), intent(in) :: l(3, 3), u1(n), u2(n), u3(n)
     real(wp), intent(inout) :: w1(n), w2(n), w3(n)
+
     integer :: c
 
     do c = 1, n

@@ -1,6 +1,4 @@
-!> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns, and its pattern
-!> from the elements' connectivity. The product keeps one partial sum per column of the blocks, so
-!> that no addition has to wait for the one before it.
+!> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns.
 module dd3_linalg_matrix
   use dd3_base_kinds, only : wp
   implicit none
@@ -16,36 +14,32 @@ module dd3_linalg_matrix
     integer, allocatable :: row_start(:)
     !> Block column of each block, ascending within a row.
     integer, allocatable :: column(:)
-    !> Where the diagonal block of each row stands, `(n)`.
+    !> Position of the diagonal block of each row, `(n)`.
     integer, allocatable :: diagonal(:)
-    !> The blocks: row component, column component, block, `(3, 3, :)`.
+    !> Blocks: row component, column component, block, `(3, 3, :)`.
     real(wp), allocatable :: value(:, :, :)
   end type block_matrix_t
 
-  !> Lists one after the other: list i is `item(start(i):start(i + 1) - 1)`.
+  !> Several lists in one array: list i is `item(start(i):start(i + 1) - 1)`.
   type :: lists_t
-    !> Where each list begins.
-    integer, allocatable :: start(:)
-    !> Members of all lists.
-    integer, allocatable :: item(:)
+    integer, allocatable :: start(:), item(:)
   end type lists_t
 
 contains
 
-  !> Builds the pattern of a mesh: the nodes of one element are coupled. Extra block rows and
-  !> columns come after the nodes'; each is coupled with a list of nodes and with itself. All values
-  !> are zero.
+  !> Create a zero matrix with the pattern of a mesh, in which the nodes of an element are coupled.
+  !> Extra block rows and columns, each coupled with a list of nodes and with itself, follow those of
+  !> the nodes.
   subroutine new_pattern(self, n_node, connectivity, extra_start, extra_node)
-    !> The matrix made.
     type(block_matrix_t), intent(out) :: self
-    !> Number of nodes.
     integer, intent(in) :: n_node
     !> Nodes of each element, `(n_element_node, n_element)`.
     integer, intent(in) :: connectivity(:, :)
     !> Where the nodes of each extra row begin in `extra_node`, `(n_extra + 1)`.
     integer, intent(in), optional :: extra_start(:)
-    !> Nodes of the extra rows, one list after the other.
+    !> Nodes of the extra rows.
     integer, intent(in), optional :: extra_node(:)
+
     type(lists_t) :: element, extra, at_element, at_extra
     integer, allocatable :: marker(:), row_start(:), column(:)
     integer :: i, n, n_extra, n_row, m, pass
@@ -69,11 +63,11 @@ contains
       row_start(1) = 1
       do i = 1, n
         n_row = 0
-        call take(i)
+        call add_column(i)
         if (i <= n_node) then
-          call take_node(i)
+          call add_node(i)
         else
-          call take_list(extra, i - n_node)
+          call add_list(extra, i - n_node)
         end if
         row_start(i + 1) = row_start(i) + n_row
         if (pass == 2) call sort(column(row_start(i):row_start(i + 1) - 1))
@@ -87,55 +81,50 @@ contains
 
   contains
 
-    !> Takes all that is coupled with a node into the row.
-    subroutine take_node(node)
-      !> The node.
+    !> Add the columns coupled with a node to the row.
+    subroutine add_node(node)
       integer, intent(in) :: node
+
       integer :: k
 
       do k = at_element%start(node), at_element%start(node + 1) - 1
-        call take_list(element, at_element%item(k))
+        call add_list(element, at_element%item(k))
       end do
       do k = at_extra%start(node), at_extra%start(node + 1) - 1
-        call take(n_node + at_extra%item(k))
+        call add_column(n_node + at_extra%item(k))
       end do
-    end subroutine take_node
+    end subroutine add_node
 
-    !> Takes the members of a list into the row.
-    subroutine take_list(lists, number)
-      !> The lists.
+    !> Add the columns of one list to the row.
+    subroutine add_list(lists, number)
       type(lists_t), intent(in) :: lists
-      !> Which of them.
       integer, intent(in) :: number
+
       integer :: k
 
       do k = lists%start(number), lists%start(number + 1) - 1
-        call take(lists%item(k))
+        call add_column(lists%item(k))
       end do
-    end subroutine take_list
+    end subroutine add_list
 
-    !> Takes one column into the row, unless it is there already.
-    subroutine take(j)
-      !> The column.
+    !> Add column j to the row unless it is there already.
+    subroutine add_column(j)
       integer, intent(in) :: j
 
       if (marker(j) == i) return
       marker(j) = i
       if (pass == 2) column(row_start(i) + n_row) = j
       n_row = n_row + 1
-    end subroutine take
+    end subroutine add_column
 
   end subroutine new_pattern
 
-  !> Builds a matrix of a given pattern; a diagonal block that is missing is added. All values are
-  !> zero.
+  !> Create a zero matrix of a given pattern; missing diagonal blocks are added.
   subroutine new_pattern_from_rows(self, row_start, column)
-    !> The matrix made.
     type(block_matrix_t), intent(out) :: self
-    !> Where each block row begins in `column`, `(n + 1)`.
-    integer, intent(in) :: row_start(:)
-    !> Block columns, ascending within a row.
-    integer, intent(in) :: column(:)
+    !> See `block_matrix_t`.
+    integer, intent(in) :: row_start(:), column(:)
+
     integer :: i, k, next
 
     self%n = size(row_start) - 1
@@ -158,9 +147,8 @@ contains
 
   contains
 
-    !> Notes the place of the diagonal block, and makes it where it is missing.
+    !> Set the position of the diagonal block and insert it if missing.
     subroutine add_diagonal(missing)
-      !> Whether it is missing.
       logical, intent(in) :: missing
 
       self%diagonal(i) = next
@@ -171,40 +159,39 @@ contains
 
   end subroutine new_pattern_from_rows
 
-  !> Turns lists round: list j of the result holds the numbers of the lists that hold j.
-  subroutine transpose_lists(lists, n, turned)
-    !> The lists.
+  !> Invert lists: list j of the result holds the numbers of the lists that hold j.
+  subroutine transpose_lists(lists, n, transposed)
     type(lists_t), intent(in) :: lists
-    !> Largest member.
+    !> Largest item.
     integer, intent(in) :: n
-    !> The lists turned round.
-    type(lists_t), intent(out) :: turned
+    type(lists_t), intent(out) :: transposed
+
     integer, allocatable :: next(:)
     integer :: i, j, k
 
-    allocate (turned%start(n + 1), turned%item(size(lists%item)))
-    turned%start = 0
+    allocate (transposed%start(n + 1), transposed%item(size(lists%item)))
+    transposed%start = 0
     do k = 1, size(lists%item)
-      turned%start(lists%item(k) + 1) = turned%start(lists%item(k) + 1) + 1
+      transposed%start(lists%item(k) + 1) = transposed%start(lists%item(k) + 1) + 1
     end do
-    turned%start(1) = 1
+    transposed%start(1) = 1
     do j = 1, n
-      turned%start(j + 1) = turned%start(j + 1) + turned%start(j)
+      transposed%start(j + 1) = transposed%start(j + 1) + transposed%start(j)
     end do
-    next = turned%start
+    next = transposed%start
     do i = 1, size(lists%start) - 1
       do k = lists%start(i), lists%start(i + 1) - 1
         j = lists%item(k)
-        turned%item(next(j)) = i
+        transposed%item(next(j)) = i
         next(j) = next(j) + 1
       end do
     end do
   end subroutine transpose_lists
 
-  !> Sorts numbers upwards by insertion, fast for lists that are nearly in order.
+  !> Sort numbers in ascending order (insertion sort, fast for nearly sorted lists).
   pure subroutine sort(list)
-    !> The numbers.
     integer, intent(inout) :: list(:)
+
     integer :: i, j, moved
 
     do i = 2, size(list)
@@ -219,16 +206,15 @@ contains
     end do
   end subroutine sort
 
-  !> Finds where the blocks of each element go: block (node a, node b) of element e is added to
-  !> `value(:, :, position(a, b, e))`.
+  !> Find the positions in `value` of the blocks of each element.
   subroutine find_positions(self, connectivity, position)
-    !> The matrix.
     type(block_matrix_t), intent(in) :: self
     !> Nodes of each element, `(n_element_node, n_element)`.
     integer, intent(in) :: connectivity(:, :)
-    !> Position of each block, `(n_element_node, n_element_node, n_element)`; 0 where none is
-    !> stored.
+    !> Row node, column node, element, `(n_element_node, n_element_node, n_element)`; 0 if the
+    !> pattern lacks the block.
     integer, allocatable, intent(out) :: position(:, :, :)
+
     integer :: a, b, e, m
 
     m = size(connectivity, 1)
@@ -242,12 +228,12 @@ contains
     end do
   end subroutine find_positions
 
-  !> Where a block is stored; 0 if it is not.
+  !> Return the position in `value` of a block; 0 if the pattern lacks it.
   pure integer function position_of(self, row, column)
-    !> The matrix.
     type(block_matrix_t), intent(in) :: self
     !> Block row and column.
     integer, intent(in) :: row, column
+
     integer :: low, high, middle
 
     position_of = 0
@@ -266,29 +252,24 @@ contains
     end do
   end function position_of
 
-  !> Sets all blocks to zero.
+  !> Set all blocks to zero.
   pure subroutine clear(self)
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: self
 
     call set_zero(size(self%value), self%value)
   end subroutine clear
 
-  !> Kernel of `clear`: one stretch, where the array of blocks would be cleared block by block.
+  !> Kernel of `clear`, on a flat array: gfortran clears an array of blocks block by block.
   pure subroutine set_zero(n, value)
-    !> Number of values.
     integer, intent(in) :: n
-    !> The values.
     real(wp), intent(out) :: value(n)
 
     value = 0.0_wp
   end subroutine set_zero
 
-  !> Copies the blocks of a matrix into one of the same pattern.
+  !> Copy the blocks of a matrix into one of the same pattern.
   pure subroutine copy_blocks(from, to)
-    !> The matrix copied.
     type(block_matrix_t), intent(in) :: from
-    !> Its copy.
     type(block_matrix_t), intent(inout) :: to
 
     call copy_values(size(from%value), from%value, to%value)
@@ -296,25 +277,21 @@ contains
 
   !> Kernel of `copy_blocks`.
   pure subroutine copy_values(n, from, to)
-    !> Number of values.
     integer, intent(in) :: n
-    !> The values.
     real(wp), intent(in) :: from(n)
-    !> Their copies.
     real(wp), intent(out) :: to(n)
 
     to = from
   end subroutine copy_values
 
-  !> Adds the blocks of an element.
+  !> Add the blocks of an element.
   pure subroutine add_element(self, n_node, position, block)
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: self
     !> Number of nodes of the element.
     integer, intent(in) :: n_node
-    !> Where they go: row node, column node.
+    !> Positions found by `find_positions`: row node, column node.
     integer, intent(in) :: position(n_node, n_node)
-    !> The blocks: row component, column component, column node, row node.
+    !> Blocks: row and column component, column node, row node.
     real(wp), intent(in) :: block(9, n_node, n_node)
 
     call add_blocks(n_node, position, block, size(self%column), self%value)
@@ -322,16 +299,11 @@ contains
 
   !> Kernel of `add_element`.
   pure subroutine add_blocks(n_node, position, block, n_block, value)
-    !> Number of nodes of the element.
-    integer, intent(in) :: n_node
-    !> See `add_element`.
-    integer, intent(in) :: position(n_node, n_node)
-    !> See `add_element`.
+    integer, intent(in) :: n_node, position(n_node, n_node)
     real(wp), intent(in) :: block(9, n_node, n_node)
-    !> Number of blocks of the matrix.
     integer, intent(in) :: n_block
-    !> Blocks of the matrix.
     real(wp), intent(inout) :: value(9, n_block)
+
     integer :: a, b, k
 
     do a = 1, n_node
@@ -342,30 +314,22 @@ contains
     end do
   end subroutine add_blocks
 
-  !> Product y = A x.
+  !> Evaluate the product y = A x.
   pure subroutine multiply(self, x, y)
-    !> The matrix.
     type(block_matrix_t), intent(in) :: self
-    !> The vector, `(3n)`.
     real(wp), intent(in) :: x(3*self%n)
-    !> The product, `(3n)`.
     real(wp), intent(out) :: y(3*self%n)
 
     call multiply_rows(self%n, size(self%column), self%row_start, self%column, self%value, x, y)
   end subroutine multiply
 
-  !> Kernel of the product.
+  !> Kernel of the product, with one partial sum per column of the blocks, so that no addition waits
+  !> for the previous one.
   pure subroutine multiply_rows(n, n_block, row_start, column, value, x, y)
-    !> Number of block rows, and of blocks.
-    integer, intent(in) :: n, n_block
-    !> See `block_matrix_t`.
-    integer, intent(in) :: row_start(n + 1), column(n_block)
-    !> See `block_matrix_t`.
-    real(wp), intent(in) :: value(3, 3, n_block)
-    !> The vector.
-    real(wp), intent(in) :: x(3, n)
-    !> The product.
+    integer, intent(in) :: n, n_block, row_start(n + 1), column(n_block)
+    real(wp), intent(in) :: value(3, 3, n_block), x(3, n)
     real(wp), intent(out) :: y(3, n)
+
     real(wp) :: a(3), b(3), c(3)
     integer :: i, j, k
 

@@ -1,4 +1,4 @@
-!> Numberings of the block rows for the incomplete factorisation: none, approximate minimum degree
+!> Orderings of the block rows for the incomplete factorisation: none, approximate minimum degree
 !> (Amestoy, Davis and Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start
 !> node after George and Liu 1979).
 module dd3_linalg_ordering
@@ -10,40 +10,39 @@ module dd3_linalg_ordering
   private
   public :: find_ordering, ordering_names
 
-  !> The orderings there are.
+  !> Names of the orderings, as written in the input.
   character(len=4), parameter :: ordering_names(3) = [character(len=4) :: "none", "amd", "rcm"]
-  !> Rows coupled with this many times the average number of others, such as those of pressed tools,
-  !> are numbered last.
+  !> Rows with more than this many times the average number of blocks, such as those of pressed
+  !> tools, are numbered last by reverse Cuthill-McKee.
   integer, parameter :: dense_factor = 3
 
   interface
-    !> Approximate minimum degree ordering of a pattern, 0-based.
-    integer(c_int) function amd_order(n, start, row, permutation, control, info) bind(c, &
-      name="amd_order")
+    !> Approximate minimum degree ordering of SuiteSparse; all indices are 0-based.
+    integer(c_int) function amd_order(n, start, row, permutation, control, info) &
+        bind(c, name="amd_order")
       import :: c_int, c_ptr
-      !> Number of rows.
       integer(c_int), value :: n
       !> Where the columns begin, and their rows.
       integer(c_int), intent(in) :: start(*), row(*)
       !> Original number of each row.
       integer(c_int), intent(out) :: permutation(*)
-      !> Settings and statistics; null for the defaults and for none.
+      !> Control parameters, null for the defaults, and statistics, null for none.
       type(c_ptr), value :: control, info
     end function amd_order
   end interface
 
 contains
 
-  !> Finds a numbering of the block rows.
+  !> Find an ordering of the block rows.
   subroutine find_ordering(name, matrix, order, error)
     !> One of `ordering_names`.
     character(len=*), intent(in) :: name
-    !> A matrix of the pattern.
     type(block_matrix_t), intent(in) :: matrix
-    !> Original number of each row.
+    !> Original number of each block row.
     integer, allocatable, intent(out) :: order(:)
-    !> An unknown name.
+    !> Set for an unknown name or if AMD fails.
     type(error_t), allocatable, intent(out) :: error
+
     integer :: i
 
     select case (name)
@@ -54,25 +53,23 @@ contains
     case ("rcm")
       call reverse_cuthill_mckee(matrix, order)
     case default
-      call fatal_error(error, "unknown ordering "//trim(name)//"; known: "//join(ordering_names, &
-        ", "))
+      call fatal_error(error, "unknown ordering "//trim(name)//"; known: " &
+        //join(ordering_names, ", "))
     end select
   end subroutine find_ordering
 
-  !> Approximate minimum degree.
+  !> Find the approximate minimum degree ordering.
   subroutine minimum_degree(matrix, order, error)
-    !> A matrix of the pattern.
     type(block_matrix_t), intent(in) :: matrix
-    !> Original number of each row.
     integer, allocatable, intent(out) :: order(:)
-    !> The library's refusal.
     type(error_t), allocatable, intent(out) :: error
+
     integer(c_int), allocatable :: permutation(:)
     integer(c_int) :: status
 
     allocate (permutation(matrix%n))
     status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), &
-        int(matrix%column - 1, c_int), permutation, c_null_ptr, c_null_ptr)
+      int(matrix%column - 1, c_int), permutation, c_null_ptr, c_null_ptr)
     if (status < 0) then
       call fatal_error(error, "AMD could not order the matrix")
       return
@@ -80,79 +77,79 @@ contains
     order = int(permutation) + 1
   end subroutine minimum_degree
 
-  !> Reverse Cuthill-McKee, every connected part from a node at its end; dense rows come last.
+  !> Find the reverse Cuthill-McKee ordering; each connected component starts from a peripheral
+  !> node, and dense rows come last.
   subroutine reverse_cuthill_mckee(matrix, order)
-    !> A matrix of the pattern, symmetric in its pattern or nearly so.
+    !> Matrix with a symmetric or nearly symmetric pattern.
     type(block_matrix_t), intent(in) :: matrix
-    !> Original number of each row.
     integer, allocatable, intent(out) :: order(:)
-    logical, allocatable :: taken(:)
+
+    logical, allocatable :: numbered(:)
     integer, allocatable :: degree(:)
     integer :: i, n, first, last, start
 
     n = matrix%n
     degree = matrix%row_start(2:) - matrix%row_start(:n)
-    taken = degree > dense_factor*(size(matrix%column)/n + 1)
+    numbered = degree > dense_factor*(size(matrix%column)/n + 1)
     allocate (order(n))
-    last = count(.not. taken)
-    order(last + 1:) = pack([(i, i=1, n)], taken)
+    last = count(.not. numbered)
+    order(last + 1:) = pack([(i, i=1, n)], numbered)
     first = 1
     do i = 1, n
-      if (taken(i)) cycle
-      start = end_node(matrix, degree, taken, i)
-      call breadth_first(matrix, degree, taken, start, order(first:last), first)
+      if (numbered(i)) cycle
+      start = peripheral_node(matrix, degree, numbered, i)
+      call breadth_first(matrix, degree, numbered, start, order(first:last), first)
     end do
     order(:last) = order(last:1:-1)
   end subroutine reverse_cuthill_mckee
 
-  !> A node at the end of the part that holds a given node: the last one found, until that goes no
-  !> deeper.
-  integer function end_node(matrix, degree, taken, given)
-    !> A matrix of the pattern.
+  !> Return a pseudo-peripheral node of the connected component of a given node: the last node of a
+  !> breadth-first search, repeated while its depth grows.
+  integer function peripheral_node(matrix, degree, numbered, given) result(node)
     type(block_matrix_t), intent(in) :: matrix
     !> Number of blocks in each row.
     integer, intent(in) :: degree(:)
-    !> Rows numbered already.
-    logical, intent(in) :: taken(:)
-    !> The node given.
+    !> Whether each row is numbered already.
+    logical, intent(in) :: numbered(:)
     integer, intent(in) :: given
+
     logical, allocatable :: seen(:)
     integer, allocatable :: queue(:)
-    integer :: found, depth, deepest, round
+    integer :: next, depth, deepest, round
 
     allocate (queue(matrix%n))
-    end_node = given
+    node = given
     deepest = -1
     do round = 1, 8
-      seen = taken
-      found = 1
-      call breadth_first(matrix, degree, seen, end_node, queue, found, depth)
+      seen = numbered
+      next = 1
+      call breadth_first(matrix, degree, seen, node, queue, next, depth)
       if (depth <= deepest) exit
       deepest = depth
-      end_node = queue(found - 1)
+      node = queue(next - 1)
     end do
-  end function end_node
+  end function peripheral_node
 
-  !> Numbers a connected part level by level, neighbours by their degree.
-  subroutine breadth_first(matrix, degree, taken, start, queue, found, depth)
-    !> A matrix of the pattern.
+  !> Number a connected component by breadth-first search, neighbours in order of their degree.
+  subroutine breadth_first(matrix, degree, numbered, start, queue, next, depth)
     type(block_matrix_t), intent(in) :: matrix
     !> Number of blocks in each row.
     integer, intent(in) :: degree(:)
-    !> Rows numbered already.
-    logical, intent(inout) :: taken(:)
+    !> Whether each row is numbered already.
+    logical, intent(inout) :: numbered(:)
     !> First node.
     integer, intent(in) :: start
-    !> The nodes in the order found.
+    !> Nodes of the component in the order found.
     integer, intent(inout) :: queue(:)
-    !> Number of the next node to be found; moved on by the nodes found.
-    integer, intent(inout) :: found
+    !> Next free number; advanced by the number of nodes found.
+    integer, intent(inout) :: next
     !> Number of levels.
     integer, intent(out), optional :: depth
+
     integer :: k, j, read_at, write_at, level_end, at, levels
 
     queue(1) = start
-    taken(start) = .true.
+    numbered(start) = .true.
     write_at = 1
     read_at = 1
     level_end = 1
@@ -161,8 +158,8 @@ contains
       k = write_at
       do at = matrix%row_start(queue(read_at)), matrix%row_start(queue(read_at) + 1) - 1
         j = matrix%column(at)
-        if (taken(j)) cycle
-        taken(j) = .true.
+        if (numbered(j)) cycle
+        numbered(j) = .true.
         write_at = write_at + 1
         queue(write_at) = j
       end do
@@ -173,16 +170,15 @@ contains
       end if
       read_at = read_at + 1
     end do
-    found = found + write_at
+    next = next + write_at
     if (present(depth)) depth = levels
   end subroutine breadth_first
 
-  !> Sorts rows upwards by their degree (insertion).
+  !> Sort rows in ascending order of their degree (insertion sort).
   pure subroutine sort_by_degree(degree, rows)
-    !> Number of blocks in each row.
     integer, intent(in) :: degree(:)
-    !> The rows.
     integer, intent(inout) :: rows(:)
+
     integer :: i, j, moved
 
     do i = 2, size(rows)

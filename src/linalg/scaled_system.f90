@@ -1,6 +1,5 @@
-!> The solvers' own copy of a linear system: renumbered, and each row divided by the sum of its
-!> magnitudes, so that equilibrium rows, contact rows and rows of fixed displacements weigh the
-!> same.
+!> Renumbered, row-scaled copy of a linear system. Each row is divided by the sum of its absolute
+!> values, so that equilibrium, contact and displacement rows have the same weight.
 module dd3_linalg_scaled_system
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
@@ -11,13 +10,13 @@ module dd3_linalg_scaled_system
   private
   public :: scaled_system_t
 
-  !> A renumbered and scaled copy of a linear system.
+  !> Renumbered and scaled copy of a linear system.
   type :: scaled_system_t
-    !> The copy: its block row i is the original's row `order(i)`.
+    !> Copy: its block row i is the original's block row `order(i)`.
     type(block_matrix_t) :: matrix
     !> Original number of each block row, `(n)`.
     integer, allocatable :: order(:)
-    !> Factor of each row of the copy, `(3, n)`.
+    !> Factor of each scalar row of the copy, `(3, n)`.
     real(wp), allocatable :: scale(:, :)
     !> Position in the original of each block of the copy.
     integer, allocatable :: source(:)
@@ -25,19 +24,18 @@ module dd3_linalg_scaled_system
     procedure :: setup => scaled_system_setup
     procedure :: fill => scaled_system_fill
     procedure :: scale_rhs => scaled_system_scale_rhs
-    procedure :: give_back => scaled_system_give_back
+    procedure :: restore_order => scaled_system_restore_order
   end type scaled_system_t
 
 contains
 
-  !> Makes the pattern of the copy.
+  !> Build the pattern of the copy.
   subroutine scaled_system_setup(self, matrix, order)
-    !> The system.
     class(scaled_system_t), intent(out) :: self
-    !> The original.
     type(block_matrix_t), intent(in) :: matrix
-    !> Original number of each row of the copy.
+    !> Original number of each block row of the copy.
     integer, intent(in) :: order(:)
+
     integer, allocatable :: rank(:)
     integer :: i, k, n, next, first
 
@@ -65,12 +63,10 @@ contains
     self%matrix%row_start(n + 1) = next
   end subroutine scaled_system_setup
 
-  !> Sorts pairs upwards by their first members (insertion).
+  !> Sort items in ascending order of their keys (insertion sort).
   pure subroutine sort_pairs(key, item)
-    !> First members.
-    integer, intent(inout) :: key(:)
-    !> Second members.
-    integer, intent(inout) :: item(:)
+    integer, intent(inout) :: key(:), item(:)
+
     integer :: i, j, moved_key, moved_item
 
     do i = 2, size(key)
@@ -88,43 +84,36 @@ contains
     end do
   end subroutine sort_pairs
 
-  !> Copies and scales the values of a matrix of the pattern; a row of zeros or a member that is not
-  !> finite ends it.
+  !> Copy and scale the values of a matrix of the pattern.
   subroutine scaled_system_fill(self, matrix, verdict)
-    !> The system.
     class(scaled_system_t), intent(inout) :: self
-    !> The original.
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry where the matrix is no good.
+    !> Retry if a row is zero or not finite.
     type(verdict_t), intent(out) :: verdict
-    integer :: worst
+
+    integer :: bad_row
 
     associate (copy => self%matrix)
       call scale_rows(copy%n, size(copy%column), copy%row_start, self%source, matrix%value, &
-        copy%value, self%scale, worst)
+        copy%value, self%scale, bad_row)
     end associate
     verdict%outcome = verdict_converged
-    if (worst == 0) return
+    if (bad_row == 0) return
     verdict%outcome = verdict_retry
-    verdict%node = self%order(worst)
-    verdict%reason = "row of zeros or a member that is not finite in block row " &
+    verdict%node = self%order(bad_row)
+    verdict%reason = "zero row or value that is not finite in block row " &
       //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 
-  !> Kernel of the scaling; stops at the first bad row.
-  pure subroutine scale_rows(n, n_block, row_start, source, from, to, scale, worst)
-    !> Number of block rows, and of blocks.
-    integer, intent(in) :: n, n_block
-    !> Where the rows begin, and where each block comes from.
-    integer, intent(in) :: row_start(n + 1), source(n_block)
-    !> Values of the original.
+  !> Kernel: copy and scale blocks up to the first bad row; see `scaled_system_t` for the arrays.
+  pure subroutine scale_rows(n, n_block, row_start, source, from, to, scale, bad_row)
+    integer, intent(in) :: n, n_block, row_start(n + 1), source(n_block)
+    !> Blocks of the original and of the copy.
     real(wp), intent(in) :: from(3, 3, n_block)
-    !> Values of the copy.
-    real(wp), intent(inout) :: to(3, 3, n_block)
-    !> Factor of each row.
-    real(wp), intent(inout) :: scale(3, n)
-    !> The bad row; 0 if there is none.
-    integer, intent(out) :: worst
+    real(wp), intent(inout) :: to(3, 3, n_block), scale(3, n)
+    !> First block row with a scalar row that is zero or not finite; 0 if there is none.
+    integer, intent(out) :: bad_row
+
     real(wp) :: a(3), b(3), c(3)
     integer :: i, k, m
 
@@ -139,7 +128,7 @@ contains
         c = c + abs(from(:, 3, m))
       end do
       a = a + b + c
-      worst = i
+      bad_row = i
       if (.not. all(ieee_is_finite(a))) return
       if (any(a < 1.0e3_wp*tiny(a))) return
       a = 1.0_wp/a
@@ -151,17 +140,15 @@ contains
         to(:, 3, k) = a*from(:, 3, m)
       end do
     end do
-    worst = 0
+    bad_row = 0
   end subroutine scale_rows
 
-  !> Renumbers and scales a right-hand side.
+  !> Renumber and scale a right-hand side.
   pure subroutine scaled_system_scale_rhs(self, b, scaled)
-    !> The system.
     class(scaled_system_t), intent(in) :: self
-    !> The original, `(3n)`.
     real(wp), intent(in) :: b(:)
-    !> The copy, `(3n)`.
     real(wp), intent(out) :: scaled(:)
+
     integer :: i, j
 
     do i = 1, self%matrix%n
@@ -170,20 +157,19 @@ contains
     end do
   end subroutine scaled_system_scale_rhs
 
-  !> Takes a solution back to the original numbering.
-  pure subroutine scaled_system_give_back(self, copy, x)
-    !> The system.
+  !> Return a solution to the original numbering.
+  pure subroutine scaled_system_restore_order(self, copy, x)
     class(scaled_system_t), intent(in) :: self
-    !> The solution in the copy's numbering, `(3n)`.
+    !> Solution in the copy's numbering.
     real(wp), intent(in) :: copy(:)
-    !> The solution, `(3n)`.
     real(wp), intent(out) :: x(:)
+
     integer :: i, j
 
     do i = 1, self%matrix%n
       j = self%order(i)
       x(3*j - 2:3*j) = copy(3*i - 2:3*i)
     end do
-  end subroutine scaled_system_give_back
+  end subroutine scaled_system_restore_order
 
 end module dd3_linalg_scaled_system

@@ -1,103 +1,179 @@
-!> What every solver of linear systems provides: a set-up once per pattern, a factorisation per
-!> matrix, solutions per right-hand side, and a report that says what was really done.
+!> Abstract linear solver: set up once per sparsity pattern, factorised once per matrix, solved once
+!> per right-hand side.
+!>
+!> What all solvers share is done here: they work on a renumbered, row-scaled copy of the system and
+!> on right-hand sides of unit length. A solver implements `setup_scaled`, `factor_scaled` and
+!> `solve_scaled` on that copy, and `release` if it holds memory outside Fortran.
 module dd3_linalg_solver
+  use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+  use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t
+  use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_ordering, only : find_ordering
+  use dd3_linalg_residual, only : dot
+  use dd3_linalg_scaled_system, only : scaled_system_t
   implicit none
   private
   public :: linear_solver_t, solver_options_t, solver_report_t
 
-  !> What the user can choose.
+  !> Choice and settings of a solver. The initial values mean "not set" and are refused by
+  !> `new_linear_solver`; defaults are the input's.
   type :: solver_options_t
-    !> Name of the solver: cgs, umfpack or auto.
-    character(len=24) :: method = "auto"
-    !> Level of fill of the incomplete factorisation; any level from the number of rows on is a
-    !> complete one. `auto` may take a complete one where it costs no more than the iterations it
-    !> saves.
-    integer :: ilu_level = 2
-    !> Residual wanted, relative to the right-hand side, rows scaled.
-    real(wp) :: tolerance = 1.0e-10_wp
-    !> Iterations allowed, restarts included.
-    integer :: iterations = 200
-    !> Numbering of the incomplete factorisation: none, amd or rcm.
-    character(len=24) :: ordering = "none"
+    !> Name in the solver registry.
+    character(len=24) :: method = ""
+    !> Level of fill of the incomplete factorisation; complete from the number of block rows on.
+    integer :: ilu_level = -1
+    !> Target residual of the row-scaled system, relative to the right-hand side.
+    real(wp) :: tolerance = 0.0_wp
+    !> Maximum number of iterations, restarts included.
+    integer :: iterations = 0
+    !> Numbering of the block rows, see `ordering_names`.
+    character(len=24) :: ordering = ""
   end type solver_options_t
 
-  !> What a solution took. Residuals are those of the system whose rows have been scaled to one.
+  !> Outcome of one solution.
   type :: solver_report_t
     !> Solver that gave the solution.
     character(len=24) :: method = ""
-    !> Whether the residual wanted was reached.
+    !> Whether the residual is small enough.
     logical :: converged = .false.
-    !> Iterations made, restarts included, and restarts made.
+    !> Iterations, restarts included, and number of restarts.
     integer :: iterations = 0, restarts = 0
-    !> |b - A x|/|b|, computed from the solution returned.
+    !> |b - A x|/|b| of the row-scaled system, evaluated for the solution returned.
     real(wp) :: residual = huge(1.0_wp)
-    !> Whether the direct solver stood in for the iterative one.
+    !> Whether the direct solver replaced the iterative one.
     logical :: fallback = .false.
-    !> Why it did, or why the solution failed; empty when all went well.
+    !> Reason for the fallback or for the failure, else empty.
     character(len=160) :: reason = ""
   end type solver_report_t
 
-  !> A solver of A x = b.
+  !> Solver of A x = b.
   type, abstract :: linear_solver_t
-    !> The choices it was made with.
     type(solver_options_t) :: options
-    !> What it does, for the log; known after the set-up.
+    !> One line for the log, known after `setup`.
     character(len=160) :: description = ""
+    !> Solver that the present matrix is factorised for; empty if there is none.
+    character(len=24) :: method = ""
+    !> What the solver remembers from matrix to matrix and what changes its results. Reset by
+    !> `setup`, size 0 for solvers without memory; a restart sets it after `setup`.
     integer, allocatable :: memory(:)
+    !> Renumbered and scaled copy of the system.
+    type(scaled_system_t), private :: system
   contains
-    !> Once per pattern.
-    procedure(setup_interface), deferred :: setup
-    !> Once per matrix.
-    procedure(factor_interface), deferred :: factor
-    !> Once per right-hand side.
-    procedure(solve_interface), deferred :: solve
-    !> Gives back what the solver holds outside Fortran.
-    procedure(release_interface), deferred :: release
+    procedure, non_overridable :: setup
+    procedure, non_overridable :: factor
+    procedure, non_overridable :: solve
+    procedure(setup_interface), deferred :: setup_scaled
+    procedure(factor_interface), deferred :: factor_scaled
+    procedure(solve_interface), deferred :: solve_scaled
+    procedure :: release
   end type linear_solver_t
 
   abstract interface
-    !> Prepares for matrices of one pattern.
+    !> Prepare for matrices of one pattern; set `description`, and `memory` where there is one.
     subroutine setup_interface(self, matrix)
       import :: linear_solver_t, block_matrix_t
-      !> The solver.
       class(linear_solver_t), intent(inout) :: self
-      !> A matrix of the pattern; its values are not read.
+      !> Scaled matrix of the pattern; its values must not be used.
       type(block_matrix_t), intent(in) :: matrix
     end subroutine setup_interface
 
-    !> Factorises a matrix of the pattern set up.
+    !> Factorise a scaled matrix and set `method`.
     subroutine factor_interface(self, matrix, verdict)
       import :: linear_solver_t, block_matrix_t, verdict_t
-      !> The solver.
       class(linear_solver_t), intent(inout) :: self
-      !> The matrix; it is copied.
+      !> Scaled matrix of the pattern set up.
       type(block_matrix_t), intent(in) :: matrix
-      !> Retry for a matrix that cannot be solved with: singular, or not finite.
+      !> Retry if the matrix is singular.
       type(verdict_t), intent(out) :: verdict
     end subroutine factor_interface
 
-    !> Solves with the matrix factorised last.
-    subroutine solve_interface(self, b, x, report)
-      import :: linear_solver_t, solver_report_t, wp
-      !> The solver.
+    !> Solve with the matrix factorised last.
+    subroutine solve_interface(self, matrix, b, x, report)
+      import :: linear_solver_t, block_matrix_t, solver_report_t, wp
       class(linear_solver_t), intent(inout) :: self
-      !> Right-hand side, `(3n)`.
+      !> Scaled matrix factorised last.
+      type(block_matrix_t), intent(in) :: matrix
+      !> Right-hand side of unit length, `(3n)`.
       real(wp), intent(in) :: b(:)
-      !> Solution, `(3n)`; the best one found where none was good enough.
-      real(wp), intent(out) :: x(:)
-      !> What it took.
-      type(solver_report_t), intent(out) :: report
+      !> Best solution known so far, with `report%residual`; replaced by a better one, `(3n)`.
+      real(wp), intent(inout) :: x(:)
+      type(solver_report_t), intent(inout) :: report
     end subroutine solve_interface
-
-    !> Gives back what the solver holds outside Fortran; it can be set up again afterwards.
-    subroutine release_interface(self)
-      import :: linear_solver_t
-      !> The solver.
-      class(linear_solver_t), intent(inout) :: self
-    end subroutine release_interface
   end interface
+
+contains
+
+  !> Prepare for matrices of one pattern.
+  subroutine setup(self, matrix)
+    class(linear_solver_t), intent(inout) :: self
+    !> Matrix of the pattern; its values are not used.
+    type(block_matrix_t), intent(in) :: matrix
+
+    type(error_t), allocatable :: error
+    integer, allocatable :: order(:)
+
+    call self%release()
+    call find_ordering(trim(self%options%ordering), matrix, order, error)
+    if (allocated(error)) call find_ordering("none", matrix, order, error)
+    call self%system%setup(matrix, order)
+    if (allocated(self%memory)) deallocate (self%memory)
+    call self%setup_scaled(self%system%matrix)
+    if (.not. allocated(self%memory)) allocate (self%memory(0))
+  end subroutine setup
+
+  !> Copy, scale and factorise a matrix of the pattern set up.
+  subroutine factor(self, matrix, verdict)
+    class(linear_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    !> Retry if the matrix is singular or not finite.
+    type(verdict_t), intent(out) :: verdict
+
+    self%method = ""
+    call self%system%fill(matrix, verdict)
+    if (verdict%outcome == verdict_converged) call self%factor_scaled(self%system%matrix, verdict)
+  end subroutine factor
+
+  !> Solve with the matrix factorised last.
+  subroutine solve(self, b, x, report)
+    class(linear_solver_t), intent(inout) :: self
+    !> Right-hand side, `(3n)`.
+    real(wp), intent(in) :: b(:)
+    !> Solution, or the best approximation found, `(3n)`.
+    real(wp), intent(out) :: x(:)
+    type(solver_report_t), intent(out) :: report
+
+    real(wp), allocatable :: scaled_b(:), scaled_x(:)
+    real(wp) :: length
+
+    x = 0.0_wp
+    report%method = self%method
+    allocate (scaled_b(size(b)), scaled_x(size(x)))
+    call self%system%scale_rhs(b, scaled_b)
+    length = sqrt(dot(scaled_b, scaled_b))
+    if (.not. ieee_is_finite(length)) then
+      report%reason = "the right-hand side is not finite"
+      return
+    end if
+    if (length <= sqrt(tiny(length))) then
+      report%converged = .true.
+      report%residual = 0.0_wp
+      return
+    end if
+    scaled_b = scaled_b/length
+    scaled_x = 0.0_wp
+    report%residual = 1.0_wp
+    call self%solve_scaled(self%system%matrix, scaled_b, scaled_x, report)
+    scaled_x = length*scaled_x
+    call self%system%restore_order(scaled_x, x)
+  end subroutine solve
+
+  !> Release the factors held outside Fortran; the solver can be set up again.
+  subroutine release(self)
+    class(linear_solver_t), intent(inout) :: self
+
+    self%method = ""
+  end subroutine release
 
 end module dd3_linalg_solver

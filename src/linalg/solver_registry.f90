@@ -1,58 +1,82 @@
-!> The solvers of linear systems there are, by name.
+!> Registry of the linear solvers.
 module dd3_linalg_solver_registry
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : join
-  use dd3_linalg_combined_solver, only : combined_solver_t, new_combined_solver
+  use dd3_linalg_auto_solver, only : make_auto_solver
+  use dd3_linalg_cgs_solver, only : make_cgs_solver
   use dd3_linalg_ordering, only : ordering_names
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
+  use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
   private
-  public :: new_linear_solver, solver_names
+  public :: new_linear_solver, solver_count, solver_names
 
-  !> One row: a solver's name, and which of the two ways to solve it uses.
-  type :: row_t
-    !> Name as written in the input.
-    character(len=7) :: name
-    !> Whether it iterates, and whether it has direct factors (to fall back on, where it iterates).
-    logical :: iterative, direct
-  end type row_t
+  abstract interface
+    !> Create a solver.
+    subroutine constructor_interface(solver, options)
+      import :: linear_solver_t, solver_options_t
+      class(linear_solver_t), allocatable, intent(out) :: solver
+      type(solver_options_t), intent(in) :: options
+    end subroutine constructor_interface
+  end interface
 
-  !> The solvers.
-  type(row_t), parameter :: rows(3) = [row_t("cgs", .true., .false.), &
-                                       row_t("umfpack", .false., .true.), &
-                                       row_t("auto", .true., .true.)]
-  !> Their names.
-  character(len=*), parameter :: solver_names(size(rows)) = rows%name
+  !> Longest name.
+  integer, parameter :: name_length = 7
+
+  !> One row: name, as written in the input, and constructor.
+  type :: entry_t
+    character(len=name_length) :: name = ""
+    procedure(constructor_interface), pointer, nopass :: make => null()
+  end type entry_t
+
+  !> Number of solvers.
+  integer, parameter :: solver_count = 3
 
 contains
 
-  !> Makes the solver that the options ask for.
+  !> Fill the registry, one row per solver.
+  subroutine fill_registry(entries)
+    type(entry_t), intent(out) :: entries(solver_count)
+
+    entries(1) = entry_t("cgs", make_cgs_solver)
+    entries(2) = entry_t("umfpack", make_umfpack_solver)
+    entries(3) = entry_t("auto", make_auto_solver)
+  end subroutine fill_registry
+
+  !> Return the names of all solvers.
+  function solver_names() result(names)
+    character(len=name_length) :: names(solver_count)
+
+    type(entry_t) :: entries(solver_count)
+
+    call fill_registry(entries)
+    names = entries%name
+  end function solver_names
+
+  !> Create the solver that the options name.
   subroutine new_linear_solver(solver, options, error)
-    !> The solver made.
     class(linear_solver_t), allocatable, intent(out) :: solver
-    !> The choices.
     type(solver_options_t), intent(in) :: options
-    !> An unknown name or a value out of range.
+    !> Set for an unknown name or a value that is out of range or not set.
     type(error_t), allocatable, intent(out) :: error
-    type(combined_solver_t), allocatable :: combined
+
+    type(entry_t) :: entries(solver_count)
     integer :: i
 
-    i = findloc(solver_names, options%method, 1)
+    call fill_registry(entries)
+    i = findloc(entries%name, options%method, 1)
     if (i == 0) then
       call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &
-        //join(solver_names, ", "))
-    else if (.not. any(ordering_names == options%ordering)) then
+        //join(solver_names(), ", "))
+    else if (all(ordering_names /= options%ordering)) then
       call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: " &
         //join(ordering_names, ", "))
-    else if (options%ilu_level < 0 .or. options%iterations < 1 &
-      .or. .not. options%tolerance > 0) then
-      call fatal_error(error, "level of fill of the linear solver must not be negative, its "// &
-        "iterations and tolerance must be positive")
+    else if (options%ilu_level < 0 .or. options%iterations < 1 .or. .not. options%tolerance > 0) then
+      call fatal_error(error, "linear solver: expected a level of fill of at least 0, positive " &
+        //"iterations and a positive tolerance")
+    else
+      call entries(i)%make(solver, options)
     end if
-    if (allocated(error)) return
-    allocate (combined)
-    call new_combined_solver(combined, options, rows(i)%iterative, rows(i)%direct)
-    call move_alloc(combined, solver)
   end subroutine new_linear_solver
 
 end module dd3_linalg_solver_registry

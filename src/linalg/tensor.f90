@@ -2,10 +2,10 @@
 !>
 !> Kelvin vectors (Thomson 1856; Mandel 1965; Mehrabadi and Cowin 1990, eq. 8) hold a symmetric
 !> tensor as (11, 22, 33, sqrt(2) 23, sqrt(2) 31, sqrt(2) 12): the double contraction is the dot
-!> product and a rotation of the axes is an orthogonal 6x6 matrix. Eigenvectors are found by
-!> Jacobi's rotations (Jacobi 1846; Rutishauser 1966).
+!> product and a rotation of the axes is an orthogonal 6x6 matrix. Eigenvectors are found by Jacobi
+!> rotations (Jacobi 1846; Rutishauser 1966).
 module dd3_linalg_tensor
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, root2 => sqrt2
   implicit none
   private
   public :: root2, half_root, kelvin_factor
@@ -14,11 +14,10 @@ module dd3_linalg_tensor
   public :: determinant, inverse, symmetric_eigen
   public :: cross, solve_small
 
-  !> Square root of two and its inverse.
-  real(wp), parameter :: root2 = sqrt(2.0_wp), half_root = 1.0_wp/sqrt(2.0_wp)
-  !> What makes a Kelvin component of a tensor's, in any order with the shears last.
+  !> Inverse of the square root of two.
+  real(wp), parameter :: half_root = 1.0_wp/root2
+  !> Ratio of Kelvin to tensor components, for any order with the shears last.
   real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, root2, root2, root2]
-  !> One third.
   real(wp), parameter :: third = 1.0_wp/3.0_wp
 
   !> Unit tensor of second order.
@@ -27,7 +26,7 @@ module dd3_linalg_tensor
                                                    0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
   !> Unit tensor of second order as a Kelvin vector.
   real(wp), parameter :: kelvin_identity(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-  !> Kelvin matrix that takes the deviator of a tensor.
+  !> Kelvin matrix of the projection on the deviator.
   real(wp), parameter :: kelvin_deviator_projector(6, 6) = reshape( &
     [2*third, -third, -third, 0.0_wp, 0.0_wp, 0.0_wp, &
      -third, 2*third, -third, 0.0_wp, 0.0_wp, 0.0_wp, &
@@ -38,9 +37,8 @@ module dd3_linalg_tensor
 
 contains
 
-  !> Kelvin vector of a symmetric tensor; of another, of its symmetric part.
+  !> Return the Kelvin vector of the symmetric part of a tensor.
   pure function kelvin_from_tensor(t) result(v)
-    !> The tensor.
     real(wp), intent(in) :: t(3, 3)
     real(wp) :: v(6)
 
@@ -52,9 +50,8 @@ contains
     v(6) = half_root*(t(1, 2) + t(2, 1))
   end function kelvin_from_tensor
 
-  !> Symmetric tensor of a Kelvin vector.
+  !> Return the symmetric tensor of a Kelvin vector.
   pure function tensor_from_kelvin(v) result(t)
-    !> The Kelvin vector.
     real(wp), intent(in) :: v(6)
     real(wp) :: t(3, 3)
 
@@ -69,12 +66,12 @@ contains
     t(2, 1) = t(1, 2)
   end function tensor_from_kelvin
 
-  !> Orthogonal 6x6 matrix R with R v = Kelvin(q t q^T) for v = Kelvin(t).
+  !> Return the orthogonal 6x6 matrix R of a rotation q: R v = Kelvin(q t q^T) for v = Kelvin(t).
   pure function kelvin_rotation(q) result(r)
-    !> The rotation.
     real(wp), intent(in) :: q(3, 3)
     real(wp) :: r(6, 6)
-    !> Pairs of indices of the shear components 23, 31, 12.
+
+    ! Pairs of indices of the shear components 23, 31, 12.
     integer, parameter :: first(3) = [2, 3, 1], second(3) = [3, 1, 2]
     integer :: i, j
 
@@ -90,35 +87,34 @@ contains
     end do
   end function kelvin_rotation
 
-  !> Deviator of a Kelvin vector.
+  !> Return the deviator of a Kelvin vector.
   pure function kelvin_deviator(v) result(s)
-    !> The Kelvin vector.
     real(wp), intent(in) :: v(6)
-    real(wp) :: s(6), mean
+    real(wp) :: s(6)
+
+    real(wp) :: mean
 
     mean = third*(v(1) + v(2) + v(3))
     s(1:3) = v(1:3) - mean
     s(4:6) = v(4:6)
   end function kelvin_deviator
 
-  !> Determinant of a 3x3 matrix.
+  !> Return the determinant of a 3x3 matrix.
   pure real(wp) function determinant(a)
-    !> The matrix.
     real(wp), intent(in) :: a(3, 3)
 
     determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) &
-                  - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
-                  + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+      - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+      + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
   end function determinant
 
-  !> Inverse of a 3x3 matrix by its cofactors; a singular one gives zero and `regular` false.
+  !> Invert a 3x3 matrix by its cofactors.
   pure subroutine inverse(a, inverted, regular)
-    !> The matrix.
     real(wp), intent(in) :: a(3, 3)
-    !> Its inverse.
+    !> Inverse; zero if the matrix is singular.
     real(wp), intent(out) :: inverted(3, 3)
-    !> Whether there is one.
     logical, intent(out) :: regular
+
     real(wp) :: d, bound, factor
 
     inverted(1, 1) = a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)
@@ -141,20 +137,19 @@ contains
     inverted = factor*inverted
   end subroutine inverse
 
-  !> Eigenvalues and orthonormal eigenvectors of a symmetric 3x3 matrix, in no particular order:
-  !> a = sum of values(i) vectors(:,i) vectors(:,i)^T. Rotations are left out where the off-diagonal
-  !> member no longer counts, so that a nearly diagonal matrix costs next to nothing; equal
-  !> eigenvalues are no special case.
+  !> Return the eigenvalues and orthonormal eigenvectors of a symmetric 3x3 matrix, in no particular
+  !> order. Rotations by negligible off-diagonal entries are skipped, so a nearly diagonal matrix is
+  !> cheap; equal eigenvalues are no special case.
   pure subroutine symmetric_eigen(a, values, vectors)
-    !> The matrix; its lower triangle is not read.
+    !> Matrix; its lower triangle is not used.
     real(wp), intent(in) :: a(3, 3)
-    !> Eigenvalues.
     real(wp), intent(out) :: values(3)
-    !> Eigenvectors, as columns.
+    !> Eigenvectors as columns.
     real(wp), intent(out) :: vectors(3, 3)
-    !> Sweeps allowed; convergence is quadratic and takes three or four.
+
+    ! Convergence is quadratic and takes three or four sweeps.
     integer, parameter :: max_sweeps = 12
-    !> Off-diagonal members below this are zero: their squares would underflow.
+    ! Off-diagonal entries below this count as zero: their squares would underflow.
     real(wp), parameter :: floor = 1.0e-150_wp
     real(wp) :: x, y, z, small
     integer :: sweep
@@ -168,22 +163,22 @@ contains
     do sweep = 1, max_sweeps
       if (abs(x) + abs(y) + abs(z) <= small) exit
       if (abs(z) > 0.1_wp*small) &
-          call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
+        call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
       if (abs(y) > 0.1_wp*small) &
-          call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
+        call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
       if (abs(x) > 0.1_wp*small) &
-          call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
+        call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
     end do
   end subroutine symmetric_eigen
 
-  !> Jacobi's rotation in the plane (p, q) that makes a_pq vanish.
+  !> Apply the Jacobi rotation in the plane (p, q) that makes a_pq vanish.
   pure subroutine rotate(a_pp, a_qq, a_pq, a_rp, a_rq, v_p, v_q)
-    !> Members of the matrix in the plane of the rotation.
     real(wp), intent(inout) :: a_pp, a_qq, a_pq
-    !> Members that couple the plane with the third axis.
+    !> Entries that couple the plane with the third axis.
     real(wp), intent(inout) :: a_rp, a_rq
     !> Columns p and q of the eigenvectors.
     real(wp), intent(inout) :: v_p(3), v_q(3)
+
     real(wp) :: difference, t, c, s, v(3), w
 
     difference = a_qq - a_pp
@@ -201,9 +196,8 @@ contains
     v_q = s*v + c*v_q
   end subroutine rotate
 
-  !> Cross product a x b.
+  !> Return the cross product a x b.
   pure function cross(a, b) result(c)
-    !> The two vectors.
     real(wp), intent(in) :: a(3), b(3)
     real(wp) :: c(3)
 
@@ -212,18 +206,18 @@ contains
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross
 
-  !> Solves a x = b for several right-hand sides by elimination with row pivoting, in place. A pivot
-  !> that has shrunk to round-off against its column makes the matrix singular: `regular` is then
-  !> false and b is of no use.
+  !> Solve a small dense system for several right-hand sides, in place, by elimination with partial
+  !> pivoting.
   pure subroutine solve_small(n, m, a, b, regular)
     !> Number of equations, and of right-hand sides.
     integer, intent(in) :: n, m
-    !> The matrix; destroyed.
+    !> Matrix; overwritten.
     real(wp), intent(inout) :: a(n, n)
-    !> The right-hand sides; on return the solutions.
+    !> Right-hand sides, replaced by the solutions; undefined for a singular matrix.
     real(wp), intent(inout) :: b(n, m)
-    !> Whether the matrix was regular.
+    !> False if a pivot is zero to round-off, relative to its column.
     logical, intent(out) :: regular
+
     real(wp) :: column(n), factor, largest, saved
     integer :: i, j, k, pivot
 

@@ -1,6 +1,6 @@
-!> The direct solver: sparse LU with pivoting by the unsymmetric multifrontal method (Davis 2004,
-!> UMFPACK 5). The symbolic phase is made once per pattern; solutions are refined with the matrix
-!> itself.
+!> Sparse LU factors with pivoting by the unsymmetric multifrontal method (Davis 2004, UMFPACK 5).
+!> The symbolic factorisation depends on the pattern alone, so that results do not depend on which
+!> matrix comes first; solutions are refined iteratively.
 module dd3_linalg_umfpack
   use, intrinsic :: iso_c_binding, only : c_int, c_double, c_ptr, c_null_ptr, c_associated
   use dd3_base_kinds, only : wp
@@ -12,29 +12,28 @@ module dd3_linalg_umfpack
   private
   public :: direct_factors_t
 
-  !> Sizes of UMFPACK's arrays of settings and statistics.
+  !> Sizes of UMFPACK's arrays of control parameters and statistics.
   integer, parameter :: control_size = 20, info_size = 90
-  !> What to solve: A x = b.
-  integer(c_int), parameter :: plain_system = 0
-  !> Place of the estimated reciprocal condition number in the statistics, and its smallest value
-  !> allowed.
-  integer, parameter :: place_of_condition = 68
-  !> See above.
-  real(c_double), parameter :: smallest_condition = 1.0e-16_c_double
-  !> Status values: done, singular, out of memory.
+  !> UMFPACK_A: solve A x = b.
+  integer(c_int), parameter :: system_plain = 0
+  !> UMFPACK_RCOND: position of the estimated reciprocal condition number in the statistics.
+  integer, parameter :: info_rcond = 68
+  !> Reciprocal condition number below which a matrix counts as singular.
+  real(c_double), parameter :: rcond_limit = 1.0e-16_c_double
+  !> UMFPACK's status values.
   integer(c_int), parameter :: status_ok = 0, status_singular = 1, status_memory = -1
 
-  !> A matrix by compressed columns and its factors.
+  !> Matrix by compressed columns and its factors.
   type :: direct_factors_t
     !> Number of unknowns.
     integer :: n = 0
-    !> Where the columns begin (0-based), and the rows of their members (0-based, ascending).
+    !> Where the columns begin, and the row of each entry, ascending; both 0-based.
     integer(c_int), allocatable :: start(:), row(:)
-    !> The members.
+    !> Entries of the matrix.
     real(c_double), allocatable :: value(:)
-    !> Position of the first of each block's three members in each of its three columns, `(3, :)`.
+    !> Position in `value` of the first entry of each column of each block, `(3, :)`.
     integer, allocatable :: position(:, :)
-    !> UMFPACK's settings.
+    !> UMFPACK's control parameters.
     real(c_double) :: control(control_size) = 0.0_c_double
     !> UMFPACK's symbolic and numeric factors.
     type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
@@ -45,98 +44,76 @@ module dd3_linalg_umfpack
     procedure :: release => direct_release
   end type direct_factors_t
 
+  ! Of UMFPACK: columns and rows as in `direct_factors_t`, `info` returns statistics.
   interface
-    !> Sets the defaults.
+    !> Set the default control parameters.
     subroutine umfpack_di_defaults(control) bind(c, name="umfpack_di_defaults")
       import :: c_double
-      !> The settings.
       real(c_double), intent(out) :: control(*)
     end subroutine umfpack_di_defaults
 
-    !> Symbolic factorisation.
+    !> Symbolic factorisation; returns the status.
     integer(c_int) function umfpack_di_symbolic(n_row, n_column, start, row, value, symbolic, &
-      control, info) &
-      bind(c, name="umfpack_di_symbolic")
+        control, info) bind(c, name="umfpack_di_symbolic")
       import :: c_int, c_double, c_ptr
-      !> Number of rows and columns.
       integer(c_int), value :: n_row, n_column
-      !> Where the columns begin, and their rows.
       integer(c_int), intent(in) :: start(*), row(*)
-      !> The members.
-      real(c_double), intent(in) :: value(*)
-      !> The result.
+      !> Entries of the matrix; null to use the pattern alone.
+      type(c_ptr), value :: value
       type(c_ptr), intent(out) :: symbolic
-      !> Settings.
       real(c_double), intent(in) :: control(*)
-      !> Statistics.
       real(c_double), intent(out) :: info(*)
     end function umfpack_di_symbolic
 
-    !> Numeric factorisation.
+    !> Numeric factorisation; returns the status.
     integer(c_int) function umfpack_di_numeric(start, row, value, symbolic, numeric, control, &
-      info) &
-      bind(c, name="umfpack_di_numeric")
+        info) bind(c, name="umfpack_di_numeric")
       import :: c_int, c_double, c_ptr
-      !> Where the columns begin, and their rows.
       integer(c_int), intent(in) :: start(*), row(*)
-      !> The members.
       real(c_double), intent(in) :: value(*)
-      !> Symbolic factors.
       type(c_ptr), value :: symbolic
-      !> The result.
       type(c_ptr), intent(out) :: numeric
-      !> Settings.
       real(c_double), intent(in) :: control(*)
-      !> Statistics.
       real(c_double), intent(out) :: info(*)
     end function umfpack_di_numeric
 
-    !> Solution, with iterative refinement.
+    !> Solution with iterative refinement; returns the status.
     integer(c_int) function umfpack_di_solve(system, start, row, value, x, b, numeric, control, &
-      info) &
-      bind(c, name="umfpack_di_solve")
+        info) bind(c, name="umfpack_di_solve")
       import :: c_int, c_double, c_ptr
-      !> What to solve.
+      !> Which system to solve, see `system_plain`.
       integer(c_int), value :: system
-      !> Where the columns begin, and their rows.
       integer(c_int), intent(in) :: start(*), row(*)
-      !> The members.
       real(c_double), intent(in) :: value(*)
-      !> The solution.
       real(c_double), intent(out) :: x(*)
-      !> Right-hand side.
       real(c_double), intent(in) :: b(*)
-      !> Numeric factors.
       type(c_ptr), value :: numeric
-      !> Settings.
       real(c_double), intent(in) :: control(*)
-      !> Statistics.
       real(c_double), intent(out) :: info(*)
     end function umfpack_di_solve
 
-    !> Frees symbolic factors.
+    !> Free symbolic factors.
     subroutine umfpack_di_free_symbolic(symbolic) bind(c, name="umfpack_di_free_symbolic")
       import :: c_ptr
-      !> The factors.
       type(c_ptr), intent(inout) :: symbolic
     end subroutine umfpack_di_free_symbolic
 
-    !> Frees numeric factors.
+    !> Free numeric factors.
     subroutine umfpack_di_free_numeric(numeric) bind(c, name="umfpack_di_free_numeric")
       import :: c_ptr
-      !> The factors.
       type(c_ptr), intent(inout) :: numeric
     end subroutine umfpack_di_free_numeric
   end interface
 
 contains
 
-  !> Pattern by columns, once per pattern of the block matrix.
+  !> Build the pattern by columns.
   subroutine direct_setup(self, matrix)
-    !> The factors.
     class(direct_factors_t), intent(inout) :: self
-    !> A matrix of the pattern.
+    !> Matrix of the pattern; its values are not used.
     type(block_matrix_t), intent(in) :: matrix
+
+    ! Number of blocks in each block column, and of those above each block.
     integer, allocatable :: blocks(:), rank(:)
     integer :: i, j, k, c, at
 
@@ -169,32 +146,30 @@ contains
     end do
   end subroutine direct_setup
 
-  !> Factorises a matrix of the pattern. The symbolic phase, which looks at the values too, is made
-  !> with the first one.
+  !> Factorise a matrix of the pattern.
   subroutine direct_factor(self, matrix, verdict)
-    !> The factors.
     class(direct_factors_t), intent(inout) :: self
-    !> The matrix.
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry for a singular matrix.
+    !> Retry if the matrix is singular or UMFPACK fails.
     type(verdict_t), intent(out) :: verdict
+
     real(c_double) :: info(info_size)
     integer(c_int) :: status
 
-    call spread(size(matrix%column), self%position, matrix%value, self%value)
+    call copy_by_columns(size(matrix%column), self%position, matrix%value, self%value)
     if (c_associated(self%numeric)) call umfpack_di_free_numeric(self%numeric)
     self%numeric = c_null_ptr
     status = status_ok
     if (.not. c_associated(self%symbolic)) then
       status = umfpack_di_symbolic(int(self%n, c_int), int(self%n, c_int), self%start, self%row, &
-          self%value, self%symbolic, self%control, info)
+        c_null_ptr, self%symbolic, self%control, info)
     end if
     if (status == status_ok) then
       status = umfpack_di_numeric(self%start, self%row, self%value, self%symbolic, self%numeric, &
         self%control, info)
     end if
     if (status == status_ok) then
-      if (.not. info(place_of_condition) > smallest_condition) status = status_singular
+      if (.not. info(info_rcond) > rcond_limit) status = status_singular
     end if
     verdict%outcome = verdict_retry
     select case (status)
@@ -209,16 +184,14 @@ contains
     end select
   end subroutine direct_factor
 
-  !> Copies blocks into columns.
-  pure subroutine spread(n_block, position, block, column)
-    !> Number of blocks.
+  !> Kernel: copy blocks into columns.
+  pure subroutine copy_by_columns(n_block, position, block, column)
     integer, intent(in) :: n_block
-    !> Where the columns of each block go.
+    !> See `direct_factors_t`.
     integer, intent(in) :: position(3, n_block)
-    !> The blocks.
     real(wp), intent(in) :: block(3, 3, n_block)
-    !> The members by columns.
     real(wp), intent(inout) :: column(9*n_block)
+
     integer :: k, c
 
     do k = 1, n_block
@@ -226,31 +199,27 @@ contains
         column(position(c, k):position(c, k) + 2) = block(:, c, k)
       end do
     end do
-  end subroutine spread
+  end subroutine copy_by_columns
 
-  !> Solves with the factors.
+  !> Solve with the factors.
   subroutine direct_solve(self, b, x, good)
-    !> The factors.
     class(direct_factors_t), intent(in) :: self
-    !> Right-hand side.
     real(wp), intent(in) :: b(:)
-    !> Solution.
     real(wp), intent(out) :: x(:)
-    !> Whether there is one.
+    !> Whether there is a solution; x is zero without factors.
     logical, intent(out) :: good
+
     real(c_double) :: info(info_size)
 
     good = .false.
     x = 0.0_wp
     if (.not. c_associated(self%numeric)) return
-    good = umfpack_di_solve(plain_system, self%start, self%row, self%value, x, b, self%numeric, &
-      self%control, info) &
-           == status_ok
+    good = status_ok == umfpack_di_solve(system_plain, self%start, self%row, self%value, x, b, &
+      self%numeric, self%control, info)
   end subroutine direct_solve
 
-  !> Frees the factors.
+  !> Free the factors.
   subroutine direct_release(self)
-    !> The factors.
     class(direct_factors_t), intent(inout) :: self
 
     if (c_associated(self%numeric)) call umfpack_di_free_numeric(self%numeric)

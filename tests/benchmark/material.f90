@@ -49,6 +49,7 @@ contains
   type(law_choice_t) function choice_of(description) result(choice)
     !> The law.
     type(description_t), intent(in) :: description
+
     integer :: n
 
     choice = law_choice_t(description%name, description%example)
@@ -61,6 +62,7 @@ contains
   subroutine measure(criterion, hardening, back)
     !> The laws.
     type(law_choice_t), intent(in) :: criterion, hardening, back(:)
+
     type(material_t) :: material
     real(wp) :: plastic_time(size(sizes)), iterations(size(sizes)), elastic_time
     character(len=60) :: name
@@ -97,6 +99,7 @@ contains
     logical, intent(in) :: load
     !> Nanoseconds; mean number of iterations.
     real(wp), intent(out) :: time, iterations
+
     real(wp) :: stress(6, states), internal(material%n_internal, states), strain(6, states)
     real(wp) :: zero(6), zeros(material%n_internal), end_stress(6)
     real(wp) :: end_internal(material%n_internal)

@@ -25,6 +25,7 @@ contains
     character(len=*), intent(in) :: file
     !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
+
     integer :: unit, status, i, k, r, c
 
     open (newunit=unit, file=file, status="replace", action="write", iostat=status)
@@ -64,6 +65,7 @@ contains
     character(len=*), intent(in) :: file
     !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
+
     integer, allocatable :: row(:), column(:)
     real(wp), allocatable :: entry(:)
     integer :: k, n, at
@@ -90,6 +92,7 @@ contains
     real(wp), allocatable, intent(out) :: entry(:)
     !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
+
     character(len=80) :: line
     integer :: unit, status, k, n_column, n_entry
 
@@ -128,6 +131,7 @@ contains
     real(wp), allocatable, intent(out) :: b(:)
     !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
+
     character(len=80) :: line
     integer :: unit, status, rows
 
@@ -170,6 +174,7 @@ contains
     integer, intent(in) :: n
     !> Block row and column of each member.
     integer, intent(in) :: row(:), column(:)
+
     integer, allocatable :: start(:), order(:), marker(:), row_start(:), packed(:)
     integer :: k, i, count
 
@@ -206,6 +211,7 @@ contains
     integer, allocatable, intent(out) :: sorted(:)
     !> Where the items of each key begin, `(n + 1)`.
     integer, allocatable, intent(out) :: start(:)
+
     integer, allocatable :: next(:)
     integer :: k
 

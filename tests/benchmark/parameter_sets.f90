@@ -21,6 +21,7 @@ contains
   !> The sets.
   function published_sets() result(sets)
     type(set_t), allocatable :: sets(:)
+
     character(len=*), parameter :: &
       yld91 = "yld91 a=1.0674 b=0.8559 c=1.1296 h=1.2970 m=", &
       karafillis = " scale=0.559 alpha1=1.103 alpha2=1.120 gamma3=1.460", &
@@ -68,6 +69,7 @@ contains
     !> The words.
     character(len=*), intent(in) :: text
     type(law_choice_t) :: law
+
     character(len=:), allocatable :: rest, word
     real(wp) :: value
     integer :: blank, equals

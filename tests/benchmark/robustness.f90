@@ -80,6 +80,7 @@ contains
     type(law_choice_t), intent(in) :: back(:)
     !> How many increments.
     integer, intent(in) :: increments
+
     type(material_t) :: material
     type(tally_t) :: tally
     character(len=:), allocatable :: name
@@ -129,6 +130,7 @@ contains
     integer, intent(in) :: increments
     !> What was found.
     type(tally_t), intent(inout) :: tally
+
     real(wp) :: stress(6), internal(material%n_internal), chance(4), strain(6)
     integer :: n
 
@@ -161,6 +163,7 @@ contains
     real(wp), intent(in) :: strain(6)
     !> What is found.
     type(tally_t), intent(inout) :: tally
+
     real(wp) :: new_stress(6), new_internal(material%n_internal), tangent(6, 6), flow, excess
     type(verdict_t) :: verdict
     logical :: plastic
@@ -196,6 +199,7 @@ contains
     integer, intent(inout) :: iterations
     !> The number of parts.
     integer, intent(out) :: parts
+
     real(wp) :: start(6), before(material%n_internal), after(material%n_internal)
     type(step_t) :: step
     integer :: part

@@ -48,6 +48,7 @@ contains
   subroutine compare_strip(divisions)
     !> Number of elements along length, width and thickness.
     integer, intent(in) :: divisions(3)
+
     character(len=40) :: name
 
     call make_strip(divisions, matrix, b)
@@ -63,6 +64,7 @@ contains
     type(block_matrix_t), intent(in) :: matrix
     !> Its right-hand side.
     real(wp), intent(in) :: b(:)
+
     !> Levels of fill compared.
     integer, parameter :: levels(6) = [0, 1, 2, 3, 5, complete]
     real(wp), allocatable :: reference(:)
@@ -98,6 +100,7 @@ contains
     real(wp), intent(in) :: b(:)
     !> The direct solution; made where it is zero.
     real(wp), intent(inout) :: reference(:)
+
     class(linear_solver_t), allocatable :: solver
     type(solver_report_t) :: report
     type(verdict_t) :: verdict
@@ -151,6 +154,7 @@ contains
     !> The system.
     type(block_matrix_t), intent(in) :: matrix
     character(len=7) :: text
+
     type(scaled_system_t) :: system
     type(error_t), allocatable :: error
     integer, allocatable :: order(:), fill_start(:), fill_column(:), fill_diagonal(:)
@@ -174,6 +178,7 @@ contains
     type(block_matrix_t), intent(out) :: matrix
     !> A right-hand side.
     real(wp), allocatable, intent(out) :: b(:)
+
     real(wp), parameter :: size_of_strip(3) = [175.0_wp, 35.0_wp, 0.78_wp]
     integer, allocatable :: connectivity(:, :), position(:, :, :)
     real(wp) :: stiffness(3, 3, 8, 8)
@@ -241,6 +246,7 @@ contains
     integer, intent(in) :: node
     !> The components.
     integer, intent(in) :: components(:)
+
     integer :: c
 
     matrix%value(components, :, matrix%row_start(node):matrix%row_start(node + 1) - 1) = 0.0_wp
@@ -256,6 +262,7 @@ contains
     real(wp), intent(in) :: edge(3)
     !> Row component, column component, row node, column node.
     real(wp), intent(out) :: stiffness(3, 3, 8, 8)
+
     !> Bulk and shear modulus of steel, MPa.
     real(wp), parameter :: bulk = 175000.0_wp, shear = 80769.0_wp
     real(wp), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, &

@@ -1,19 +1,30 @@
-!> Linear systems for the tests of the solvers; the same in every run.
+!> Reproducible linear systems and solver options for the tests of the solvers.
 module sample_systems
   use dd3_base_kinds, only : wp, i8
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern
+  use dd3_linalg_solver, only : solver_options_t
   implicit none
   private
-  public :: grid_matrix, scale_rows, noise, dense_form, pressed_tool
+  public :: grid_matrix, scale_rows, noise, dense_form, pressed_tool, sample_options
 
 contains
 
-  !> Numbers between -1 and 1.
+  !> Return options of a solver that the sample systems suit.
+  pure type(solver_options_t) function sample_options(method) result(options)
+    character(len=*), intent(in) :: method
+
+    options%method = method
+    options%ilu_level = 2
+    options%tolerance = 1.0e-10_wp
+    options%iterations = 200
+    options%ordering = "none"
+  end function sample_options
+
+  !> Return pseudo-random numbers between -1 and 1.
   subroutine noise(seed, values)
-    !> Number of the sequence.
     integer, intent(in) :: seed
-    !> The numbers.
     real(wp), intent(out) :: values(:)
+
     integer(i8) :: state
     integer :: i
 
@@ -24,17 +35,17 @@ contains
     end do
   end subroutine noise
 
-  !> Matrix on a grid of bricks, numbered through the last direction first: noise of a given size
-  !> around a Laplacian, and one more row where a tool is asked for that touches every fourth node.
+  !> Build the matrix of a grid of bricks, numbered in the last direction first: a Laplacian plus
+  !> noise, optionally with one more row for a tool that touches every fourth node.
   subroutine grid_matrix(divisions, size_of_noise, matrix, tool)
-    !> Number of elements along each direction.
+    !> Number of elements in each direction.
     integer, intent(in) :: divisions(3)
-    !> Size of the unsymmetric noise; the Laplacian's blocks are of size one.
+    !> Size of the unsymmetric noise; the blocks of the Laplacian are of size one.
     real(wp), intent(in) :: size_of_noise
-    !> The matrix.
     type(block_matrix_t), intent(out) :: matrix
-    !> Whether a tool's row is added.
+    !> Present to add the row of the tool.
     logical, intent(in), optional :: tool
+
     integer, allocatable :: connectivity(:, :)
     real(wp), allocatable :: values(:)
     integer :: i, j, k, c, e, m, n, node
@@ -66,27 +77,27 @@ contains
         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
           matrix%value(c, c, k) = matrix%value(c, c, k) - 1.0_wp
         end do
-        matrix%value(c, c, matrix%diagonal(i)) = real(matrix%row_start(i + 1) &
-          - matrix%row_start(i), wp)
+        matrix%value(c, c, matrix%diagonal(i)) = &
+          real(matrix%row_start(i + 1) - matrix%row_start(i), wp)
       end do
     end do
   end subroutine grid_matrix
 
-  !> Nodes that a tool touches: every fourth one.
+  !> Return every fourth of n nodes, those that the tool touches.
   function pressed_tool(n) result(nodes)
-    !> Number of nodes.
     integer, intent(in) :: n
-    integer :: nodes((n + 3)/4), i
+    integer :: nodes((n + 3)/4)
+
+    integer :: i
 
     nodes = [(1 + 4*(i - 1), i=1, (n + 3)/4)]
   end function pressed_tool
 
-  !> Multiplies the rows of a system by factors from 1e-2 to 1e4.
+  !> Multiply the rows of a system by factors from 1e-2 to 1e4.
   subroutine scale_rows(matrix, b)
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: matrix
-    !> The right-hand side.
     real(wp), intent(inout) :: b(:)
+
     real(wp), allocatable :: factor(:)
     integer :: i, c
 
@@ -103,11 +114,11 @@ contains
     end do
   end subroutine scale_rows
 
-  !> The matrix with all its zeros.
+  !> Return a matrix as a dense array.
   function dense_form(matrix) result(dense)
-    !> The matrix.
     type(block_matrix_t), intent(in) :: matrix
     real(wp) :: dense(3*matrix%n, 3*matrix%n)
+
     integer :: i, j, k
 
     dense = 0.0_wp

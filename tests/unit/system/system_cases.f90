@@ -54,6 +54,10 @@ contains
     type(error_t), allocatable :: error
 
     options%method = "umfpack"
+    options%ilu_level = 2
+    options%tolerance = 1.0e-10_wp
+    options%iterations = 200
+    options%ordering = "none"
     call new_system(system, model, options, 1, error)
     if (allocated(error)) error stop "the solver of the test is not known"
   end subroutine load_system

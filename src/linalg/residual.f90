@@ -1,0 +1,40 @@
+!> Dot product and residual of a linear system.
+module dd3_linalg_residual
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_matrix, only : block_matrix_t, multiply
+  implicit none
+  private
+  public :: dot, true_residual
+
+contains
+
+  !> Evaluate the residual r = b - A x and its length.
+  subroutine true_residual(matrix, b, x, r, length)
+    type(block_matrix_t), intent(in) :: matrix
+    real(wp), intent(in) :: b(:), x(:)
+    real(wp), intent(out) :: r(:), length
+
+    call multiply(matrix, x, r)
+    r = b - r
+    length = sqrt(dot(r, r))
+  end subroutine true_residual
+
+  !> Return the dot product of two vectors of one size, as four partial sums in a fixed order.
+  pure real(wp) function dot(a, b)
+    real(wp), intent(in) :: a(:), b(:)
+
+    real(wp) :: s(4)
+    integer :: i, n_grouped
+
+    s = 0.0_wp
+    n_grouped = size(a) - modulo(size(a), 4)
+    do i = 1, n_grouped, 4
+      s = s + a(i:i + 3)*b(i:i + 3)
+    end do
+    dot = (s(1) + s(2)) + (s(3) + s(4))
+    do i = n_grouped + 1, size(a)
+      dot = dot + a(i)*b(i)
+    end do
+  end function dot
+
+end module dd3_linalg_residual
