@@ -35,17 +35,15 @@ contains
     wall_time = real(count, wp)/real(rate, wp)
   end function wall_time
 
-  !> Starts the stop-watch.
+  !> Start the stop-watch.
   subroutine profile_start(self)
-    !> The profile.
     class(profile_t), intent(inout) :: self
 
     self%began = wall_time()
   end subroutine profile_start
 
-  !> Adds the time since the start, or since the last call, to a section.
+  !> Add the time since the start, or since the last call, to a section.
   subroutine profile_add(self, section)
-    !> The profile.
     class(profile_t), intent(inout) :: self
     !> One of the `section_*` values.
     integer, intent(in) :: section

@@ -46,9 +46,8 @@ module dd3_base_error
 
 contains
 
-  !> Makes an error of a plain message.
+  !> Make an error of a plain message.
   subroutine fatal_error(error, message)
-    !> The error made.
     type(error_t), allocatable, intent(out) :: error
     !> What happened.
     character(len=*), intent(in) :: message
@@ -60,7 +59,6 @@ contains
   !> A name in the letters, capital or not, that the user wrote it with; as it is where another text
   !> stands at the place.
   pure function as_written(name, at) result(text)
-    !> The name.
     character(len=*), intent(in) :: name
     !> Where it was written.
     type(location_t), intent(in) :: at
@@ -80,13 +78,11 @@ contains
     if (same_name(slice(at%text, first, last), name)) text = slice(at%text, first, last)
   end function as_written
 
-  !> Makes an error that shows the place in the input: file, line, text, caret, what was expected.
+  !> Make an error that shows the place in the input: file, line, text, caret, what was expected.
   subroutine input_error(error, location, message, expected)
-    !> The error made.
     type(error_t), allocatable, intent(out) :: error
     !> The place it speaks of.
     type(location_t), intent(in) :: location
-    !> What is wrong.
     character(len=*), intent(in) :: message
     !> What was expected there.
     character(len=*), intent(in), optional :: expected
@@ -119,7 +115,6 @@ contains
 
   !> Blanks (tabs kept) up to the caret; the later bytes of a UTF-8 character take no room.
   pure function caret_indent(location) result(indent)
-    !> The place.
     type(location_t), intent(in) :: location
     character(len=:), allocatable :: indent
 
@@ -136,11 +131,9 @@ contains
     end do
   end function caret_indent
 
-  !> Adds an error to the list; nothing happens where there is none.
+  !> Add an error to the list; nothing happens where there is none.
   subroutine error_list_push(self, error)
-    !> The list.
     class(error_list_t), intent(inout) :: self
-    !> The error.
     type(error_t), allocatable, intent(in) :: error
 
     type(error_t), allocatable :: larger(:)
@@ -156,13 +149,11 @@ contains
     self%item(self%count) = error
   end subroutine error_list_push
 
-  !> Makes an input error and adds it to the list.
+  !> Make an input error and adds it to the list.
   subroutine error_list_push_input(self, location, message, expected)
-    !> The list.
     class(error_list_t), intent(inout) :: self
     !> The place it speaks of.
     type(location_t), intent(in) :: location
-    !> What is wrong.
     character(len=*), intent(in) :: message
     !> What was expected there.
     character(len=*), intent(in), optional :: expected
@@ -176,7 +167,6 @@ contains
   !> Brings the errors into the order of the input's lines; those without a place come last, in the
   !> order found.
   subroutine error_list_sort(self)
-    !> The list.
     class(error_list_t), intent(inout) :: self
 
     type(error_t) :: moved
@@ -196,7 +186,6 @@ contains
 
   !> Whether the first error's place is before the second's.
   pure logical function stands_before(a, b)
-    !> The two errors.
     type(error_t), intent(in) :: a, b
 
     stands_before = a%order < b%order .or. (a%order == b%order .and. a%column < b%column)

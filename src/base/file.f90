@@ -30,7 +30,6 @@ module dd3_base_file
 
   !> A text file open for writing.
   type :: file_t
-    !> Its name.
     character(len=:), allocatable :: path
     !> Descriptor; negative when closed.
     integer(c_int) :: descriptor = -1
@@ -159,11 +158,9 @@ module dd3_base_file
 
 contains
 
-  !> Opens a new, empty file in place of any old one.
+  !> Open a new, empty file in place of any old one.
   subroutine file_create(self, path, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> Its name.
     character(len=*), intent(in) :: path
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
@@ -176,11 +173,9 @@ contains
     end if
   end subroutine file_create
 
-  !> Makes the file stand for a descriptor that is open.
+  !> Make the file stand for a descriptor that is open.
   subroutine file_attach(self, descriptor, path)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> The descriptor.
     integer(c_int), intent(in) :: descriptor
     !> The name it has in messages.
     character(len=*), intent(in) :: path
@@ -197,9 +192,8 @@ contains
     self%flushed = wall_time()
   end subroutine file_attach
 
-  !> Adds text; it is written when the buffer is full or has waited long enough.
+  !> Add text; it is written when the buffer is full or has waited long enough.
   subroutine file_put(self, text, error)
-    !> The file.
     class(file_t), intent(inout) :: self
     !> The text, with its own ends of lines.
     character(len=*), intent(in) :: text
@@ -226,10 +220,9 @@ contains
     if (allocated(late)) call move_alloc(late, error)
   end subroutine file_put
 
-  !> Hands what waits to the system, into the room kept for it; an error says that no more can be
+  !> Write what waits to the system, into the room kept for it; an error says that no more can be
   !> kept.
   subroutine file_flush(self, error)
-    !> The file.
     class(file_t), intent(inout) :: self
     !> Says why it cannot be written.
     type(error_t), allocatable, intent(out) :: error
@@ -278,9 +271,8 @@ contains
     call self%flush(error)
   end subroutine file_keep_room
 
-  !> Keeps the book of the file's length and of its whole lines.
+  !> Keep the book of the file's length and of its whole lines.
   subroutine count_written(self, text)
-    !> The file.
     class(file_t), intent(inout) :: self
     !> What was written.
     character(len=*), intent(in) :: text
@@ -291,10 +283,9 @@ contains
     self%length = self%length + len(text, i8)
   end subroutine count_written
 
-  !> Reserves room on the disk for what another library is about to write behind the file's end. On
+  !> Reserve room on the disk for what another library is about to write behind the file's end. On
   !> a file system that cannot reserve, the writes themselves tell.
   subroutine file_reserve(self, size, more, error)
-    !> The file.
     class(file_t), intent(inout) :: self
     !> Its size now, and how much it may grow.
     integer(i8), intent(in) :: size, more
@@ -308,9 +299,8 @@ contains
     call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
   end subroutine file_reserve
 
-  !> Reserves room behind the file's end.
+  !> Reserve room behind the file's end.
   subroutine try_to_reserve(self, size, more, cause)
-    !> The file.
     class(file_t), intent(in) :: self
     !> Its size now, and how much it may grow.
     integer(i8), intent(in) :: size, more
@@ -329,9 +319,8 @@ contains
     if (cause /= efbig .and. cause /= enospc .and. cause /= edquot) cause = 0
   end subroutine try_to_reserve
 
-  !> Gives back the room that is reserved and not used.
+  !> Return back the room that is reserved and not used.
   subroutine file_release(self)
-    !> The file.
     class(file_t), intent(inout) :: self
     integer(c_int), parameter :: from_end = 2
     integer(c_long) :: size
@@ -341,9 +330,8 @@ contains
     if (size >= 0) ignored = posix_ftruncate(self%descriptor, size)
   end subroutine file_release
 
-  !> Writes what waits and closes the file; nothing happens where it is closed.
+  !> Write what waits and closes the file; nothing happens where it is closed.
   subroutine file_close(self, error)
-    !> The file.
     class(file_t), intent(inout) :: self
     !> Says why the rest cannot be written.
     type(error_t), allocatable, intent(out) :: error
@@ -359,9 +347,8 @@ contains
     end if
   end subroutine file_close
 
-  !> Makes a directory and those above it; one that exists is fine.
+  !> Make a directory and those above it; one that exists is fine.
   subroutine make_directory(path, error)
-    !> Its name.
     character(len=*), intent(in) :: path
     !> Says why it cannot be made.
     type(error_t), allocatable, intent(out) :: error
@@ -379,9 +366,8 @@ contains
     end if
   end subroutine make_directory
 
-  !> Removes a file. A symbolic link is left: what it leads to was chosen by the user.
+  !> Remove a file. A symbolic link is left: what it leads to was chosen by the user.
   subroutine remove_file(path, removed)
-    !> Its name.
     character(len=*), intent(in) :: path
     !> Whether it was there and is there no more.
     logical, intent(out) :: removed

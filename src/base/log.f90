@@ -48,7 +48,6 @@ contains
 
   !> Looks at the screen; lines said from now on are kept for job.log.
   subroutine log_start(self, quiet)
-    !> The log.
     class(log_t), intent(inout) :: self
     !> Whether nothing goes to the screen.
     logical, intent(in) :: quiet
@@ -64,9 +63,8 @@ contains
     if (quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
   end subroutine log_start
 
-  !> Opens job.log and writes what was said before.
+  !> Open job.log and writes what was said before.
   subroutine log_open(self, path, quiet, error)
-    !> The log.
     class(log_t), intent(inout) :: self
     !> Name of the file.
     character(len=*), intent(in) :: path
@@ -85,11 +83,9 @@ contains
     if (.not. allocated(error)) call self%file%flush(error)
   end subroutine log_open
 
-  !> Says a line, or several with ends of lines between them, on the screen and in job.log.
+  !> Say a line, or several with ends of lines between them, on the screen and in job.log.
   subroutine log_say(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> The text.
     character(len=*), intent(in) :: text
     type(error_t), allocatable :: ignored
 
@@ -103,11 +99,9 @@ contains
     call self%note(text)
   end subroutine log_say
 
-  !> Writes a line, or several, in job.log only.
+  !> Write a line, or several, in job.log only.
   subroutine log_note(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> The text.
     character(len=*), intent(in) :: text
     type(error_t), allocatable :: error
 
@@ -121,9 +115,8 @@ contains
     call move_alloc(error, self%failure)
   end subroutine log_note
 
-  !> Rewrites the line in place; an empty text wipes it. Only a terminal has such a line.
+  !> Rewrite the line in place; an empty text wipes it. Only a terminal has such a line.
   subroutine log_live(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
     !> The text, of one line.
     character(len=*), intent(in) :: text
@@ -136,9 +129,8 @@ contains
     self%live_length = len(text)
   end subroutine log_live
 
-  !> Gives the first failed write to job.log, once; brings what waits to the disk.
+  !> Return the first failed write to job.log, once; brings what waits to the disk.
   subroutine log_check(self, error)
-    !> The log.
     class(log_t), intent(inout) :: self
     !> Says why job.log cannot be written.
     type(error_t), allocatable, intent(out) :: error
@@ -147,9 +139,8 @@ contains
     if (allocated(self%failure)) call move_alloc(self%failure, error)
   end subroutine log_check
 
-  !> Wipes the line in place and closes job.log.
+  !> Clear the line in place and closes job.log.
   subroutine log_close(self, error)
-    !> The log.
     class(log_t), intent(inout) :: self
     !> Says why job.log cannot be written.
     type(error_t), allocatable, intent(out) :: error

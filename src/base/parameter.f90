@@ -118,9 +118,7 @@ contains
 
   !> Whether a value lies within the bounds of a parameter; a NaN does not.
   pure logical function in_range(row, value)
-    !> The parameter.
     type(parameter_t), intent(in) :: row
-    !> The value.
     real(wp), intent(in) :: value
 
     in_range = value >= row%lower .and. value <= row%upper
@@ -130,7 +128,6 @@ contains
 
   !> The bounds of a parameter, as they follow what it is; empty where there are none.
   pure function range_text(row) result(text)
-    !> The parameter.
     type(parameter_t), intent(in) :: row
     character(len=:), allocatable :: text
 

@@ -24,7 +24,6 @@ contains
 
   !> A whole number as text.
   pure function integer_to_text(value) result(text)
-    !> The number.
     integer, intent(in) :: value
     character(len=:), allocatable :: text
     character(len=24) :: buffer
@@ -35,7 +34,6 @@ contains
 
   !> A long whole number as text.
   pure function long_to_text(value) result(text)
-    !> The number.
     integer(i8), intent(in) :: value
     character(len=:), allocatable :: text
     character(len=24) :: buffer
@@ -46,7 +44,6 @@ contains
 
   !> A real number as text, with `digits` significant digits (6 when left out).
   pure function real_to_text(value, digits) result(text)
-    !> The number.
     real(wp), intent(in) :: value
     !> Significant digits.
     integer, intent(in), optional :: digits
@@ -79,7 +76,6 @@ contains
 
   !> A logical as `on` or `off`.
   pure function logical_to_text(value) result(text)
-    !> The logical.
     logical, intent(in) :: value
     character(len=:), allocatable :: text
 
@@ -88,7 +84,6 @@ contains
 
   !> The text with its capital letters made small.
   pure function lower_case(text) result(lower)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: lower
     integer :: i, c
@@ -102,7 +97,6 @@ contains
 
   !> The text with its small letters made capital.
   pure function upper_case(text) result(upper)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: upper
     integer :: i, c
@@ -116,7 +110,6 @@ contains
 
   !> Whether two names are the same, capital or not.
   pure logical function same_name(a, b)
-    !> The two names.
     character(len=*), intent(in) :: a, b
 
     same_name = lower_case(trim(a)) == lower_case(trim(b))
@@ -160,7 +153,6 @@ contains
   !> How far apart in the alphabet the last characters are of two words that are alike before them;
   !> a large number for other words.
   pure integer function last_step(a, b)
-    !> The two words.
     character(len=*), intent(in) :: a, b
 
     last_step = huge(1)
@@ -172,7 +164,6 @@ contains
   !> Number of insertions, deletions, replacements and exchanges of neighbours between two words
   !> (optimal string alignment; Damerau 1964).
   pure integer function edit_distance(a, b)
-    !> The two words.
     character(len=*), intent(in) :: a, b
     integer :: cost(0:len(b), 0:2), i, j
 
@@ -195,7 +186,6 @@ contains
 
   !> Part of a text.
   pure function slice(text, first, last)
-    !> The text.
     character(len=*), intent(in) :: text
     !> Positions of the first and the last character of the part.
     integer, intent(in) :: first, last
