@@ -138,7 +138,7 @@ contains
     if (any(abs(material%frame) > 0.0_wp)) return
     call errors%push_input(material%source%at("rolling_direction"), &
         "rolling and normal direction are zero or parallel", &
-        "two directions that are perpendicular to each other")
+        "two directions that are neither zero nor parallel")
   end subroutine check_material
 
   !> Check the bounds of the factor r if the block gives one of them.

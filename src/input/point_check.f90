@@ -150,7 +150,7 @@ contains
       fraction = real(k, wp)/real(n, wp)
       if (volume(from + fraction*(point%goal(i)%value - from)) > 0.0_wp) cycle
       call errors%push_input(point%goal(i)%at, "det F is not positive "// &
-          trim(merge("on the path to it", "at the end       ", k < n)), &
+          trim(merge("on the path", "at the end ", k < n)), &
           "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant on the whole path")
       return
     end do
