@@ -3,7 +3,7 @@ module dd3_input_form_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, error_list_t
   use dd3_base_parameter, only : parameter_t
-  use dd3_base_text, only : lower_case
+  use dd3_base_text, only : lower_case, slice
   use dd3_input_block, only : entry_t, token_t
   use dd3_input_describe, only : describe, split_words, word_length
   use dd3_input_number, only : parse_integer
@@ -130,8 +130,8 @@ contains
       call parse_integer(token%text, first, ok)
       last = first
     else
-      call parse_integer(token%text(:dash - 1), first, ok)
-      call parse_integer(token%text(dash + 1:), last, last_ok)
+      call parse_integer(slice(token%text, 1, dash - 1), first, ok)
+      call parse_integer(slice(token%text, dash + 1, len(token%text)), last, last_ok)
       ok = ok .and. last_ok
     end if
     if (ok) ok = first >= 1 .and. last >= first

@@ -32,7 +32,7 @@ contains
           upper=1.0_wp), &
       row("skew", kind_real, "", "0", &
           "interior node lines across y are shifted along x by skew*(lx/nx)*(y/ly - 1/2)"), &
-      row("element", kind_name, "", "hex8", "element type"), &
+      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
       row("material", kind_name, "", "", "material", form="material")]
   end function blank_keys
 
@@ -42,7 +42,7 @@ contains
     key = [ &
       row("file", kind_text, "", "", &
           "mesh file: Gmsh .msh 2.2 or 4.1, Abaqus or CalculiX .inp, GiD .msh"), &
-      row("element", kind_name, "", "hex8", "element type"), &
+      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
       row("material", kind_name, "", "-", "material", form="material"), &
       row("material_of", kind_other, "", "-", "material of the elements of a set", &
           repeatable=.true., form="set material")]

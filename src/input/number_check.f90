@@ -84,7 +84,7 @@ contains
     if (index(word, ",") > 0) then
       text = text//": use a decimal point, and blanks between values"
     else if (verify(word, "+-.0123456789eEdD") == 0 .and. scan(word, "eEdD") > 1) then
-      text = text//", or its exponent is out of range"
+      text = "'"//word//"' is not a representable number"
     end if
   end function not_a_number
 
@@ -102,9 +102,20 @@ contains
     if (ok) then
       entry%number = [entry%number, real(value, wp)]
     else
-      call errors%push_input(token%at, "'"//token%text//"' is not an integer", expected)
+      call errors%push_input(token%at, not_an_integer(token%text), expected)
     end if
   end subroutine add_integer
+
+  !> Return the message for a word that is not an integer.
+  pure function not_an_integer(word) result(text)
+    character(len=*), intent(in) :: word
+    character(len=:), allocatable :: text
+
+    text = "'"//word//"' is not an integer"
+    if (len(word) > 9 .and. verify(word, "+-0123456789") == 0) then
+      text = "'"//word//"' is not a representable integer"
+    end if
+  end function not_an_integer
 
   !> Check a number against its row's bounds.
   subroutine check_range(value, row, at, expected, errors)
