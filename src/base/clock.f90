@@ -1,4 +1,4 @@
-!> Wall-clock time, and the profile of a run by section.
+!> Wall-clock time, and the time spent in the sections of a run.
 module dd3_base_clock
   use dd3_base_kinds, only : wp, i8
   implicit none
@@ -7,18 +7,16 @@ module dd3_base_clock
   public :: section_material, section_assembly, section_contact, section_factorisation, &
       section_solve, section_output
 
-  !> Sections of a run that are timed apart.
+  !> Sections that are timed separately.
   integer, parameter :: section_material = 1, section_assembly = 2, section_contact = 3, &
                         section_factorisation = 4, section_solve = 5, section_output = 6
-  !> Their names.
   character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", &
       "contact", "factorisation", "solve", "output"]
 
   !> Seconds spent in each section.
   type :: profile_t
-    !> Sum so far, s.
     real(wp) :: seconds(size(section_names)) = 0.0_wp
-    !> When the running section began, s.
+    !> Start of the current section, s.
     real(wp) :: began = 0.0_wp
   contains
     procedure :: start => profile_start
@@ -27,7 +25,7 @@ module dd3_base_clock
 
 contains
 
-  !> Seconds on a clock that only goes forward.
+  !> Return the time of a monotonic clock, s.
   real(wp) function wall_time()
     integer(i8) :: count, rate
 
@@ -35,20 +33,19 @@ contains
     wall_time = real(count, wp)/real(rate, wp)
   end function wall_time
 
-  !> Starts the stop-watch.
+  !> Start timing a section.
   subroutine profile_start(self)
-    !> The profile.
     class(profile_t), intent(inout) :: self
 
     self%began = wall_time()
   end subroutine profile_start
 
-  !> Adds the time since the start, or since the last call, to a section.
+  !> Add the time since the start, or since the last call, to a section.
   subroutine profile_add(self, section)
-    !> The profile.
     class(profile_t), intent(inout) :: self
     !> One of the `section_*` values.
     integer, intent(in) :: section
+
     real(wp) :: now
 
     now = wall_time()

@@ -1,5 +1,4 @@
-!> Errors of the set-up as values: they travel up, gain context on the way and are reported
-!> together.
+!> Set-up errors as values: passed to the caller, collected in a list, and reported together.
 module dd3_base_error
   use dd3_base_kinds, only : i8
   use dd3_base_text, only : newline, same_name, slice
@@ -7,36 +6,35 @@ module dd3_base_error
   private
   public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written, keep_first
 
-  !> Where a piece of input was written.
+  !> Location of a piece of input.
   type :: location_t
-    !> Name of the file, as the user gave it.
+    !> Name of the file as given by the user.
     character(len=:), allocatable :: file
-    !> Line number, from 1; 0 where there is none (command line, whole file).
+    !> Line number, from 1; 0 for the command line and the whole file.
     integer :: line = 0
-    !> Column of the first character, from 1; 0 where there is none.
+    !> Column of the first character, from 1; 0 if unknown.
     integer :: column = 0
-    !> Number of characters it takes.
+    !> Number of characters.
     integer :: width = 1
-    !> The line of text, or the part of it around the column.
+    !> Text of the line, or the part of it around the column.
     character(len=:), allocatable :: text
-    !> Position of the line in the whole text with its included files unfolded; errors are reported
-    !> in this order.
+    !> Position of the line in the whole text with included files inserted; errors are reported in
+    !> this order.
     integer :: order = huge(0)
   end type location_t
 
-  !> One error, ready to be shown.
+  !> An error, ready to be shown.
   type :: error_t
-    !> What happened, may hold several lines.
+    !> May contain several lines.
     character(len=:), allocatable :: message
-    !> Place of its first character in the whole input: position of the line, column.
+    !> Position in the whole input: line (see `location_t`) and column.
     integer :: order = huge(0), column = 0
   end type error_t
 
-  !> All errors found so far, in the order they were found.
+  !> A list of errors.
   type :: error_list_t
-    !> Number of errors held.
     integer :: count = 0
-    !> The errors: `item(1:count)`.
+    !> Errors in the order found, `item(1:count)`.
     type(error_t), allocatable :: item(:)
   contains
     procedure :: push => error_list_push
@@ -46,23 +44,19 @@ module dd3_base_error
 
 contains
 
-  !> Makes an error of a plain message.
+  !> Create an error with a plain message.
   subroutine fatal_error(error, message)
-    !> The error made.
     type(error_t), allocatable, intent(out) :: error
-    !> What happened.
     character(len=*), intent(in) :: message
 
     allocate (error)
     error%message = message
   end subroutine fatal_error
 
-  !> A name in the letters, capital or not, that the user wrote it with; as it is where another text
-  !> stands at the place.
+  !> Return a name with the upper and lower case of the input; unchanged if the input has another
+  !> text at this location.
   pure function as_written(name, at) result(text)
-    !> The name.
     character(len=*), intent(in) :: name
-    !> Where it was written.
     type(location_t), intent(in) :: at
     character(len=:), allocatable :: text
 
@@ -80,15 +74,12 @@ contains
     if (same_name(slice(at%text, first, last), name)) text = slice(at%text, first, last)
   end function as_written
 
-  !> Makes an error that shows the place in the input: file, line, text, caret, what was expected.
+  !> Create an error that shows a location in the input: file, line, text, caret, expectation.
   subroutine input_error(error, location, message, expected)
-    !> The error made.
     type(error_t), allocatable, intent(out) :: error
-    !> The place it speaks of.
     type(location_t), intent(in) :: location
-    !> What is wrong.
     character(len=*), intent(in) :: message
-    !> What was expected there.
+    !> What was expected at the location.
     character(len=*), intent(in), optional :: expected
 
     character(len=12) :: number
@@ -117,9 +108,8 @@ contains
     if (present(expected)) error%message = error%message//newline//"  expected: "//expected
   end subroutine input_error
 
-  !> Blanks (tabs kept) up to the caret; the later bytes of a UTF-8 character take no room.
+  !> Return the blanks before the caret. Tabs are kept; a UTF-8 character has a width of one.
   pure function caret_indent(location) result(indent)
-    !> The place.
     type(location_t), intent(in) :: location
     character(len=:), allocatable :: indent
 
@@ -136,11 +126,9 @@ contains
     end do
   end function caret_indent
 
-  !> Adds an error to the list; nothing happens where there is none.
+  !> Append an error if there is one.
   subroutine error_list_push(self, error)
-    !> The list.
     class(error_list_t), intent(inout) :: self
-    !> The error.
     type(error_t), allocatable, intent(in) :: error
 
     type(error_t), allocatable :: larger(:)
@@ -156,15 +144,12 @@ contains
     self%item(self%count) = error
   end subroutine error_list_push
 
-  !> Makes an input error and adds it to the list.
+  !> Append an input error.
   subroutine error_list_push_input(self, location, message, expected)
-    !> The list.
     class(error_list_t), intent(inout) :: self
-    !> The place it speaks of.
     type(location_t), intent(in) :: location
-    !> What is wrong.
     character(len=*), intent(in) :: message
-    !> What was expected there.
+    !> What was expected at the location.
     character(len=*), intent(in), optional :: expected
 
     type(error_t), allocatable :: error
@@ -173,10 +158,9 @@ contains
     call self%push(error)
   end subroutine error_list_push_input
 
-  !> Brings the errors into the order of the input's lines; those without a place come last, in the
-  !> order found.
+  !> Sort the errors by their position in the input; those without one come last, in the order
+  !> found.
   subroutine error_list_sort(self)
-    !> The list.
     class(error_list_t), intent(inout) :: self
 
     type(error_t) :: moved
@@ -186,7 +170,7 @@ contains
       moved = self%item(i)
       j = i - 1
       do while (j >= 1)
-        if (.not. stands_before(moved, self%item(j))) exit
+        if (.not. is_before(moved, self%item(j))) exit
         self%item(j + 1) = self%item(j)
         j = j - 1
       end do
@@ -194,13 +178,12 @@ contains
     end do
   end subroutine error_list_sort
 
-  !> Whether the first error's place is before the second's.
-  pure logical function stands_before(a, b)
-    !> The two errors.
+  !> Whether error a is located before error b.
+  pure logical function is_before(a, b)
     type(error_t), intent(in) :: a, b
 
-    stands_before = a%order < b%order .or. (a%order == b%order .and. a%column < b%column)
-  end function stands_before
+    is_before = a%order < b%order .or. (a%order == b%order .and. a%column < b%column)
+  end function is_before
 
   !> Keep the first of two errors.
   subroutine keep_first(error, late)

@@ -1,7 +1,7 @@
-!> Text files whose every write is checked. The flush of the Fortran library does not report a full
-!> disk, so these go through the POSIX calls creat, write, ftruncate and close. After a failed
-!> write the file is cut back to its last whole line. A file may keep room on the disk for what its
-!> buffer holds: a full disk is then found while all lines can still be written.
+!> Text files with checked writes. The flush of the Fortran library does not report a full disk, so
+!> these files use the POSIX calls creat, write, ftruncate and close. After a failed write the file
+!> is truncated to its last complete line. A file may reserve disk space for its buffer: a full disk
+!> is then detected while all lines can still be written.
 module dd3_base_file
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_ptr, c_null_char, &
       c_f_pointer, c_associated
@@ -15,36 +15,34 @@ module dd3_base_file
 
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
-  !> Characters gathered before they are handed to the system.
+  !> Size of the buffer in characters.
   integer(i8), parameter :: buffer_size = 16384
-  !> Room kept on the disk: for a full buffer, and for what is added while a run comes to its end.
+  !> Reserved disk space: a full buffer, and the lines written while a run stops.
   integer(i8), parameter :: room_kept = 2*buffer_size
-  !> Longest time a line waits in the buffer while others follow, s.
+  !> Maximum age of the buffer when a line is added, s.
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Error numbers of Linux: interrupted call, file exists, too large, disk full, quota used up.
+  !> Error numbers of Linux: interrupted call, file exists, file too large, disk full, over quota.
   integer(c_int), parameter :: eintr = 4, eexist = 17, efbig = 27, enospc = 28, edquot = 122
-  !> Linux' limit on the size of a file, as `getrlimit` knows it.
+  !> Resource number of the file size limit (Linux).
   integer(c_int), parameter :: rlimit_fsize = 1
-  !> Reserving room leaves the size of the file as it is (Linux).
+  !> Mode of fallocate that keeps the file size (Linux).
   integer(c_int), parameter :: keep_size = 1
 
   !> A text file open for writing.
   type :: file_t
-    !> Its name.
     character(len=:), allocatable :: path
-    !> Descriptor; negative when closed.
+    !> Negative if closed.
     integer(c_int) :: descriptor = -1
-    !> Text not written yet: `buffer(1:used)`.
+    !> Text not yet written, `buffer(1:used)`.
     character(len=:), allocatable :: buffer
-    !> Characters waiting in the buffer.
     integer(i8) :: used = 0
-    !> Length of the file up to the end of its last whole line, and of all that is written.
+    !> Length of the file: up to the last complete line, and in total.
     integer(i8) :: whole = 0, length = 0
-    !> When the buffer was written last, s.
+    !> Time of the last flush, s.
     real(wp) :: flushed = 0.0_wp
     !> Whether a write failed.
     logical :: failed = .false.
-    !> Whether room is kept for what waits; whether it was said that there is none any more.
+    !> Whether disk space is reserved for the buffer; whether a lack of it was reported.
     logical :: keeps_room = .false., full = .false.
   contains
     procedure :: create => file_create
@@ -61,112 +59,97 @@ module dd3_base_file
     !> creat(2).
     integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
       import :: c_char, c_int
-      !> Name of the file, ended by a null.
+      !> Null-terminated.
       character(kind=c_char), intent(in) :: path(*)
-      !> Permissions.
       integer(c_int), value :: mode
     end function posix_creat
     !> write(2).
     integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
       import :: c_char, c_int, c_size_t
-      !> Descriptor of the file.
       integer(c_int), value :: descriptor
-      !> The characters.
       character(kind=c_char), intent(in) :: buffer(*)
-      !> How many there are.
       integer(c_size_t), value :: count
     end function posix_write
     !> ftruncate(2).
     integer(c_int) function posix_ftruncate(descriptor, length) bind(c, name="ftruncate")
       import :: c_int, c_long
-      !> Descriptor of the file.
       integer(c_int), value :: descriptor
-      !> Its new length.
       integer(c_long), value :: length
     end function posix_ftruncate
     !> lseek(2).
     integer(c_long) function posix_lseek(descriptor, offset, whence) bind(c, name="lseek")
       import :: c_int, c_long
-      !> Descriptor of the file; what the offset counts from.
+      !> `whence` is the origin of the offset.
       integer(c_int), value :: descriptor, whence
-      !> The offset.
       integer(c_long), value :: offset
     end function posix_lseek
     !> close(2).
     integer(c_int) function posix_close(descriptor) bind(c, name="close")
       import :: c_int
-      !> Descriptor of the file.
       integer(c_int), value :: descriptor
     end function posix_close
     !> fallocate(2).
     integer(c_int) function linux_fallocate(descriptor, mode, offset, length) &
       bind(c, name="fallocate")
       import :: c_int, c_long
-      !> Descriptor of the file; how room is reserved.
       integer(c_int), value :: descriptor, mode
-      !> Where the room begins, and its length.
       integer(c_long), value :: offset, length
     end function linux_fallocate
     !> getrlimit(2).
     integer(c_int) function posix_getrlimit(resource, limits) bind(c, name="getrlimit")
       import :: c_int, c_long
-      !> What is limited.
       integer(c_int), value :: resource
-      !> The limit that holds, and the largest it may be raised to.
+      !> Soft and hard limit.
       integer(c_long), intent(out) :: limits(2)
     end function posix_getrlimit
     !> mkdir(2).
     integer(c_int) function posix_mkdir(path, mode) bind(c, name="mkdir")
       import :: c_char, c_int
-      !> Name of the directory, ended by a null.
+      !> Null-terminated.
       character(kind=c_char), intent(in) :: path(*)
-      !> Permissions.
       integer(c_int), value :: mode
     end function posix_mkdir
     !> unlink(2).
     integer(c_int) function posix_unlink(path) bind(c, name="unlink")
       import :: c_char, c_int
-      !> Name of the file, ended by a null.
+      !> Null-terminated.
       character(kind=c_char), intent(in) :: path(*)
     end function posix_unlink
     !> readlink(2).
     integer(c_size_t) function posix_readlink(path, buffer, size) bind(c, name="readlink")
       import :: c_char, c_int, c_size_t
-      !> Name of the link, ended by a null.
+      !> Null-terminated.
       character(kind=c_char), intent(in) :: path(*)
-      !> Receives what the link leads to.
+      !> Target of the link.
       character(kind=c_char), intent(out) :: buffer(*)
-      !> Room in the buffer.
       integer(c_size_t), value :: size
     end function posix_readlink
-    !> Address of the last error number.
+    !> Address of errno.
     type(c_ptr) function errno_location() bind(c, name="__errno_location")
       import :: c_ptr
     end function errno_location
     !> strerror(3).
     type(c_ptr) function c_strerror(number) bind(c, name="strerror")
       import :: c_int, c_ptr
-      !> Number of the error.
       integer(c_int), value :: number
     end function c_strerror
     !> strlen(3).
     integer(c_size_t) function c_strlen(text) bind(c, name="strlen")
       import :: c_ptr, c_size_t
-      !> Address of the text, ended by a null.
+      !> Address of a null-terminated text.
       type(c_ptr), value :: text
     end function c_strlen
   end interface
 
 contains
 
-  !> Opens a new, empty file in place of any old one.
+  !> Create an empty file, or truncate an existing one.
   subroutine file_create(self, path, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> Its name.
     character(len=*), intent(in) :: path
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
+
     integer(c_int), parameter :: mode = int(o'666', c_int)
 
     call self%attach(posix_creat(path//c_null_char, mode), path)
@@ -176,13 +159,11 @@ contains
     end if
   end subroutine file_create
 
-  !> Makes the file stand for a descriptor that is open.
+  !> Use an open descriptor.
   subroutine file_attach(self, descriptor, path)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> The descriptor.
     integer(c_int), intent(in) :: descriptor
-    !> The name it has in messages.
+    !> Name for messages.
     character(len=*), intent(in) :: path
 
     self%path = path
@@ -197,14 +178,14 @@ contains
     self%flushed = wall_time()
   end subroutine file_attach
 
-  !> Adds text; it is written when the buffer is full or has waited long enough.
+  !> Add text to the buffer, which is written when it is full or too old.
   subroutine file_put(self, text, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> The text, with its own ends of lines.
+    !> With line ends.
     character(len=*), intent(in) :: text
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
+
     type(error_t), allocatable :: late
     integer(i8) :: first, n
 
@@ -226,13 +207,12 @@ contains
     if (allocated(late)) call move_alloc(late, error)
   end subroutine file_put
 
-  !> Hands what waits to the system, into the room kept for it; an error says that no more can be
-  !> kept.
+  !> Write the buffer, into reserved space if there is any; report if no more space can be reserved.
   subroutine file_flush(self, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> Says why it cannot be written.
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
+
     integer(i8) :: first
     integer(c_size_t) :: n
     integer(c_int) :: status, cause
@@ -267,23 +247,22 @@ contains
     call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
   end subroutine file_flush
 
-  !> From now on room is kept on the disk for what waits in the buffer.
+  !> Reserve disk space for the buffer from now on.
   subroutine file_keep_room(self, error)
-    !> The file, open.
     class(file_t), intent(inout) :: self
-    !> Says why there is no room.
+    !> Set if there is no space.
     type(error_t), allocatable, intent(out) :: error
 
     self%keeps_room = .true.
     call self%flush(error)
   end subroutine file_keep_room
 
-  !> Keeps the book of the file's length and of its whole lines.
+  !> Update the length of the file and of its complete lines.
   subroutine count_written(self, text)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> What was written.
+    !> Text written.
     character(len=*), intent(in) :: text
+
     integer(i8) :: end_of_line
 
     end_of_line = index(text, newline, back=.true., kind=i8)
@@ -291,15 +270,15 @@ contains
     self%length = self%length + len(text, i8)
   end subroutine count_written
 
-  !> Reserves room on the disk for what another library is about to write behind the file's end. On
-  !> a file system that cannot reserve, the writes themselves tell.
+  !> Reserve disk space at the end of the file for another library. File systems that cannot reserve
+  !> report no error here, but in the write.
   subroutine file_reserve(self, size, more, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> Its size now, and how much it may grow.
+    !> Current size, and additional space.
     integer(i8), intent(in) :: size, more
-    !> Says why there is no room.
+    !> Set if there is no space.
     type(error_t), allocatable, intent(out) :: error
+
     integer(c_int) :: cause
 
     call try_to_reserve(self, size, more, cause)
@@ -308,14 +287,14 @@ contains
     call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
   end subroutine file_reserve
 
-  !> Reserves room behind the file's end.
+  !> Reserve disk space at the end of the file.
   subroutine try_to_reserve(self, size, more, cause)
-    !> The file.
     class(file_t), intent(in) :: self
-    !> Its size now, and how much it may grow.
+    !> Current size, and additional space.
     integer(i8), intent(in) :: size, more
-    !> Why there is no room; 0: there is, or the file system does not tell.
+    !> Error number; 0 if the space is reserved or the file system cannot reserve.
     integer(c_int), intent(out) :: cause
+
     integer(c_long) :: limits(2)
 
     cause = 0
@@ -329,10 +308,10 @@ contains
     if (cause /= efbig .and. cause /= enospc .and. cause /= edquot) cause = 0
   end subroutine try_to_reserve
 
-  !> Gives back the room that is reserved and not used.
+  !> Release reserved space that is not used.
   subroutine file_release(self)
-    !> The file.
     class(file_t), intent(inout) :: self
+
     integer(c_int), parameter :: from_end = 2
     integer(c_long) :: size
     integer(c_int) :: ignored
@@ -341,12 +320,12 @@ contains
     if (size >= 0) ignored = posix_ftruncate(self%descriptor, size)
   end subroutine file_release
 
-  !> Writes what waits and closes the file; nothing happens where it is closed.
+  !> Write the buffer and close the file; no-op if it is closed.
   subroutine file_close(self, error)
-    !> The file.
     class(file_t), intent(inout) :: self
-    !> Says why the rest cannot be written.
+    !> Set if the buffer cannot be written.
     type(error_t), allocatable, intent(out) :: error
+
     integer(c_int) :: status
 
     if (self%descriptor < 0) return
@@ -359,12 +338,12 @@ contains
     end if
   end subroutine file_close
 
-  !> Makes a directory and those above it; one that exists is fine.
+  !> Create a directory and its parents; it may exist.
   subroutine make_directory(path, error)
-    !> Its name.
     character(len=*), intent(in) :: path
-    !> Says why it cannot be made.
+    !> Set if it cannot be created.
     type(error_t), allocatable, intent(out) :: error
+
     integer(c_int), parameter :: mode = int(o'777', c_int)
     integer(c_int) :: status
     integer :: i
@@ -374,17 +353,17 @@ contains
     end do
     status = posix_mkdir(path//c_null_char, mode)
     if (status /= 0) then
-      if (errno() /= eexist) call fatal_error(error, "cannot make the directory '"//path//"': " &
+      if (errno() /= eexist) call fatal_error(error, "cannot create the directory '"//path//"': " &
                                               //system_message(errno()))
     end if
   end subroutine make_directory
 
-  !> Removes a file. A symbolic link is left: what it leads to was chosen by the user.
+  !> Remove a file. A symbolic link is kept, as its target was chosen by the user.
   subroutine remove_file(path, removed)
-    !> Its name.
     character(len=*), intent(in) :: path
-    !> Whether it was there and is there no more.
+    !> False if there was no file, or it could not be removed.
     logical, intent(out) :: removed
+
     character(kind=c_char) :: target(1)
 
     removed = .false.
@@ -392,7 +371,7 @@ contains
     removed = posix_unlink(path//c_null_char) == 0
   end subroutine remove_file
 
-  !> The number of the last system error.
+  !> Return the number of the last system error.
   integer(c_int) function errno()
     integer(c_int), pointer :: number
 
@@ -400,11 +379,11 @@ contains
     errno = number
   end function errno
 
-  !> A system error in words.
+  !> Return the message of a system error.
   function system_message(number) result(message)
-    !> Its number.
     integer(c_int), intent(in) :: number
     character(len=:), allocatable :: message
+
     character(kind=c_char), pointer :: letter(:)
     type(c_ptr) :: address
     integer :: i

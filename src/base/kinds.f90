@@ -9,7 +9,6 @@ module dd3_base_kinds
   integer, parameter :: wp = real64
   !> Long integers: clocks and hashes.
   integer, parameter :: i8 = int64
-  !> Ratio of a circle's circumference to its diameter.
   real(wp), parameter :: pi = 3.141592653589793_wp
   !> Square root of two, and half of it; 1/sqrt2 differs from the latter in the last bit.
   real(wp), parameter :: sqrt2 = sqrt(2.0_wp), half_sqrt2 = 0.5_wp*sqrt2

@@ -1,5 +1,5 @@
-!> What is said during a run: on the screen and in job.log. A line that is rewritten in place on a
-!> terminal never gets between the others: it is wiped before anything else is said.
+!> Log of a run, on the screen and in job.log. On a terminal, a status line is rewritten in place;
+!> it is cleared before anything else is written.
 module dd3_base_log
   use, intrinsic :: iso_c_binding, only : c_int
   use dd3_base_error, only : error_t
@@ -9,22 +9,22 @@ module dd3_base_log
   private
   public :: log_t
 
-  !> Return to the start of a terminal's line, and the sequence that wipes it from there.
+  !> Carriage return, and the terminal sequence that clears the line.
   character(len=*), parameter :: wipe = achar(13)//achar(27)//"[K"
 
   !> The log of a run.
   type :: log_t
-    !> Whether nothing goes to the screen.
+    !> Whether nothing is written to the screen.
     logical :: quiet = .false.
     !> Whether the screen is a terminal that can rewrite a line.
     logical :: terminal = .false.
-    !> Characters of the line that is rewritten in place, now on the screen.
+    !> Length of the status line on the screen.
     integer, private :: live_length = 0
-    !> The screen and job.log.
+    !> Screen and job.log.
     type(file_t), private :: screen, file
-    !> What was said before job.log was opened.
+    !> Lines written before job.log was opened.
     character(len=:), allocatable, private :: held
-    !> The first failed write to job.log, until it is asked for.
+    !> First failed write to job.log, until it is reported.
     type(error_t), allocatable, private :: failure
   contains
     procedure :: start => log_start
@@ -46,12 +46,12 @@ module dd3_base_log
 
 contains
 
-  !> Looks at the screen; lines said from now on are kept for job.log.
+  !> Attach to the screen. Lines are kept for job.log until it is open.
   subroutine log_start(self, quiet)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> Whether nothing goes to the screen.
+    !> Whether nothing is written to the screen.
     logical, intent(in) :: quiet
+
     character(len=16) :: kind
     integer :: status
 
@@ -64,15 +64,13 @@ contains
     if (quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
   end subroutine log_start
 
-  !> Opens job.log and writes what was said before.
+  !> Open job.log and write the lines kept for it.
   subroutine log_open(self, path, quiet, error, earlier)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> Name of the file.
     character(len=*), intent(in) :: path
-    !> Whether nothing goes to the screen.
+    !> Whether nothing is written to the screen.
     logical, intent(in) :: quiet
-    !> Says why it cannot be written.
+    !> Set if job.log cannot be written.
     type(error_t), allocatable, intent(out) :: error
     !> Log of an earlier run that is continued.
     character(len=*), intent(in), optional :: earlier
@@ -88,12 +86,11 @@ contains
     if (.not. allocated(error)) call self%file%flush(error)
   end subroutine log_open
 
-  !> Says a line, or several with ends of lines between them, on the screen and in job.log.
+  !> Write one or several lines to the screen and to job.log.
   subroutine log_say(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> The text.
     character(len=*), intent(in) :: text
+
     type(error_t), allocatable :: ignored
 
     if (.not. allocated(self%held)) call self%start(self%quiet)
@@ -106,12 +103,11 @@ contains
     call self%note(text)
   end subroutine log_say
 
-  !> Writes a line, or several, in job.log only.
+  !> Write one or several lines to job.log only.
   subroutine log_note(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> The text.
     character(len=*), intent(in) :: text
+
     type(error_t), allocatable :: error
 
     if (self%file%descriptor < 0) then
@@ -124,12 +120,12 @@ contains
     call move_alloc(error, self%failure)
   end subroutine log_note
 
-  !> Rewrites the line in place; an empty text wipes it. Only a terminal has such a line.
+  !> Rewrite the status line; an empty text clears it. No-op if the screen is not a terminal.
   subroutine log_live(self, text)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> The text, of one line.
+    !> A single line.
     character(len=*), intent(in) :: text
+
     type(error_t), allocatable :: ignored
 
     if (.not. self%terminal) return
@@ -139,22 +135,20 @@ contains
     self%live_length = len(text)
   end subroutine log_live
 
-  !> Gives the first failed write to job.log, once; brings what waits to the disk.
+  !> Flush job.log, and return its first failed write, once.
   subroutine log_check(self, error)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> Says why job.log cannot be written.
+    !> Set if job.log cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     if (self%file%descriptor >= 0) call self%file%flush(error)
     if (allocated(self%failure)) call move_alloc(self%failure, error)
   end subroutine log_check
 
-  !> Wipes the line in place and closes job.log.
+  !> Clear the status line and close job.log.
   subroutine log_close(self, error)
-    !> The log.
     class(log_t), intent(inout) :: self
-    !> Says why job.log cannot be written.
+    !> Set if job.log cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     call self%live("")
@@ -162,7 +156,7 @@ contains
     if (allocated(self%failure)) call move_alloc(self%failure, error)
   end subroutine log_close
 
-  !> Characters in a line of the screen.
+  !> Return the number of columns of the screen.
   integer function screen_width()
     character(len=8) :: columns
     integer :: status

@@ -1,5 +1,4 @@
-!> The row of a keyword table: the parser, the range check, the echo, `--help` and the manual derive
-!> from it.
+!> Row of a keyword table. The parser, the checks, the echo, `--help` and the manual derive from it.
 module dd3_base_parameter
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -11,91 +10,81 @@ module dd3_base_parameter
 
   !> One real number.
   integer, parameter :: kind_real = 1
-  !> One whole number.
+  !> One integer.
   integer, parameter :: kind_integer = 2
   !> on/off, yes/no, true/false.
   integer, parameter :: kind_logical = 3
-  !> One bare word, lower-cased: the name of a set, a tool, a law, an option.
+  !> One word, in lower case: the name of a set, a tool, a law, an option.
   integer, parameter :: kind_name = 4
-  !> A string, kept as written: a path or a title.
+  !> A text as written: a path or a title.
   integer, parameter :: kind_text = 5
   !> `count` real numbers.
   integer, parameter :: kind_reals = 6
-  !> Several bare words.
+  !> `count` words.
   integer, parameter :: kind_names = 7
   !> A law's name followed by `key=value` pairs.
   integer, parameter :: kind_law = 8
   !> A form of its own, given by `form`.
   integer, parameter :: kind_other = 9
-  !> `count` whole numbers.
+  !> `count` integers.
   integer, parameter :: kind_integers = 10
 
-  !> Name of the parameter of a law that takes pairs `p:Y` in any number.
+  !> Name of the law parameter that stands for any number of pairs `p:Y`.
   character(len=*), parameter :: pair_name = "p:Y"
 
-  !> A keyword, or a law's parameter.
+  !> A key, or a parameter of a law.
   type :: parameter_t
-    !> Name as written in the input (upper and lower case are the same).
+    !> Name as written in the input; case does not matter.
     character(len=24) :: name = ""
     !> One of the `kind_*` values.
     integer :: kind = kind_real
-    !> How many values, for `kind_reals`, `kind_integers`, `kind_names`; 0 for any number from one.
+    !> Number of values of `kind_reals`, `kind_integers`, `kind_names`; 0 for one or more.
     integer :: count = 1
-    !> Unit of the value, empty where it has none.
     character(len=16) :: unit = ""
-    !> Default as it would be written; empty where the value must be given; `-` where leaving it out
-    !> means "absent".
+    !> Default as it would be written; empty if a value must be given; `-` if the key may be left
+    !> out and then has no value.
     character(len=24) :: default = ""
-    !> Smallest and largest value allowed.
+    !> Bounds of the value.
     real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
-    !> Whether the bounds themselves are refused.
+    !> Whether the bounds are excluded.
     logical :: lower_open = .false., upper_open = .false.
-    !> Whether `off` may stand in place of a number.
+    !> Whether the value may be `off`.
     logical :: may_be_off = .false.
     !> Whether the key may be given several times.
     logical :: repeatable = .false.
-    !> Alternatives of a `kind_name`, separated by blanks; empty where any word will do.
+    !> Allowed words of a `kind_name` or `kind_names`, separated by blanks; empty to allow any.
     character(len=120) :: choices = ""
-    !> What stands where in the value of a `kind_other`; alternatives separated by `/`. The words
-    !> `set`, `tool`, `material`,
-    !> `axis`, `number`, `count` and `range` stand for such values, `a|b` for one of two words,
-    !> `...` repeats the word before
-    !> it, `[mm]` may be left out. For a `kind_name`, `set`, `tool` or `material` says what must
-    !> bear the name.
+    !> Form of a `kind_other`, with alternatives separated by `/`. The words `set`, `tool`,
+    !> `material`, `axis`, `number`, `count` and `range` stand for such values, `a|b` for one of two
+    !> words, `...` repeats the word before it, `[mm]` may be left out. For a `kind_name`: `set`,
+    !> `tool` or `material` if it must be the name of one.
     character(len=80) :: form = ""
-    !> Alternatives, or laws, that this version does not provide, separated by blanks; `*` for the
-    !> whole key.
+    !> Choices or laws reserved for a later version, separated by blanks; `*` for the whole key.
     character(len=120) :: later = ""
     !> One line of help.
     character(len=160) :: help = ""
   end type parameter_t
 
-  !> A law's parameter as given by the user.
+  !> Value of a law's parameter.
   type :: law_value_t
-    !> Name as written in the input.
+    !> Name in the law's table.
     character(len=24) :: name = ""
-    !> Its value; of a pair, what stands behind the colon.
+    !> Value; of a pair `p:Y` the second number.
     real(wp) :: value = 0.0_wp
-    !> Of a pair, what stands before the colon.
+    !> First number of a pair.
     real(wp) :: abscissa = 0.0_wp
   end type law_value_t
 
 contains
 
-  !> A row with the common members; the others can be set afterwards.
+  !> Return a row; the arguments are the components of `parameter_t`.
   pure function row(name, kind, unit, default, help, lower, upper, lower_open, upper_open, count, &
                     may_be_off, repeatable, choices, form, later)
-    !> See the components of `parameter_t`.
     character(len=*), intent(in) :: name, unit, default, help
-    !> See the components of `parameter_t`.
     integer, intent(in) :: kind
-    !> See the components of `parameter_t`.
     real(wp), intent(in), optional :: lower, upper
-    !> See the components of `parameter_t`.
     logical, intent(in), optional :: lower_open, upper_open, may_be_off, repeatable
-    !> See the components of `parameter_t`.
     integer, intent(in), optional :: count
-    !> See the components of `parameter_t`.
     character(len=*), intent(in), optional :: choices, form, later
     type(parameter_t) :: row
 
@@ -116,11 +105,9 @@ contains
     if (present(later)) row%later = later
   end function row
 
-  !> Whether a value lies within the bounds of a parameter; a NaN does not.
+  !> Whether a value is within the bounds; false for NaN.
   pure logical function in_range(row, value)
-    !> The parameter.
     type(parameter_t), intent(in) :: row
-    !> The value.
     real(wp), intent(in) :: value
 
     in_range = value >= row%lower .and. value <= row%upper
@@ -128,9 +115,8 @@ contains
     if (row%upper_open .and. .not. value < row%upper) in_range = .false.
   end function in_range
 
-  !> The bounds of a parameter, as they follow what it is; empty where there are none.
+  !> Return the bounds as text, each after a comma; empty without bounds.
   pure function range_text(row) result(text)
-    !> The parameter.
     type(parameter_t), intent(in) :: row
     character(len=:), allocatable :: text
 

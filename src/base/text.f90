@@ -1,4 +1,4 @@
-!> Small text helpers.
+!> Text utilities.
 module dd3_base_text
   use dd3_base_kinds, only : wp, i8
   implicit none
@@ -6,51 +6,47 @@ module dd3_base_text
   public :: text_t, newline, to_text, lower_case, upper_case, same_name, nearest_name, suggestion, &
       join, slice
 
-  !> Ends a line.
   character(len=1), parameter :: newline = achar(10)
 
   !> A string of any length, for lists of strings.
   type :: text_t
-    !> The string.
     character(len=:), allocatable :: s
   end type text_t
 
-  !> A number or a logical as text, as short as it can be.
+  !> Return a number or a logical as text without redundant characters.
   interface to_text
     module procedure :: integer_to_text, long_to_text, real_to_text, logical_to_text
   end interface to_text
 
 contains
 
-  !> A whole number as text.
   pure function integer_to_text(value) result(text)
-    !> The number.
     integer, intent(in) :: value
     character(len=:), allocatable :: text
+
     character(len=24) :: buffer
 
     write (buffer, '(i0)') value
     text = trim(buffer)
   end function integer_to_text
 
-  !> A long whole number as text.
   pure function long_to_text(value) result(text)
-    !> The number.
     integer(i8), intent(in) :: value
     character(len=:), allocatable :: text
+
     character(len=24) :: buffer
 
     write (buffer, '(i0)') value
     text = trim(buffer)
   end function long_to_text
 
-  !> A real number as text, with `digits` significant digits (6 when left out).
+  !> Return a real number as text.
   pure function real_to_text(value, digits) result(text)
-    !> The number.
     real(wp), intent(in) :: value
-    !> Significant digits.
+    !> Number of significant digits, 6 if not given.
     integer, intent(in), optional :: digits
     character(len=:), allocatable :: text
+
     character(len=40) :: buffer, form
     integer :: n, mark, e
 
@@ -77,20 +73,19 @@ contains
     if (text(e:e) == ".") text = text(:e - 1)//text(e + 1:)
   end function real_to_text
 
-  !> A logical as `on` or `off`.
+  !> Return `on` or `off`.
   pure function logical_to_text(value) result(text)
-    !> The logical.
     logical, intent(in) :: value
     character(len=:), allocatable :: text
 
     text = trim(merge("on ", "off", value))
   end function logical_to_text
 
-  !> The text with its capital letters made small.
+  !> Return the text in lower case (ASCII letters).
   pure function lower_case(text) result(lower)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: lower
+
     integer :: i, c
 
     lower = text
@@ -100,11 +95,11 @@ contains
     end do
   end function lower_case
 
-  !> The text with its small letters made capital.
+  !> Return the text in upper case (ASCII letters).
   pure function upper_case(text) result(upper)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: upper
+
     integer :: i, c
 
     upper = text
@@ -114,22 +109,20 @@ contains
     end do
   end function upper_case
 
-  !> Whether two names are the same, capital or not.
+  !> Whether two names are equal regardless of case and trailing blanks.
   pure logical function same_name(a, b)
-    !> The two names.
     character(len=*), intent(in) :: a, b
 
     same_name = lower_case(trim(a)) == lower_case(trim(b))
   end function same_name
 
-  !> The known name closest to a misspelt one; empty when none is close. Of those that are equally
-  !> close, a name with another last character goes first, as C6 for C7, the nearest of them.
+  !> Return the known name closest to a misspelt one; empty if none is close. Among equally close
+  !> names, one that differs in the last character only is preferred, as C6 for C7.
   pure function nearest_name(name, known) result(nearest)
-    !> What was written.
     character(len=*), intent(in) :: name
-    !> The names there are.
     character(len=*), intent(in) :: known(:)
     character(len=:), allocatable :: nearest
+
     integer :: i, most, distance, step, best(2)
 
     nearest = ""
@@ -145,11 +138,9 @@ contains
     end do
   end function nearest_name
 
-  !> The known name closest to a misspelt one as the end of a message; empty when none is close.
+  !> Return the closest known name as the end of a message; empty if none is close.
   pure function suggestion(name, known) result(text)
-    !> What was written.
     character(len=*), intent(in) :: name
-    !> The names there are.
     character(len=*), intent(in) :: known(:)
     character(len=:), allocatable :: text
 
@@ -157,10 +148,9 @@ contains
     if (text /= "") text = "; did you mean '"//text//"'?"
   end function suggestion
 
-  !> How far apart in the alphabet the last characters are of two words that are alike before them;
-  !> a large number for other words.
+  !> Return the distance in the alphabet of the last characters of two words that differ in nothing
+  !> else; a large number for other words.
   pure integer function last_step(a, b)
-    !> The two words.
     character(len=*), intent(in) :: a, b
 
     last_step = huge(1)
@@ -169,11 +159,11 @@ contains
     last_step = abs(iachar(a(len(a):)) - iachar(b(len(b):)))
   end function last_step
 
-  !> Number of insertions, deletions, replacements and exchanges of neighbours between two words
+  !> Return the number of insertions, deletions, replacements and transpositions between two words
   !> (optimal string alignment; Damerau 1964).
   pure integer function edit_distance(a, b)
-    !> The two words.
     character(len=*), intent(in) :: a, b
+
     integer :: cost(0:len(b), 0:2), i, j
 
     cost = 0
@@ -193,24 +183,21 @@ contains
     edit_distance = cost(len(b), 2)
   end function edit_distance
 
-  !> Part of a text.
+  !> Return part of a text.
   pure function slice(text, first, last)
-    !> The text.
     character(len=*), intent(in) :: text
-    !> Positions of the first and the last character of the part.
     integer, intent(in) :: first, last
     character(len=:), allocatable :: slice
 
     slice = text(first:last)
   end function slice
 
-  !> The words with a separator between them.
+  !> Return the words joined by a separator, without trailing blanks.
   pure function join(words, separator) result(text)
-    !> The words, trailing blanks ignored.
     character(len=*), intent(in) :: words(:)
-    !> What stands between two of them.
     character(len=*), intent(in) :: separator
     character(len=:), allocatable :: text
+
     integer :: i
 
     text = ""

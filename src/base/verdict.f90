@@ -1,4 +1,4 @@
-!> The verdict of a numerical step: numerics never stop and never print, they return one of these.
+!> Verdict of a numerical step. Numerics neither stop nor print; they return one of these.
 module dd3_base_verdict
   use dd3_base_kinds, only : wp
   implicit none
@@ -7,22 +7,21 @@ module dd3_base_verdict
 
   !> The step succeeded.
   integer, parameter :: verdict_converged = 0
-  !> The step failed, a smaller one may succeed.
+  !> The step failed; a smaller one may succeed.
   integer, parameter :: verdict_retry = 1
   !> The step failed and no smaller one will help.
   integer, parameter :: verdict_impossible = 2
 
-  !> How a numerical step ended; it starts pessimistic.
+  !> Result of a numerical step; initially a failure.
   type :: verdict_t
     !> One of the `verdict_*` values.
     integer :: outcome = verdict_impossible
-    !> Why, in words; empty when converged.
+    !> Reason for a failure; empty if converged.
     character(len=160) :: reason = ""
-    !> Iterations made.
     integer :: iterations = 0
-    !> Norm of what should vanish, in the step's own unit.
+    !> Norm of the residual, in the unit of the step.
     real(wp) :: norm = huge(1.0_wp)
-    !> Worst node, element, integration point and tool; 0 where it has no meaning.
+    !> Location of the largest error: node, element, integration point, tool; 0 if not applicable.
     integer :: node = 0, element = 0, point = 0, tool = 0
   end type verdict_t
 

@@ -1,6 +1,5 @@
-!> The words of the input text, gathered into blocks: `*BLOCK name` and below it `key = value value
-!> ...`.
-!> Every word remembers where it was written.
+!> The words of the input, grouped into blocks: `*BLOCK name`, followed by lines
+!> `key = value value ...`. Every word keeps its location.
 module dd3_input_block
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, location_t
@@ -11,50 +10,48 @@ module dd3_input_block
 
   !> One word of the input.
   type :: token_t
-    !> The word, without its quotes, parameters replaced.
+    !> Word without quotes, with parameters replaced.
     character(len=:), allocatable :: text
-    !> Whether it stood in quotes.
+    !> Whether it was in quotes.
     logical :: quoted = .false.
-    !> Where it was written.
     type(location_t) :: at
   end type token_t
 
   !> One line `key = value value ...`; for a title, one line of free text.
   type :: entry_t
-    !> The key, in small letters.
+    !> Key in lower case.
     character(len=:), allocatable :: key
-    !> Where the key was written.
+    !> Where the key is written.
     type(location_t) :: at
-    !> What stands right of the equals sign.
+    !> Words after the equals sign.
     type(token_t), allocatable :: value(:)
-    !> The numbers among the values, in order; filled by the check.
+    !> Numbers among the values, in order. This and the following are set by the check.
     real(wp), allocatable :: number(:)
-    !> Whether the value has the form and the range asked for; set by the check.
+    !> Whether the value has the expected form and range.
     logical :: valid = .true.
-    !> Whether `off` stands in place of the numbers; set by the check.
+    !> Whether the value is `off` in place of a number.
     logical :: is_off = .false.
-    !> Whether the key was left out and this is its default; set by the check.
+    !> Whether this is the default of a key that was left out.
     logical :: defaulted = .false.
   end type entry_t
 
   !> One block.
   type :: block_t
-    !> What kind of block: the word after the star, in small letters.
+    !> Word after the star, in lower case.
     character(len=:), allocatable :: keyword
-    !> The block's own name, in small letters; empty where it has none.
+    !> The block's own name in lower case; empty if it has none.
     character(len=:), allocatable :: name
-    !> Where the block was opened.
+    !> Where the block begins.
     type(location_t) :: opened
-    !> Where its name was written; where it was opened if it has none.
+    !> Where its name is written; where it begins if it has none.
     type(location_t) :: named
-    !> Folder of the file that holds the block, with a slash at the end; empty for the working
+    !> Folder of the file that contains the block, with a slash at the end; empty for the working
     !> directory.
     character(len=:), allocatable :: folder
     !> Whether the block and all its entries passed the check.
     logical :: valid = .true.
-    !> Number of entries.
     integer :: n_entry = 0
-    !> The entries, `entry(1:n_entry)`.
+    !> Entries, `entry(1:n_entry)`.
     type(entry_t), allocatable :: entry(:)
   contains
     procedure :: find
@@ -67,11 +64,10 @@ module dd3_input_block
     procedure :: add_entry
   end type block_t
 
-  !> The whole input as blocks, included files unfolded.
+  !> The whole input as blocks, with included files inserted.
   type :: deck_t
-    !> Number of blocks.
     integer :: n_block = 0
-    !> The blocks, `block(1:n_block)`.
+    !> Blocks, `block(1:n_block)`.
     type(block_t), allocatable :: block(:)
   contains
     procedure :: add_block
@@ -79,13 +75,11 @@ module dd3_input_block
 
 contains
 
-  !> Position of the first entry with a key after a given one; 0 if there is none.
+  !> Return the position of the first entry with a key; 0 if not found.
   pure integer function find(self, key, after)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
-    !> The entry after which the search begins; the first one when left out.
+    !> Entry after which the search begins.
     integer, intent(in), optional :: after
 
     integer :: start
@@ -98,11 +92,9 @@ contains
     find = 0
   end function find
 
-  !> Whether a key has a value that passed the check, its default included.
+  !> Whether a key has a valid value, given or by default.
   pure logical function has(self, key)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
 
     integer :: i
@@ -112,11 +104,9 @@ contains
     if (has) has = self%entry(i)%valid
   end function has
 
-  !> The first word of a key's value; empty where there is none.
+  !> Return the first word of a key's value; empty if it has no valid value.
   pure function word(self, key)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
     character(len=:), allocatable :: word
 
@@ -124,11 +114,9 @@ contains
     if (self%has(key)) word = self%entry(self%find(key))%value(1)%text
   end function word
 
-  !> The first number of a key's value; 0 where there is none.
+  !> Return the first number of a key's value; 0 if it has none.
   pure real(wp) function number(self, key)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
 
     integer :: i
@@ -139,11 +127,9 @@ contains
     if (size(self%entry(i)%number) > 0) number = self%entry(i)%number(1)
   end function number
 
-  !> The numbers of a key's value; none where there is no value.
+  !> Return the numbers of a key's value; size 0 if it has no valid value.
   pure function numbers(self, key)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
     real(wp), allocatable :: numbers(:)
 
@@ -154,11 +140,9 @@ contains
     end if
   end function numbers
 
-  !> Where the value of a key was written; where the block was opened if it was left out.
+  !> Return where the value of a key is written; where the block begins if it was left out.
   function at(self, key)
-    !> The block.
     class(block_t), intent(in) :: self
-    !> The key.
     character(len=*), intent(in) :: key
     type(location_t) :: at
 
@@ -173,20 +157,16 @@ contains
     if (size(self%entry(i)%value) > 0) at = self%entry(i)%value(1)%at
   end function at
 
-  !> The block's own name as the user wrote it.
+  !> Return the block's own name as the user wrote it.
   pure function called(self)
-    !> The block.
     class(block_t), intent(in) :: self
     character(len=:), allocatable :: called
 
     called = as_written(self%name, self%named)
   end function called
 
-  !> Appends an entry.
   subroutine add_entry(self, entry)
-    !> The block.
     class(block_t), intent(inout) :: self
-    !> The entry.
     type(entry_t), intent(in) :: entry
 
     type(entry_t), allocatable :: larger(:)
@@ -201,11 +181,8 @@ contains
     self%entry(self%n_entry) = entry
   end subroutine add_entry
 
-  !> Appends a block.
   subroutine add_block(self, block)
-    !> The deck.
     class(deck_t), intent(inout) :: self
-    !> The block.
     type(block_t), intent(in) :: block
 
     type(block_t), allocatable :: larger(:)

@@ -1,12 +1,13 @@
-!> Checks the blocks of an input against the keyword tables and fills in the defaults.
+!> Check of the blocks of an input against the keyword table; fills in the defaults.
 module dd3_input_check
   use dd3_base_error, only : as_written, error_list_t, location_t
-  use dd3_base_text, only : upper_case, same_name, nearest_name, suggestion, join
+  use dd3_base_text, only : upper_case, same_name, nearest_name, suggestion, join, to_text
   use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t, deck_t
+  use dd3_input_describe, only : not_available
   use dd3_input_table, only : block_row_t, find_block, find_key
   use dd3_input_token, only : line_t, token_list_t, split_line
-  use dd3_input_value, only : check_value, not_available
+  use dd3_input_value, only : check_value
   implicit none
   private
   public :: check_deck
@@ -16,15 +17,11 @@ module dd3_input_check
 
 contains
 
-  !> Checks all blocks; adds the blocks and keys that were left out and have defaults.
+  !> Check all blocks, and add the blocks and keys that were left out and have defaults.
   subroutine check_deck(deck, table, file, errors)
-    !> The blocks.
     type(deck_t), intent(inout) :: deck
-    !> The keyword tables.
     type(block_row_t), intent(in) :: table(:)
-    !> Name of the input file.
     character(len=*), intent(in) :: file
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k, before
@@ -47,13 +44,10 @@ contains
     call add_blocks(deck, table, errors)
   end subroutine check_deck
 
-  !> Reports a block that is not in the table.
+  !> Report a block that is not in the table.
   subroutine unknown_block(block, table, errors)
-    !> The block.
     type(block_t), intent(in) :: block
-    !> The keyword tables.
     type(block_row_t), intent(in) :: table(:)
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: nearest
@@ -64,15 +58,11 @@ contains
         "one of: *"//upper_case(join(table%keyword, " *")))
   end subroutine unknown_block
 
-  !> Checks a block's own name, and that it does not stand there twice.
+  !> Check the name of block i, and that the block is not given twice.
   subroutine check_name(deck, i, row, errors)
-    !> The blocks.
     type(deck_t), intent(in) :: deck
-    !> Position of the block.
     integer, intent(in) :: i
-    !> Its row.
     type(block_row_t), intent(in) :: row
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: title
@@ -81,12 +71,13 @@ contains
     associate (block => deck%block(i))
       title = "*"//upper_case(block%keyword)
       if (row%named .and. block%name == "") then
-        call errors%push_input(block%opened, title//" has no name", title//" name")
+        call errors%push_input(block%opened, title//" requires a name", title//" name")
       else if (.not. row%named .and. block%name /= "") then
         call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
       else if (row%named .and. .not. is_name(block%name)) then
-        call errors%push_input(block%named, "'"//block%called()//"' cannot be a name", &
-            "a letter, then letters, digits, _ - or ., at most 60 characters")
+        call errors%push_input(block%named, "'"//block%called()//"' is not a valid name", &
+            "a letter, then letters, digits, _ - or ., at most "//to_text(longest_name)// &
+            " characters")
       end if
       do j = 1, i - 1
         if (deck%block(j)%keyword /= block%keyword) cycle
@@ -98,25 +89,21 @@ contains
     end associate
   end subroutine check_name
 
-  !> Whether a text can be a name.
+  !> Whether a text is a valid name.
   pure logical function is_name(text)
-    !> The text.
     character(len=*), intent(in) :: text
 
     character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
 
     is_name = text /= "" .and. len(text) <= longest_name &
-      .and. verify(text, letters//"0123456789_-.") == 0
+              .and. verify(text, letters//"0123456789_-.") == 0
     if (is_name) is_name = index(letters, text(1:1)) > 0
   end function is_name
 
-  !> Checks the keys of a block.
+  !> Check the keys of a block.
   subroutine check_keys(block, key, errors)
-    !> The block.
     type(block_t), intent(inout) :: block
-    !> Its rows.
     type(parameter_t), intent(in) :: key(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k
@@ -140,37 +127,29 @@ contains
     call add_defaults(block, key, errors)
   end subroutine check_keys
 
-  !> The block as the user calls it.
+  !> Return the first line of a block as the user wrote it.
   pure function title_of(block) result(title)
-    !> The block.
     type(block_t), intent(in) :: block
     character(len=:), allocatable :: title
 
     title = trim("*"//upper_case(block%keyword)//" "//block%called())
   end function title_of
 
-  !> Reports a key that is not in the table.
+  !> Report a key that is not in the table.
   subroutine unknown_key(block, entry, key, errors)
-    !> The block.
     type(block_t), intent(in) :: block
-    !> The entry.
     type(entry_t), intent(in) :: entry
-    !> The block's rows.
     type(parameter_t), intent(in) :: key(:)
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     call errors%push_input(entry%at, "unknown key '"//as_written(entry%key, entry%at)//"' in "// &
         title_of(block)//suggestion(entry%key, key%name), "one of: "//join(key%name, " "))
   end subroutine unknown_key
 
-  !> Adds the keys that were left out: an error where there is no default.
+  !> Add the defaults of the keys that were left out; report keys without a default.
   subroutine add_defaults(block, key, errors)
-    !> The block.
     type(block_t), intent(inout) :: block
-    !> Its rows.
     type(parameter_t), intent(in) :: key(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     type(entry_t) :: entry
@@ -198,15 +177,11 @@ contains
     end do
   end subroutine add_defaults
 
-  !> Reports blocks that must be there and are not.
+  !> Report required blocks that are missing.
   subroutine check_presence(deck, table, file, errors)
-    !> The blocks.
     type(deck_t), intent(in) :: deck
-    !> The keyword tables.
     type(block_row_t), intent(in) :: table(:)
-    !> Name of the input file.
     character(len=*), intent(in) :: file
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     type(location_t) :: whole_file
@@ -219,22 +194,19 @@ contains
       call errors%push_input(whole_file, "the block *"//upper_case(trim(table(i)%keyword))// &
           " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help))
     end do
-    if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. has_block(deck, &
-        "point"))) then
+    if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. &
+               has_block(deck, "point"))) then
       call errors%push_input(whole_file, "the block *BLANK is missing", &
-          "the sheet: *BLANK name; or a single point: *POINT name")
+          "*BLANK name for a sheet, or *POINT name for a single material point")
     end if
     if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
       call errors%push_input(whole_file, "the block *CONTACT is missing", &
-          "with tools there, *CONTACT with its penalty")
+          "*CONTACT with a penalty, as there are tools")
     end if
   end subroutine check_presence
 
-  !> Whether there is a block of a kind.
   pure logical function has_block(deck, keyword)
-    !> The blocks.
     type(deck_t), intent(in) :: deck
-    !> The word after the star.
     character(len=*), intent(in) :: keyword
 
     integer :: i
@@ -245,13 +217,10 @@ contains
     end do
   end function has_block
 
-  !> Adds blocks that were left out and whose keys all have defaults.
+  !> Add the blocks that were left out if all their keys have defaults.
   subroutine add_blocks(deck, table, errors)
-    !> The blocks.
     type(deck_t), intent(inout) :: deck
-    !> The keyword tables.
     type(block_row_t), intent(in) :: table(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     type(block_t) :: block

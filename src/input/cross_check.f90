@@ -1,5 +1,4 @@
-!> Checks that need several values of the case at once. Blocks that did not pass the earlier checks
-!> are left out.
+!> Checks of relations between the values of the case. Blocks with earlier errors are skipped.
 module dd3_input_cross_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
@@ -13,11 +12,9 @@ module dd3_input_cross_check
 
 contains
 
-  !> Checks everything but the phases.
+  !> Check everything but the phases.
   subroutine cross_check(case, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, before
@@ -49,11 +46,9 @@ contains
     end do
   end subroutine cross_check
 
-  !> Checks a blank's gradings and skew.
+  !> Check a blank's gradings and skew.
   subroutine check_blank(blank, errors)
-    !> The blank.
     type(blank_spec_t), intent(in) :: blank
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     real(wp) :: shift, room
@@ -65,7 +60,7 @@ contains
     call check_grading(blank%source, "grading_z", blank%divisions(3), errors)
     if (product(real(blank%divisions, wp)) > 5.0e6_wp) then
       call errors%push_input(blank%source%at("divisions"), &
-          "there would be more than 5 million elements")
+          "more than 5 million elements", "at most 5 million")
     end if
     if (errors%count > before .or. blank%divisions(1) < 2) return
     associate (x => blank%grading_x, n => blank%divisions(1))
@@ -73,21 +68,17 @@ contains
       room = min(x(1) - x(0), x(n) - x(n - 1))
       if (shift >= room) then
         call errors%push_input(blank%source%at("skew"), "skew = "//to_text(blank%skew)// &
-            " folds the elements at the ends", "a magnitude below "// &
+            " inverts the elements at the ends", "a magnitude below "// &
             to_text(2.0_wp*room*real(n, wp)))
       end if
     end associate
   end subroutine check_blank
 
-  !> Checks a grading: one number per node line, rising from 0 to 1.
+  !> Check a grading of n elements: one number per node line, increasing from 0 to 1.
   subroutine check_grading(block, key, n, errors)
-    !> The blank's block.
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
-    !> Number of elements.
     integer, intent(in) :: n
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     real(wp), allocatable :: x(:)
@@ -97,67 +88,64 @@ contains
     allocate (x, source=block%numbers(key))
     k = block%find(key)
     if (size(x) /= n + 1) then
-      call errors%push_input(block%at(key), "there are "//to_text(size(x))//" abscissae for "// &
-          to_text(n)//" elements", key//" = "//to_text(n + 1)//" numbers rising from 0 to 1")
+      call errors%push_input(block%at(key), "expected "//to_text(n + 1)//" abscissae for "// &
+          to_text(n)//" elements, got "//to_text(size(x)), key//" = "//to_text(n + 1)// &
+          " numbers increasing from 0 to 1")
       return
     end if
-    if (abs(x(1)) > 0.0_wp) call errors%push_input(block%at(key), key//" does not begin with 0", &
+    if (abs(x(1)) > 0.0_wp) call errors%push_input(block%at(key), key//" does not start at 0", &
         "0 ... 1")
     do i = 2, size(x)
       if (x(i) > x(i - 1)) cycle
-      call errors%push_input(block%entry(k)%value(i)%at, key//" does not rise here", &
+      call errors%push_input(block%entry(k)%value(i)%at, key//" does not increase here", &
           "each number larger than the one before")
       return
     end do
     if (abs(x(n + 1) - 1.0_wp) > 0.0_wp) then
-      call errors%push_input(block%entry(k)%value(n + 1)%at, key//" does not end with 1", "0 ... 1")
+      call errors%push_input(block%entry(k)%value(n + 1)%at, key//" does not end at 1", "0 ... 1")
     end if
   end subroutine check_grading
 
-  !> Checks that a set is chosen in one way.
+  !> Check that a set has exactly one definition, and the bounds of a box.
   subroutine check_set(set, errors)
-    !> The set.
     type(node_set_spec_t), intent(in) :: set
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i
+    integer :: i, n
 
-    i = count([set%source%has("plane"), set%source%has("box"), set%source%has("nodes"), &
-        set%source%has("near")])
-    if (i /= 1) then
-      call errors%push_input(set%source%opened, "set '"//set%source%called()//"' is chosen in "// &
-          to_text(i)//" ways", "one of plane, box, nodes, near; 'of' keeps another set's members")
+    n = count([set%source%has("plane"), set%source%has("box"), set%source%has("nodes"), &
+               set%source%has("near")])
+    if (n /= 1) then
+      call errors%push_input(set%source%opened, "set '"//set%source%called()// &
+          "': expected 1 definition, got "//to_text(n), &
+          "one of plane, box, nodes, near, alone or with of")
     end if
     if (.not. set%source%has("box")) return
     do i = 1, 5, 2
       if (set%value(i + 1) >= set%value(i)) cycle
       call errors%push_input(set%source%entry(set%source%find("box"))%value(i)%at, &
-          "the box is inside out", "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1")
+          "the bounds of the box are reversed", &
+          "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1")
       return
     end do
   end subroutine check_set
 
-  !> Checks a material's directions.
+  !> Check a material's directions.
   subroutine check_material(material, errors)
-    !> The material.
     type(material_spec_t), intent(in) :: material
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     if (any(abs(material%frame) > 0.0_wp)) return
     call errors%push_input(material%source%at("rolling_direction"), &
-        "rolling and normal direction vanish or are parallel", &
-        "two directions square to each other")
+        "rolling and normal direction are zero or parallel", &
+        "two directions that are neither zero nor parallel")
   end subroutine check_material
 
-  !> Checks the bounds of the factor r, where the block gives one of them.
+  !> Check the bounds of the factor r if the block gives one of them.
   subroutine check_limits(limits, block, errors)
-    !> The limits that hold.
+    !> Limits that apply, given or inherited.
     type(limits_spec_t), intent(in) :: limits
-    !> The block.
     type(block_t), intent(in) :: block
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: key
@@ -170,24 +158,19 @@ contains
         " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max")
   end subroutine check_limits
 
-  !> Whether a key was written, not filled in.
+  !> Whether a key has a valid value that is not its default.
   pure logical function given(block, key)
-    !> The block.
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
 
     given = block%has(key)
     if (given) given = .not. block%entry(block%find(key))%defaulted
   end function given
 
-  !> Checks when fields are written.
+  !> Check the interval or the travels at which fields are written.
   subroutine check_output(case, block, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The block.
     type(block_t), intent(in) :: block
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k
@@ -204,48 +187,43 @@ contains
           if (i > 1) then
             if (value(i) > value(i - 1)) cycle
           end if
-          call errors%push_input(block%entry(k)%value(i + 1)%at, "the travels do not rise here", &
-              "fields = at v1 v2 ..., 0 <= v1 < v2")
+          call errors%push_input(block%entry(k)%value(i + 1)%at, &
+              "the travels do not increase here", "fields = at v1 v2 ..., 0 <= v1 < v2")
           return
         end do
       end if
     end associate
   end subroutine check_output
 
-  !> Checks that there is travel where fields are to be written by it.
+  !> Check that a tool controls some phase if fields are written by travel.
   subroutine check_travel(case, block, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The output's block.
     type(block_t), intent(in) :: block
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     if (case%output%fields /= fields_every .and. case%output%fields /= fields_at) return
-    if (anything_travels(case)) return
+    if (some_tool_controls(case)) return
     call errors%push_input(block%at("fields"), &
-        "fields by travel, and in no phase of this job does a tool control: nothing travels", &
-        "fields = increments N where every phase has control = load")
+        "fields are written by travel, but no phase is controlled by a tool", &
+        "fields = increments N if all phases have control = load")
   end subroutine check_travel
 
-  !> Whether a tool controls one of the phases, as far as they can be read.
-  pure logical function anything_travels(case)
-    !> The case.
+  !> Whether a tool controls one of the phases; true if a phase has errors.
+  pure logical function some_tool_controls(case)
     type(case_t), intent(in) :: case
 
     integer :: i
 
-    anything_travels = size(case%phase) == 0
+    some_tool_controls = size(case%phase) == 0
     do i = 1, size(case%phase)
-      if (case%phase(i)%control > 0 .or. .not. case%phase(i)%source%valid) anything_travels = .true.
+      if (case%phase(i)%source%valid .and. case%phase(i)%control == 0) cycle
+      some_tool_controls = .true.
     end do
-  end function anything_travels
+  end function some_tool_controls
 
-  !> Reports columns of the history table that would bear a tool's name.
+  !> Report columns of the history table that have the name of a tool.
   subroutine check_history_names(case, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, j
@@ -253,9 +231,9 @@ contains
     do i = 1, size(case%history)
       do j = 1, size(case%tool)
         if (case%history(i)%name /= case%tool(j)%name) cycle
-        call errors%push_input(case%history(i)%source%named, "a tool is called '"// &
-            case%tool(j)%source%called()//"' already: two columns would have one name", &
-            "another name")
+        call errors%push_input(case%history(i)%source%named, "'"// &
+            case%tool(j)%source%called()//"' is the name of a tool: the columns of history.csv "// &
+            "would be ambiguous", "another name")
       end do
     end do
   end subroutine check_history_names

@@ -1,7 +1,7 @@
-!> Reads the input text into blocks: comments, continued lines, included files, parameters.
+!> Reader of the input text: comments, continuation lines, included files, parameters, blocks.
 module dd3_input_deck
   use dd3_base_error, only : error_t, error_list_t, location_t
-  use dd3_base_text, only : text_t, lower_case, upper_case, slice
+  use dd3_base_text, only : text_t, lower_case, upper_case, slice, to_text
   use dd3_input_block, only : block_t, entry_t, token_t, deck_t
   use dd3_input_substitution, only : substitution_t, new_substitution
   use dd3_input_text_file, only : read_lines, resolve_path, folder_of
@@ -10,41 +10,37 @@ module dd3_input_deck
   private
   public :: read_deck
 
-  !> Deepest nesting of included files.
+  !> Maximum depth of nested included files.
   integer, parameter :: deepest = 20
 
-  !> Where the lines go: nowhere yet, into the parameters, a title, or a block.
+  !> Where lines are added: outside any block, to the parameters, a title, or a block.
   integer, parameter :: into_nothing = 0, into_parameters = 1, into_title = 2, into_block = 3
 
-  !> What is known while the text is read.
+  !> State of the reader.
   type :: reader_t
-    !> The blocks closed so far.
+    !> Complete blocks.
     type(deck_t) :: deck
-    !> The block that is open.
+    !> Current block.
     type(block_t) :: open
     !> One of the `into_*` values.
     integer :: mode = into_nothing
-    !> Whether a line outside all blocks has been reported.
+    !> Whether a line outside any block has been reported.
     logical :: stray = .false.
-    !> The parameters.
     type(substitution_t) :: substitution
-    !> Lines read so far.
+    !> Number of lines read.
     integer :: order = 0
-    !> The files that are open, outermost first.
+    !> Open files, outermost first.
     type(text_t), allocatable :: file(:)
   end type reader_t
 
 contains
 
-  !> Reads a file and all it includes.
+  !> Read a file and the files it includes.
   subroutine read_deck(deck, file_name, overrides, errors)
-    !> The blocks.
     type(deck_t), intent(out) :: deck
-    !> The file.
     character(len=*), intent(in) :: file_name
-    !> Texts `name=value` that override parameters.
+    !> Parameters given as `name=value` on the command line.
     type(text_t), intent(in) :: overrides(:)
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     type(reader_t) :: self
@@ -58,22 +54,19 @@ contains
     call read_file(self, file_name, whole_file, errors)
     call close_block(self)
     if (self%deck%n_block == 0 .and. errors%count == before) then
-      call errors%push_input(whole_file, "the file holds no block", &
+      call errors%push_input(whole_file, "the file contains no block", &
           "blocks such as *BLANK, *MATERIAL, *PHASE")
     end if
     if (self%deck%n_block > 0) call self%substitution%check_overrides(errors)
     if (self%deck%n_block > 0) deck = self%deck
   end subroutine read_deck
 
-  !> Reads one file.
+  !> Read one file.
   recursive subroutine read_file(self, path, named_at, errors)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> Its path.
     character(len=*), intent(in) :: path
-    !> Where it was named.
+    !> Where the file is named.
     type(location_t), intent(in) :: named_at
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     type(text_t), allocatable :: text(:)
@@ -84,8 +77,7 @@ contains
 
     call read_lines(path, text, error)
     if (allocated(error)) then
-      call errors%push_input(named_at, "the input file '"//path//"' cannot be read: "// &
-          error%message)
+      call errors%push_input(named_at, "cannot read the input file '"//path//"': "//error%message)
       return
     end if
     opened%s = path
@@ -103,15 +95,13 @@ contains
     self%file = self%file(:size(self%file) - 1)
   end subroutine read_file
 
-  !> Goes on to the next line.
+  !> Advance to the next line.
   subroutine take_line(self, line, text, i)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The line.
     type(line_t), intent(inout) :: line
     !> All lines of the file.
     type(text_t), intent(in) :: text(:)
-    !> Number of the line read last; one more afterwards.
+    !> Number of the current line.
     integer, intent(inout) :: i
 
     i = i + 1
@@ -121,9 +111,8 @@ contains
     line%text = text(i)%s
   end subroutine take_line
 
-  !> The text with blanks in place of tabs.
+  !> Return the text with tabs replaced by blanks.
   pure function untabbed(text)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=len(text)) :: untabbed
 
@@ -135,11 +124,9 @@ contains
     end do
   end function untabbed
 
-  !> Keeps a line of free text.
+  !> Add a line of the title.
   subroutine add_title_line(self, line)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The line.
     type(line_t), intent(in) :: line
 
     type(entry_t) :: entry
@@ -159,17 +146,15 @@ contains
     call self%open%add_entry(entry)
   end subroutine add_title_line
 
-  !> Reads a line with those it goes on in, and does what it says.
+  !> Read and process a statement with its continuation lines.
   recursive subroutine read_statement(self, line, text, i, errors)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The line read last.
+    !> Current line.
     type(line_t), intent(inout) :: line
     !> All lines of the file.
     type(text_t), intent(in) :: text(:)
-    !> Number of the line read last.
+    !> Number of the current line.
     integer, intent(inout) :: i
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     type(token_list_t) :: token
@@ -181,7 +166,7 @@ contains
     do while (continues)
       if (i == size(text)) then
         call errors%push_input(place(line, len_trim(line%text), 1), &
-            "the last line of the file goes on in another", "a line after the ampersand")
+            "continuation beyond the end of the file", "a line after the ampersand")
         exit
       end if
       call take_line(self, line, text, i)
@@ -192,19 +177,16 @@ contains
       call add_broken_entry(self, token%item(1))
       return
     end if
-    if (index(token%item(1)%text, "*") == 1 .and. &
-        .not. token%item(1)%quoted) then
+    if (index(token%item(1)%text, "*") == 1 .and. .not. token%item(1)%quoted) then
       call open_block(self, token, line%file, errors)
     else
       call read_assignment(self, token, errors)
     end if
   end subroutine read_statement
 
-  !> Keeps the key of a line that could not be read, so that it is not reported as missing too.
+  !> Add an entry without value for a line with errors, so that its key is not reported as missing.
   subroutine add_broken_entry(self, key)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The first word of the line.
     type(token_t), intent(in) :: key
 
     type(entry_t) :: entry
@@ -216,15 +198,12 @@ contains
     call self%open%add_entry(entry)
   end subroutine add_broken_entry
 
-  !> Reads `*BLOCK name`.
+  !> Read `*BLOCK name`.
   recursive subroutine open_block(self, token, file, errors)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The words of the line.
     type(token_list_t), intent(in) :: token
-    !> The file it stands in.
+    !> File it is written in.
     character(len=*), intent(in) :: file
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     type(token_list_t) :: word
@@ -256,29 +235,28 @@ contains
       self%open%named = word%item(1)%at
     end if
     if (word%count > 1) then
-      call errors%push_input(word%item(2)%at, "nothing but the block's name stands after *"// &
-          upper_case(keyword), "values follow on lines of their own: key = value")
+      call errors%push_input(word%item(2)%at, "unexpected '"//word%item(2)%text// &
+          "' after the name of *"//upper_case(keyword), "key = value, on a line of its own")
     end if
   end subroutine open_block
 
-  !> Reads an included file.
+  !> Read an included file.
   recursive subroutine include_file(self, opened, word, file, errors)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> Where `*INCLUDE` stands.
+    !> Where `*INCLUDE` is written.
     type(location_t), intent(in) :: opened
-    !> What follows it.
+    !> Words after it.
     type(token_list_t), intent(in) :: word
-    !> The file it stands in.
+    !> File it is written in.
     character(len=*), intent(in) :: file
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: path
     integer :: k
 
     if (word%count /= 1) then
-      call errors%push_input(opened, "*INCLUDE takes one file", '*INCLUDE "file"')
+      call errors%push_input(opened, "expected 1 file, got "//to_text(word%count), &
+          '*INCLUDE "file"')
       return
     end if
     path = resolve_path(folder_of(file), word%item(1)%text)
@@ -290,20 +268,17 @@ contains
     end do
     if (size(self%file) > deepest) then
       call errors%push_input(word%item(1)%at, &
-          "files include one another too deeply; does one include itself?")
+          "*INCLUDE is nested more than "//to_text(deepest)//" levels deep")
       return
     end if
     call read_file(self, path, word%item(1)%at, errors)
     call close_block(self)
   end subroutine include_file
 
-  !> Reads `key = value value ...`.
+  !> Read `key = value value ...`.
   subroutine read_assignment(self, token, errors)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
-    !> The words of the line.
     type(token_list_t), intent(in) :: token
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     type(token_list_t) :: value
@@ -312,8 +287,8 @@ contains
 
     if (self%mode == into_nothing) then
       if (.not. self%stray) then
-        call errors%push_input(token%item(1)%at, "this line belongs to no block", &
-            "a line *BLOCK above; *INCLUDE ends the block before it")
+        call errors%push_input(token%item(1)%at, "this line is outside any block", &
+            "a line *BLOCK above it; *INCLUDE ends a block")
       end if
       self%stray = .true.
       return
@@ -332,8 +307,7 @@ contains
     end if
     entry%key = lower_case(token%item(1)%text)
     entry%at = token%item(1)%at
-    ! A value that could not be made is left out, so that it is not reported again; its key is not
-    ! missing.
+    ! An invalid value is left out, so that neither it nor its key is reported again.
     if (errors%count > before) then
       allocate (entry%value(0))
     else
@@ -342,22 +316,20 @@ contains
     call self%open%add_entry(entry)
   end subroutine read_assignment
 
-  !> Whether the words are a key, an equals sign and a value.
+  !> Whether the words are a key, an equals sign and a value; report it if they are not.
   logical function is_assignment(token, errors)
-    !> The words of the line.
     type(token_list_t), intent(in) :: token
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     is_assignment = .false.
     if (token%item(1)%text == "=" .and. .not. token%item(1)%quoted) then
-      call errors%push_input(token%item(1)%at, "a key is missing before the equals sign", &
+      call errors%push_input(token%item(1)%at, "missing key before the equals sign", &
           "key = value")
     else if (token%count == 1) then
-      call errors%push_input(token%item(1)%at, "this is neither a block nor a key with its value", &
+      call errors%push_input(token%item(1)%at, "this is neither a block nor a key with a value", &
           "*BLOCK name, or key = value")
     else if (token%item(2)%text /= "=" .or. token%item(2)%quoted) then
-      call errors%push_input(token%item(2)%at, "an equals sign is missing after '"// &
+      call errors%push_input(token%item(2)%at, "missing equals sign after '"// &
           token%item(1)%text//"'", "key = value")
     else if (token%count == 2) then
       call errors%push_input(token%item(2)%at, "no value is given for '"//token%item(1)%text//"'", &
@@ -367,9 +339,8 @@ contains
     end if
   end function is_assignment
 
-  !> Puts the open block away.
+  !> End the current block.
   subroutine close_block(self)
-    !> What is known so far.
     type(reader_t), intent(inout) :: self
 
     if (self%mode == into_block .or. self%mode == into_title) call self%deck%add_block(self%open)

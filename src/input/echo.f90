@@ -1,5 +1,4 @@
-!> The checked input as text, with every default filled in and marked: for the log and for
-!> `--check`.
+!> The checked input as text, with all defaults filled in and marked, for the log and `--check`.
 module dd3_input_echo
   use dd3_base_kinds, only : i8
   use dd3_base_text, only : newline, upper_case
@@ -10,14 +9,13 @@ module dd3_input_echo
   private
   public :: echo_case
 
-  !> Column of the remarks.
+  !> Column of the remarks (unit, default).
   integer, parameter :: remark_column = 52
 
 contains
 
-  !> The whole case as text; lines end in a newline.
+  !> Return the whole case as text; all lines end in a newline.
   function echo_case(case) result(text)
-    !> The case.
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
 
@@ -32,11 +30,8 @@ contains
     end do
   end function echo_case
 
-  !> One block as text.
   function echo_block(block, row) result(text)
-    !> The block.
     type(block_t), intent(in) :: block
-    !> Its row.
     type(block_row_t), intent(in) :: row
     character(len=:), allocatable :: text
 
@@ -53,9 +48,7 @@ contains
     end do
   end function echo_block
 
-  !> One entry as text.
   function echo_entry(entry, unit) result(text)
-    !> The entry.
     type(entry_t), intent(in) :: entry
     !> Unit of its numbers.
     character(len=*), intent(in) :: unit
@@ -76,9 +69,8 @@ contains
     text = text//newline
   end function echo_entry
 
-  !> The words of a value as they would be written.
+  !> Return a value as it would be written.
   function words(entry) result(text)
-    !> The entry.
     type(entry_t), intent(in) :: entry
     character(len=:), allocatable :: text
 

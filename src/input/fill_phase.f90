@@ -1,4 +1,4 @@
-!> Fills the phases of the case, and the settings a phase may change.
+!> Fills the phases of the case, and the settings that a phase may change.
 module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
@@ -12,13 +12,11 @@ module dd3_input_fill_phase
 
 contains
 
-  !> Fills a phase; its limits, corrector and contact begin as those of the phase before.
+  !> Fill phase i. It inherits limits, corrector and contact from the phase before.
   subroutine fill_phase(case, i, block)
-    !> The case, its tools and earlier phases filled.
+    !> Its tools and earlier phases must be filled.
     type(case_t), intent(inout) :: case
-    !> Number of the phase.
     integer, intent(in) :: i
-    !> The block.
     type(block_t), intent(in) :: block
 
     type(phase_spec_t) :: phase
@@ -48,11 +46,9 @@ contains
     case%phase(i) = phase
   end subroutine fill_phase
 
-  !> Position of a tool; 0 if there is none of this name.
+  !> Return the position of a tool; 0 if not found.
   pure integer function tool_position(case, name)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Name of the tool.
     character(len=*), intent(in) :: name
 
     do tool_position = 1, size(case%tool)
@@ -61,11 +57,9 @@ contains
     tool_position = 0
   end function tool_position
 
-  !> Positions of the valid entries with a key.
+  !> Return the positions of the valid entries with a key.
   pure function entries(block, key) result(position)
-    !> The block.
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
     integer, allocatable :: position(:)
 
@@ -77,15 +71,11 @@ contains
     end do
   end function entries
 
-  !> Fills the tools that one key names.
   subroutine fill_tool_names(list, case, block, key)
-    !> The tools.
     type(tool_name_t), allocatable, intent(out) :: list(:)
-    !> The case, its tools filled.
+    !> Its tools must be filled.
     type(case_t), intent(in) :: case
-    !> The phase's block.
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
 
     integer, allocatable :: position(:)
@@ -101,15 +91,11 @@ contains
     end do
   end subroutine fill_tool_names
 
-  !> Fills the tools and vectors that one key names.
   subroutine fill_tool_vectors(list, case, block, key)
-    !> The tools and their vectors.
     type(tool_vector_t), allocatable, intent(out) :: list(:)
-    !> The case, its tools filled.
+    !> Its tools must be filled.
     type(case_t), intent(in) :: case
-    !> The phase's block.
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
 
     integer, allocatable :: position(:)
@@ -126,11 +112,8 @@ contains
     end do
   end subroutine fill_tool_vectors
 
-  !> Fills the prescribed displacements.
   subroutine fill_displacements(list, block)
-    !> The displacements.
     type(displace_spec_t), allocatable, intent(out) :: list(:)
-    !> The phase's block.
     type(block_t), intent(in) :: block
 
     integer, allocatable :: position(:)
@@ -148,11 +131,8 @@ contains
     end do
   end subroutine fill_displacements
 
-  !> Fills the forces on nodes.
   subroutine fill_loads(list, block)
-    !> The forces.
     type(load_spec_t), allocatable, intent(out) :: list(:)
-    !> The phase's block.
     type(block_t), intent(in) :: block
 
     integer, allocatable :: position(:)
@@ -169,13 +149,10 @@ contains
     end do
   end subroutine fill_loads
 
-  !> Fills what ends the phase early.
   subroutine fill_until(until, case, block)
-    !> The end.
     type(until_spec_t), intent(inout) :: until
-    !> The case, its tools filled.
+    !> Its tools must be filled.
     type(case_t), intent(in) :: case
-    !> The phase's block.
     type(block_t), intent(in) :: block
 
     if (.not. block%has("until")) return
@@ -188,53 +165,50 @@ contains
     end associate
   end subroutine fill_until
 
-  !> Takes over the limits a block gives.
+  !> Set the limits that a block gives.
   subroutine fill_limits(limits, block)
-    !> The limits.
     type(limits_spec_t), intent(inout) :: limits
-    !> The block.
     type(block_t), intent(in) :: block
 
-    call fill_limit(limits%strain, block, "strain", 1, huge(1.0_wp))
-    call fill_limit(limits%rotation, block, "rotation", 1, huge(1.0_wp))
-    call fill_limit(limits%stress_tangential, block, "stress_tangential", 1, huge(1.0_wp))
-    call fill_limit(limits%stress_normal, block, "stress_normal", 1, huge(1.0_wp))
-    call fill_limit(limits%force(1), block, "force", 1, huge(1.0_wp))
-    call fill_limit(limits%force(2), block, "force", 2, huge(1.0_wp))
-    call fill_limit(limits%force(3), block, "force", 3, huge(1.0_wp))
-    call fill_limit(limits%force_floor, block, "force_floor", 1, 0.0_wp)
-    call fill_limit(limits%r_min, block, "r_min", 1, 0.0_wp)
-    call fill_limit(limits%r_max, block, "r_max", 1, huge(1.0_wp))
+    type(limits_spec_t) :: off
+    integer :: i
+
+    call fill_limit(limits%strain, off%strain, block, "strain")
+    call fill_limit(limits%rotation, off%rotation, block, "rotation")
+    call fill_limit(limits%stress_tangential, off%stress_tangential, block, "stress_tangential")
+    call fill_limit(limits%stress_normal, off%stress_normal, block, "stress_normal")
+    do i = 1, size(limits%force)
+      call fill_limit(limits%force(i), off%force(i), block, "force", i)
+    end do
+    call fill_limit(limits%force_floor, off%force_floor, block, "force_floor")
+    call fill_limit(limits%r_min, off%r_min, block, "r_min")
+    call fill_limit(limits%r_max, off%r_max, block, "r_max")
   end subroutine fill_limits
 
-  !> Takes over one limit if the block gives it.
-  subroutine fill_limit(limit, block, key, component, without)
-    !> The limit.
+  !> Set a limit if the block gives it.
+  subroutine fill_limit(limit, off, block, key, component)
     type(limit_spec_t), intent(inout) :: limit
-    !> The block.
+    !> The limit when off.
+    type(limit_spec_t), intent(in) :: off
     type(block_t), intent(in) :: block
-    !> The key.
     character(len=*), intent(in) :: key
-    !> Which of the key's numbers.
-    integer, intent(in) :: component
-    !> The value where the limit is off.
-    real(wp), intent(in) :: without
+    !> Position among the key's numbers; the first if not given.
+    integer, intent(in), optional :: component
 
-    real(wp), allocatable :: number(:)
+    integer :: i
 
     if (.not. block%has(key)) return
-    limit%active = .not. block%entry(block%find(key))%is_off
-    limit%value = without
-    if (.not. limit%active) return
-    allocate (number, source=block%numbers(key))
-    limit%value = number(component)
+    limit = off
+    i = 1
+    if (present(component)) i = component
+    associate (entry => block%entry(block%find(key)))
+      if (.not. entry%is_off) limit = limit_spec_t(.true., entry%number(i))
+    end associate
   end subroutine fill_limit
 
-  !> Takes over the corrector's settings a block gives.
+  !> Set the corrector's settings that a block gives.
   subroutine fill_newton(newton, block)
-    !> The settings.
     type(newton_spec_t), intent(inout) :: newton
-    !> The block.
     type(block_t), intent(in) :: block
 
     if (block%has("tolerance")) newton%tolerance = block%number("tolerance")
@@ -244,11 +218,9 @@ contains
     if (block%has("cutback_min")) newton%cutback_min = block%number("cutback_min")
   end subroutine fill_newton
 
-  !> Takes over the contact's settings a block gives.
+  !> Set the contact's settings that a block gives.
   subroutine fill_contact(contact, block)
-    !> The settings.
     type(contact_spec_t), intent(inout) :: contact
-    !> The block.
     type(block_t), intent(in) :: block
 
     if (block%has("penalty")) contact%penalty = block%number("penalty")

@@ -1,4 +1,4 @@
-!> Fills the runs of single material points.
+!> Fills the single-point runs of the case.
 module dd3_input_fill_point
   use dd3_base_kinds, only : wp, pi
   use dd3_base_text, only : lower_case
@@ -8,16 +8,14 @@ module dd3_input_fill_point
   private
   public :: fill_point
 
-  !> Degrees in a radian.
+  !> Degrees per radian.
   real(wp), parameter :: degrees = 180.0_wp/pi
 
 contains
 
-  !> Fills a run; its material and that one's axes are there already.
+  !> Fill a run. Its material and the material's frame must be set.
   subroutine fill_point(point, block)
-    !> The run.
     type(point_spec_t), intent(inout) :: point
-    !> The block.
     type(block_t), intent(in) :: block
 
     integer :: i, k
@@ -41,19 +39,16 @@ contains
     end do
   end subroutine fill_point
 
-  !> Whether an entry is a goal in order.
+  !> Whether an entry is a valid target.
   pure logical function is_goal(entry)
-    !> The entry.
     type(entry_t), intent(in) :: entry
 
     is_goal = entry%valid .and. (entry%key == "target" .or. entry%key == "gradient")
   end function is_goal
 
-  !> Fills a goal: its values, then the number of steps.
+  !> Fill a target: its values, then the number of steps.
   pure subroutine fill_goal(goal, entry)
-    !> The goal.
     type(point_goal_t), intent(inout) :: goal
-    !> The entry.
     type(entry_t), intent(in) :: entry
 
     integer :: last
@@ -64,9 +59,9 @@ contains
     goal%at = entry%value(1)%at
   end subroutine fill_goal
 
-  !> The directions of the sheet as columns, where x lies at an angle from the rolling direction.
+  !> Return the directions of the sheet as columns, with x at an angle (radians) from the rolling
+  !> direction.
   pure function frame_at(angle) result(frame)
-    !> The angle.
     real(wp), intent(in) :: angle
     real(wp) :: frame(3, 3)
 

@@ -1,80 +1,42 @@
-!> Checks a law as written in the input against a registry's table of laws and parameters.
+!> Check of a law as written in the input against the registry's names and parameters.
 module dd3_input_law
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : as_written, error_list_t, error_t
+  use dd3_base_error, only : error_list_t, error_t
   use dd3_base_parameter, only : parameter_t, law_value_t, range_text, kind_text, pair_name
   use dd3_base_text, only : text_t, same_name, suggestion, join, to_text
   use dd3_input_case, only : law_spec_t
+  use dd3_input_known_name, only : check_known_name
   use dd3_input_number, only : parse_pair, parse_real
+  use dd3_input_number_check, only : check_range, not_a_number
   use dd3_input_table, only : find_key
   use dd3_input_text_file, only : read_lines, resolve_path
-  use dd3_input_value, only : check_range, no_number
   implicit none
   private
   public :: check_law_name, check_law_values
 
 contains
 
-  !> Position of the law's name among the known ones; 0, and an error with the nearest one, if it
-  !> is not there.
+  !> Return the position of the law's name among the known ones; 0, with an error, if not found.
   subroutine check_law_name(spec, what, known, position, errors)
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> What it is: "yield criterion", "hardening law", "back-stress law".
+    !> Kind of law: "yield criterion", "hardening law", "back-stress law".
     character(len=*), intent(in) :: what
-    !> Names of the laws there are.
     character(len=*), intent(in) :: known(:)
-    !> Position in `known`.
     integer, intent(out) :: position
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: meant
-
-    do position = 1, size(known)
-      if (same_name(known(position), spec%name)) return
-    end do
-    position = 0
-    meant = suggestion(spec%name, known)
-    if (meant == "") meant = names_holding(spec%name, known)
-    call errors%push_input(spec%at, "there is no "//what//" '"// &
-        as_written(spec%name, spec%at)//"'"//meant, &
-        "one of: "//join(known, " "))
+    call check_known_name(spec%name, spec%at, what, known, position, errors)
   end subroutine check_law_name
 
-  !> The known names that hold a name, as a question; empty where there is none.
-  pure function names_holding(name, known) result(text)
-    !> What was written.
-    character(len=*), intent(in) :: name
-    !> The names there are.
-    character(len=*), intent(in) :: known(:)
-    character(len=:), allocatable :: text
-
-    integer :: i
-
-    text = ""
-    do i = 1, size(known)
-      if (len(name) < 3 .or. index(known(i), name) == 0) cycle
-      if (text /= "") text = text//" or"
-      text = text//" '"//trim(known(i))//"'"
-    end do
-    if (text /= "") text = "; did you mean"//text//"?"
-  end function names_holding
-
-  !> The law's parameters checked against the rows: unknown, doubled, missing, no number, out of
-  !> range. Rows with the
-  !> default `-` may be left out and are then not among the values; other defaults are filled in.
-  !> Points, and those of a file, are values each.
+  !> Check the law's parameters against the rows and return the values in the order of the rows.
+  !> Parameters with the default `-` that are left out have no value; other defaults are filled in.
+  !> Each pair, written or from a file, is one value.
   subroutine check_law_values(spec, rows, values, errors, origin)
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> Its parameters.
     type(parameter_t), intent(in) :: rows(:)
-    !> The values, in the order of the rows.
     type(law_value_t), allocatable, intent(out) :: values(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
-    !> Which parameter as written each value comes from; 0 for a default.
+    !> Position in `spec%parameter` of each value; 0 for a default.
     integer, allocatable, intent(out), optional :: origin(:)
 
     type(law_value_t) :: value
@@ -90,9 +52,9 @@ contains
       value = law_value_t(rows(k)%name)
       i = find_parameter(spec, trim(rows(k)%name))
       if (rows(k)%repeatable) then
-        call take_points(spec, values, from)
+        call add_pairs(spec, values, from)
       else if (i > 0 .and. rows(k)%kind == kind_text) then
-        call read_points(spec, i, rows, values, from, errors)
+        call read_pairs(spec, i, rows, values, from, errors)
       else if (i > 0) then
         value%value = spec%parameter(i)%value
         values = [values, value]
@@ -109,13 +71,11 @@ contains
     if (present(origin)) call move_alloc(from, origin)
   end subroutine check_law_values
 
-  !> Adds the points written in the input.
-  subroutine take_points(spec, values, from)
-    !> The law as written.
+  !> Append the pairs written in the input.
+  subroutine add_pairs(spec, values, from)
     type(law_spec_t), intent(in) :: spec
-    !> Receives the points.
     type(law_value_t), allocatable, intent(inout) :: values(:)
-    !> Receives where they come from.
+    !> Position in `spec%parameter` of each value.
     integer, allocatable, intent(inout) :: from(:)
 
     integer :: i
@@ -127,22 +87,18 @@ contains
         from = [from, i]
       end associate
     end do
-  end subroutine take_points
+  end subroutine add_pairs
 
-  !> Adds the points of a file: two numbers in each line, blanks, a comma or a semicolon between
-  !> them, comments after a `#`.
-  subroutine read_points(spec, i, rows, values, from, errors)
-    !> The law as written.
+  !> Append the pairs of a file: two numbers in each line, separated by blanks, a comma or a
+  !> semicolon; `#` begins a comment.
+  subroutine read_pairs(spec, i, rows, values, from, errors)
     type(law_spec_t), intent(in) :: spec
-    !> Position of the parameter that names the file.
+    !> Position in `spec%parameter` of the file's name.
     integer, intent(in) :: i
-    !> The law's parameters.
     type(parameter_t), intent(in) :: rows(:)
-    !> Receives the points.
     type(law_value_t), allocatable, intent(inout) :: values(:)
-    !> Receives where they come from.
+    !> Position in `spec%parameter` of each value.
     integer, allocatable, intent(inout) :: from(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     type(text_t), allocatable :: line(:)
@@ -154,15 +110,15 @@ contains
 
     if (spec%parameter(i)%text == "") return
     if (size(from) > 0) then
-      call errors%push_input(spec%parameter(i)%key_at, "points are given beside a file of them", &
-          "one of them")
+      call errors%push_input(spec%parameter(i)%key_at, &
+          "pairs p:Y and a file of pairs cannot be combined", "one of the two")
       return
     end if
     row = find_key(rows, pair_name)
     path = resolve_path(spec%folder, spec%parameter(i)%text)
     call read_lines(path, line, error)
     if (allocated(error)) then
-      call errors%push_input(spec%parameter(i)%at, "'"//path//"' cannot be read: "//error%message)
+      call errors%push_input(spec%parameter(i)%at, "cannot read '"//path//"': "//error%message)
       return
     end if
     value%name = pair_name
@@ -171,9 +127,9 @@ contains
       if (line(n)%s == "") cycle
       call parse_pair(line(n)%s, value%abscissa, value%value, ok)
       if (.not. ok) then
-        call errors%push_input(spec%parameter(i)%at, "'"//path//"', line "//to_text(n)// &
-            " does not hold two numbers", &
-            "p and Y in each line, decimals with a point; # before a heading")
+        call errors%push_input(spec%parameter(i)%at, "expected 2 numbers in line "// &
+            to_text(n)//" of '"//path//"'", &
+            "p and Y in each line, with decimal points; # begins a comment")
         return
       end if
       call check_range(value%value, rows(row), spec%parameter(i)%at, &
@@ -181,11 +137,10 @@ contains
       values = [values, value]
       from = [from, i]
     end do
-  end subroutine read_points
+  end subroutine read_pairs
 
-  !> The numbers of a line with a colon between them, without its comment.
+  !> Return the words of a line as a pair with a colon, without the comment.
   pure function pair_of(line) result(pair)
-    !> The line.
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: pair
 
@@ -201,15 +156,11 @@ contains
     if (gap > 0) pair = pair(:gap - 1)//":"//trim(adjustl(pair(gap:)))
   end function pair_of
 
-  !> Checks one parameter as written.
+  !> Check parameter i as written.
   subroutine check_law_parameter(spec, i, rows, errors)
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> Position of the parameter.
     integer, intent(in) :: i
-    !> The law's parameters.
     type(parameter_t), intent(in) :: rows(:)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: known
@@ -229,12 +180,12 @@ contains
             trim(rows(k)%name)//"="//trim(merge("path  ", "number", rows(k)%kind == kind_text))// &
             range_text(rows(k)))
       else if (rows(k)%kind == kind_text) then
-        return  ! any text will do until the file is read
+        return  ! checked when the file is read
       else if (.not. given%numeric .and. rows(k)%repeatable) then
-        call errors%push_input(given%at, "'"//given%text//"' is not two numbers", &
+        call errors%push_input(given%at, "'"//given%text//"' is not a pair of numbers", &
             trim(rows(k)%name)//": "//trim(rows(k)%help))
       else if (.not. given%numeric) then
-        call errors%push_input(given%at, no_number(given%text), &
+        call errors%push_input(given%at, not_a_number(given%text), &
             trim(rows(k)%name)//"=number"//range_text(rows(k)))
       else
         call check_range(given%value, rows(k), given%at, trim(rows(k)%name)//"=number"// &
@@ -243,11 +194,9 @@ contains
     end associate
   end subroutine check_law_parameter
 
-  !> Position of the first parameter of a name; 0 if there is none.
+  !> Return the position of the first parameter with a name; 0 if not found.
   pure integer function find_parameter(spec, name)
-    !> The law as written.
     type(law_spec_t), intent(in) :: spec
-    !> The name.
     character(len=*), intent(in) :: name
 
     do find_parameter = 1, size(spec%parameter)

@@ -1,4 +1,4 @@
-!> Numbers as Fortran or C write them: 12, -1.5, .5, 1.e-3, 1d3, 2.1E+5.
+!> Parser of numbers as in Fortran or C: 12, -1.5, .5, 1.e-3, 1d3, 2.1E+5.
 module dd3_input_number
   use dd3_base_kinds, only : wp
   implicit none
@@ -10,13 +10,12 @@ module dd3_input_number
 
 contains
 
-  !> Reads a word as a real number.
+  !> Parse a real number.
   pure subroutine parse_real(text, value, ok)
-    !> The word.
     character(len=*), intent(in) :: text
-    !> The number; 0 if the word is none.
+    !> Number; 0 if not ok.
     real(wp), intent(out) :: value
-    !> Whether the word is a number that can be held.
+    !> Whether the text is a number within the range of the kind.
     logical, intent(out) :: ok
 
     integer :: mantissa, exponent, status
@@ -38,10 +37,8 @@ contains
     if (.not. ok) value = 0.0_wp
   end subroutine parse_real
 
-  !> Number of characters of the sign, digits and point a word begins with; 0 if it does not begin
-  !> like a number.
+  !> Return the length of the sign, digits and point at the start of a text; 0 without digits.
   pure integer function mantissa_length(text) result(last)
-    !> The word.
     character(len=*), intent(in) :: text
 
     integer :: i, digits, points
@@ -66,13 +63,12 @@ contains
     if (digits == 0) last = 0
   end function mantissa_length
 
-  !> Reads a word as a whole number.
+  !> Parse an integer.
   pure subroutine parse_integer(text, value, ok)
-    !> The word.
     character(len=*), intent(in) :: text
-    !> The number; 0 if the word is none.
+    !> Number; 0 if not ok.
     integer, intent(out) :: value
-    !> Whether the word is a number that can be held.
+    !> Whether the text is an integer within the range of the kind.
     logical, intent(out) :: ok
 
     integer :: start, status
@@ -89,13 +85,11 @@ contains
     if (.not. ok) value = 0
   end subroutine parse_integer
 
-  !> Reads two numbers with a colon between them.
+  !> Parse a pair of numbers separated by a colon.
   pure subroutine parse_pair(text, first, second, ok)
-    !> The word.
     character(len=*), intent(in) :: text
-    !> The numbers; 0 where there is none.
+    !> Numbers; 0 if not ok.
     real(wp), intent(out) :: first, second
-    !> Whether there are two.
     logical, intent(out) :: ok
 
     integer :: colon

@@ -1,5 +1,5 @@
-!> Checks the runs of single material points: what leads them, and that no deformation gradient
-!> turns the material inside out on the way.
+!> Check of the single-point runs: the prescribed quantities, and that no deformation gradient
+!> inverts the material on its path.
 module dd3_input_point_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
@@ -9,25 +9,22 @@ module dd3_input_point_check
   private
   public :: check_points
 
-  !> The components in the order of the input.
+  !> Components in the order of the input.
   character(len=2), parameter :: component(6) = ["11", "22", "33", "12", "23", "13"]
-  !> Blocks that have no place beside a point.
+  !> Blocks that cannot be combined with a point.
   character(len=5), parameter :: of_a_sheet(3) = [character(len=5) :: "blank", "mesh", "phase"]
-  !> Blocks that have a meaning for a point.
+  !> Blocks that have an effect on a point.
   character(len=9), parameter :: of_a_point(6) = [character(len=9) :: "title", "include", &
       "parameter", "material", "point", "output"]
-  !> Largest strain of a goal, most steps of all goals.
+  !> Largest strain of a target, and largest number of steps of a run.
   real(wp), parameter :: largest_strain = 10.0_wp, most_steps = 1.0e7_wp
-  !> Steps of a gradient that are looked at.
-  integer, parameter :: steps_looked_at = 1000
+  !> Largest number of steps at which a gradient is checked.
+  integer, parameter :: most_checked = 1000
 
 contains
 
-  !> Checks all of them.
   subroutine check_points(case, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, before
@@ -38,18 +35,16 @@ contains
       before = errors%count
       call check_control(case%point(i), errors)
       if (.not. case%point(i)%source%valid) cycle
-      call check_lead(case%point(i), errors)
+      call check_drive(case%point(i), errors)
       if (errors%count > before) cycle
       call check_goals(case%point(i), errors)
     end do
   end subroutine check_points
 
-  !> Reports the blocks of a sheet beside points; without a sheet others that do nothing here, but
-  !> for those that stand in no file because they were filled in.
+  !> Report the blocks of a sheet; if there are none, report blocks without effect, except those
+  !> filled in by default, which have no file.
   subroutine check_company(case, errors)
-    !> The case.
     type(case_t), intent(in) :: case
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, before
@@ -58,46 +53,44 @@ contains
     associate (block => case%deck%block(:case%deck%n_block))
       do i = 1, size(block)
         if (any(of_a_sheet == block(i)%keyword)) call errors%push_input(block(i)%opened, &
-            "a sheet does not go with single points", "*POINT in a file of its own")
+            "*"//upper_case(block(i)%keyword)//" cannot be combined with *POINT", &
+            "*POINT in a file of its own")
       end do
       if (errors%count > before) return
       do i = 1, size(block)
         if (any(of_a_point == block(i)%keyword) .or. .not. block(i)%valid) cycle
         if (.not. allocated(block(i)%opened%file)) cycle
         call errors%push_input(block(i)%opened, "*"//upper_case(block(i)%keyword)// &
-            " does nothing for single points", "one of: *"//upper_case(join(of_a_point, " *")))
+            " has no effect on single points", "one of: *"//upper_case(join(of_a_point, " *")))
       end do
     end associate
   end subroutine check_company
 
-  !> Checks what leads a point: control and targets, or gradients.
-  subroutine check_lead(point, errors)
-    !> The point.
+  !> Check that either control and target, or gradient are given.
+  subroutine check_drive(point, errors)
     type(point_spec_t), intent(in) :: point
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     associate (block => point%source)
       if (block%has("gradient") .and. block%has("target")) then
-        call errors%push_input(block%at("gradient"), "gradient stands beside target", "one of them")
+        call errors%push_input(block%at("gradient"), "gradient and target cannot be combined", &
+            "one of the two")
       else if (block%has("gradient") .and. block%has("control")) then
-        call errors%push_input(block%at("control"), "a gradient leads all components", &
-            "no control, or target in place of gradient")
+        call errors%push_input(block%at("control"), "control and gradient cannot be combined", &
+            "gradient alone, or control and target")
       else if (block%has("target") .and. .not. block%has("control")) then
-        call errors%push_input(block%at("target"), "control is missing: what do the values mean?", &
+        call errors%push_input(block%at("target"), "target requires control", &
             "control = e11 s22 s33 s12 s23 s13")
       else if (.not. (block%has("target") .or. block%has("gradient"))) then
-        call errors%push_input(block%opened, "nothing leads the point '"//block%called()//"'", &
-            "control and target, or gradient")
+        call errors%push_input(block%opened, "nothing is prescribed for the point '"// &
+            block%called()//"'", "control and target, or gradient")
       end if
     end associate
-  end subroutine check_lead
+  end subroutine check_drive
 
-  !> Checks the words of the control, whatever else is wrong with the point.
+  !> Check the words of control; other errors of the point do not matter.
   subroutine check_control(point, errors)
-    !> The point.
     type(point_spec_t), intent(in) :: point
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: word
@@ -106,19 +99,17 @@ contains
     k = point%source%find("control")
     if (k == 0) return
     if (.not. point%source%entry(k)%valid) return
-    do i = 1, 6
+    do i = 1, size(component)
       word = lower_case(point%source%entry(k)%value(i)%text)
       if (word == "e"//component(i) .or. word == "s"//component(i)) cycle
-      call errors%push_input(point%source%entry(k)%value(i)%at, "'"//word// &
-          "' is not understood here", "e"//component(i)//" or s"//component(i))
+      call errors%push_input(point%source%entry(k)%value(i)%at, "expected e"//component(i)// &
+          " or s"//component(i)//", got '"//word//"'", "control = e11 s22 s33 s12 s23 s13")
     end do
   end subroutine check_control
 
-  !> Checks the goals of a point.
+  !> Check the targets of a point.
   subroutine check_goals(point, errors)
-    !> The point.
     type(point_spec_t), intent(in) :: point
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     real(wp) :: from(gradient_values), steps
@@ -129,7 +120,8 @@ contains
     do i = 1, size(point%goal)
       steps = steps + real(point%goal(i)%steps, wp)
       if (steps > most_steps) then
-        call errors%push_input(point%goal(i)%at, "these are more than 10 million steps")
+        call errors%push_input(point%goal(i)%at, "more than 10 million steps", &
+            "at most 10 million in a run")
         return
       end if
       if (point%by_gradient) then
@@ -142,34 +134,30 @@ contains
     end do
   end subroutine check_goals
 
-  !> Checks that the way to a gradient leaves a positive volume.
+  !> Check that the volume stays positive on the path to gradient i.
   subroutine check_gradient(point, i, from, errors)
-    !> The point.
     type(point_spec_t), intent(in) :: point
-    !> Number of the goal.
     integer, intent(in) :: i
-    !> The gradient before.
+    !> Gradient at the start of the path.
     real(wp), intent(in) :: from(gradient_values)
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: part
+    real(wp) :: fraction
     integer :: k, n
 
-    n = min(point%goal(i)%steps, steps_looked_at)
+    n = min(point%goal(i)%steps, most_checked)
     do k = 1, n
-      part = real(k, wp)/real(n, wp)
-      if (volume(from + part*(point%goal(i)%value - from)) > 0.0_wp) cycle
+      fraction = real(k, wp)/real(n, wp)
+      if (volume(from + fraction*(point%goal(i)%value - from)) > 0.0_wp) cycle
       call errors%push_input(point%goal(i)%at, "det F is not positive "// &
-          trim(merge("on the way", "at the end", k < n)), &
-          "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant all the way")
+          trim(merge("on the path", "at the end ", k < n)), &
+          "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant on the whole path")
       return
     end do
   end subroutine check_gradient
 
-  !> The determinant of a matrix given row by row.
+  !> Return the determinant of a matrix given row by row.
   pure real(wp) function volume(f)
-    !> The matrix.
     real(wp), intent(in) :: f(gradient_values)
 
     volume = f(1)*(f(5)*f(9) - f(6)*f(8)) - f(2)*(f(4)*f(9) - f(6)*f(7)) &

@@ -1,4 +1,4 @@
-!> From the input file to the case: read, check against the keyword tables, fill, cross-check.
+!> From the input file to the case: read, check against the keyword table, fill, cross-check.
 module dd3_input_reader
   use dd3_base_error, only : error_list_t
   use dd3_base_text, only : text_t
@@ -18,15 +18,13 @@ module dd3_input_reader
 
 contains
 
-  !> Reads a job; the case is whole only if no error was added.
+  !> Read a job. The case is complete only if no error was added.
   subroutine read_case(case, file_name, overrides, errors)
-    !> The case read.
     type(case_t), intent(out) :: case
-    !> The input file.
     character(len=*), intent(in) :: file_name
-    !> `name=value` texts that override the parameters of the file.
+    !> Texts `name=value` that override the parameters of the file.
     type(text_t), intent(in) :: overrides(:)
-    !> Receives all errors found, in the order of the lines.
+    !> Sorted by line on return.
     type(error_list_t), intent(inout) :: errors
 
     type(deck_t) :: deck

@@ -1,32 +1,28 @@
-!> Checks that the sets, tools and materials an input names exist.
+!> Check that the sets, tools and materials named in the input exist.
 module dd3_input_reference
   use dd3_base_error, only : as_written, error_list_t
-  use dd3_base_text, only : suggestion, same_name, upper_case
+  use dd3_base_text, only : join, suggestion, same_name, upper_case
   use dd3_base_parameter, only : parameter_t, kind_name, kind_other
   use dd3_input_block, only : block_t, token_t, deck_t
+  use dd3_input_case, only : blank_sets
+  use dd3_input_describe, only : word_length
+  use dd3_input_form_check, only : form_for
   use dd3_input_table, only : block_row_t, find_block, find_key
-  use dd3_input_value, only : form_for, word_length
   implicit none
   private
   public :: check_references
 
   !> Longest name that is compared.
   integer, parameter :: name_length = 80
-
-  !> Node sets that every structured blank has.
-  character(len=5), parameter :: blank_sets(7) = [character(len=5) :: &
-                                                  "x_min", "x_max", "y_min", "y_max", "z_min", &
-                                                  "z_max", "all"]
+  !> Number of known names shown in an error.
+  integer, parameter :: most_listed = 20
 
 contains
 
-  !> Checks all names of sets, tools and materials.
+  !> Check all names of sets, tools and materials.
   subroutine check_references(deck, table, errors)
-    !> The checked blocks.
     type(deck_t), intent(inout) :: deck
-    !> The keyword tables.
     type(block_row_t), intent(in) :: table(:)
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, j, k, row, before
@@ -36,7 +32,7 @@ contains
       if (row == 0) cycle
       if (table(row)%later) cycle
       before = errors%count
-      call check_set_name(deck%block(i), errors)
+      call check_reserved_name(deck%block(i), errors)
       do j = 1, deck%block(i)%n_entry
         if (.not. deck%block(i)%entry(j)%valid) cycle
         k = find_key(table(row)%key, deck%block(i)%entry(j)%key)
@@ -46,32 +42,26 @@ contains
     end do
   end subroutine check_references
 
-  !> Reports a set that takes the name of one of the blank's.
-  subroutine check_set_name(block, errors)
-    !> The block.
+  !> Report sets and tools with a reserved name.
+  subroutine check_reserved_name(block, errors)
     type(block_t), intent(in) :: block
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
 
     if (block%keyword == "set" .and. any(blank_sets == block%name)) then
-      call errors%push_input(block%named, "the blank has a set '"//block%called()//"' already", &
+      call errors%push_input(block%named, "'"//block%called()//"' is a set of the blank", &
           "another name")
     end if
     if (block%keyword == "tool" .and. block%name == "load") then
       call errors%push_input(block%named, &
-          "a tool cannot be called 'load': control = load has a meaning of its own")
+          "'load' is reserved for control = load", "another name")
     end if
-  end subroutine check_set_name
+  end subroutine check_reserved_name
 
-  !> Checks the names in one entry.
+  !> Check the names in entry j of block i.
   subroutine check_entry(deck, i, j, row, errors)
-    !> The checked blocks.
     type(deck_t), intent(inout) :: deck
-    !> Positions of the block and of the entry.
     integer, intent(in) :: i, j
-    !> The entry's row.
     type(parameter_t), intent(in) :: row
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     character(len=word_length), allocatable :: form(:)
@@ -96,19 +86,15 @@ contains
     end associate
   end subroutine check_entry
 
-  !> Checks one name.
+  !> Check a name used in block i.
   subroutine check_reference(deck, i, token, what, errors, also)
-    !> The checked blocks.
     type(deck_t), intent(in) :: deck
-    !> Position of the block the name is used in.
     integer, intent(in) :: i
-    !> The name.
     type(token_t), intent(in) :: token
-    !> set, tool or material.
+    !> "set", "tool" or "material".
     character(len=*), intent(in) :: what
-    !> Receives the error.
     type(error_list_t), intent(inout) :: errors
-    !> A word that may stand in place of a name.
+    !> A word that is allowed in place of a name.
     character(len=*), intent(in), optional :: also
 
     character(len=name_length), allocatable :: known(:)
@@ -124,35 +110,27 @@ contains
     do k = 1, size(known)
       if (same_name(known(k), token%text)) return
     end do
-    expected = "a *"//upper_case(what)//" of this name, but there is none at all"
+    expected = "a *"//upper_case(what)//" with this name; none is defined"
     if (size(known) > 0) expected = "one of: "//listed(known)
-    if (last < deck%n_block) expected = expected//"; a set is made from sets that stand above it"
+    if (last < deck%n_block) expected = expected//"; only sets defined above can be used"
     call errors%push_input(token%at, "there is no "//what//" '"// &
         as_written(token%text, token%at)//"'"//suggestion(token%text, known), expected)
   end subroutine check_reference
 
-  !> The first names of a list.
+  !> Return the first names of a list, as text.
   pure function listed(name) result(text)
-    !> The names.
     character(len=*), intent(in) :: name(:)
     character(len=:), allocatable :: text
 
-    integer :: i
-
-    text = trim(name(1))
-    do i = 2, min(20, size(name))
-      text = text//" "//trim(name(i))
-    end do
-    if (size(name) > 20) text = text//" ..."
+    text = join(name(:min(most_listed, size(name))), " ")
+    if (size(name) > most_listed) text = text//" ..."
   end function listed
 
-  !> Names of all sets, tools or materials among the first blocks.
+  !> Return the names of all sets, tools or materials among the blocks up to `last`.
   pure function names_of(deck, what, last) result(name)
-    !> The blocks.
     type(deck_t), intent(in) :: deck
-    !> Which kind of block.
+    !> "set", "tool", "material" or "mesh".
     character(len=*), intent(in) :: what
-    !> The last block looked at.
     integer, intent(in) :: last
     character(len=name_length), allocatable :: name(:)
 

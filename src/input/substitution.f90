@@ -1,30 +1,32 @@
 !> Parameters of the input: `name = value` in `*PARAMETER`, used as `${name}` in later values.
 module dd3_input_substitution
   use dd3_base_error, only : as_written, error_list_t, location_t
-  use dd3_base_text, only : text_t, same_name, lower_case, nearest_name, join, slice
+  use dd3_base_text, only : text_t, same_name, lower_case, suggestion, join, slice
   use dd3_input_block, only : token_t
   use dd3_input_token, only : token_list_t, line_t, split_line, add_token
   implicit none
   private
   public :: substitution_t, new_substitution
 
-  !> One parameter.
+  !> Longest name that is compared.
+  integer, parameter :: name_length = 64
+
+  !> A parameter.
   type :: binding_t
-    !> Its name, in small letters.
+    !> Name in lower case.
     character(len=:), allocatable :: name
-    !> Its value.
     type(token_list_t) :: value
-    !> Where it was defined; unallocated file: on the command line only.
+    !> Where it is defined.
     type(location_t) :: at
-    !> Whether the command line gives its value.
+    !> Whether its value is given on the command line.
     logical :: overridden = .false.
-    !> Whether the input defines it.
+    !> Whether it is defined in the input.
     logical :: defined = .false.
   end type binding_t
 
   !> All parameters.
   type :: substitution_t
-    !> The parameters, in the order met.
+    !> In the order of the definitions.
     type(binding_t), allocatable :: item(:)
   contains
     procedure :: define
@@ -34,13 +36,11 @@ module dd3_input_substitution
 
 contains
 
-  !> Takes the overrides of the command line.
+  !> Start with the parameters given on the command line.
   subroutine new_substitution(self, overrides, errors)
-    !> The parameters.
     type(substitution_t), intent(out) :: self
     !> Texts `name=value`.
     type(text_t), intent(in) :: overrides(:)
-    !> Receives the errors of malformed overrides.
     type(error_list_t), intent(inout) :: errors
 
     type(binding_t) :: binding
@@ -59,7 +59,7 @@ contains
       line%text = overrides(i)%s(equals + 1:)
       if (equals > 0) call split_line(line, binding%value, continues, errors)
       if (binding%name == "" .or. binding%value%count == 0) then
-        call errors%push_input(binding%at, "a parameter is set as --set name=value")
+        call errors%push_input(binding%at, "expected --set name=value")
         cycle
       end if
       if (position(self, binding%name) > 0) then
@@ -70,15 +70,12 @@ contains
     end do
   end subroutine new_substitution
 
-  !> Defines a parameter as the input gives it.
+  !> Define a parameter of the input; an override keeps its value.
   subroutine define(self, name, value, errors)
-    !> The parameters.
     class(substitution_t), intent(inout) :: self
-    !> Its name as written.
     type(token_t), intent(in) :: name
-    !> Its value, parameters already replaced.
+    !> Value with parameters replaced.
     type(token_list_t), intent(in) :: value
-    !> Receives the error of a name given twice.
     type(error_list_t), intent(inout) :: errors
 
     type(binding_t) :: binding
@@ -98,11 +95,9 @@ contains
     if (.not. self%item(i)%overridden) self%item(i)%value = value
   end subroutine define
 
-  !> An error for every override that names no parameter of the input.
+  !> Report overrides of parameters that the input does not define.
   subroutine check_overrides(self, errors)
-    !> The parameters.
     class(substitution_t), intent(in) :: self
-    !> Receives the errors.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i
@@ -110,22 +105,19 @@ contains
     do i = 1, size(self%item)
       if (self%item(i)%defined) cycle
       call errors%push_input(self%item(i)%at, "the input defines no parameter '"// &
-          self%item(i)%name//"'", alternatives(self, self%item(i)%name))
+          self%item(i)%name//"'"//suggestion(self%item(i)%name, defined_names(self)), &
+          expected_names(self))
     end do
   end subroutine check_overrides
 
-  !> Appends a word to a list with its parameters replaced.
+  !> Append a word to a list, with its parameters replaced.
   subroutine expand(self, token, list, errors)
-    !> The parameters.
     class(substitution_t), intent(in) :: self
-    !> The word.
     type(token_t), intent(in) :: token
-    !> The list.
     type(token_list_t), intent(inout) :: list
-    !> Receives the errors of unknown parameters.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, name
     type(location_t) :: at
     integer :: first, last, i, k
 
@@ -139,23 +131,24 @@ contains
       at%column = token%at%column + first + k - 2 + merge(1, 0, token%quoted)
       at%width = merge(last + 1, len(token%text) - first - k + 2, last > 0)
       if (last == 0) then
-        call errors%push_input(at, "a closing brace is missing", "${name}")
+        call errors%push_input(at, "missing closing brace", "${name}")
         return
       end if
-      i = position(self, slice(token%text, first + k + 1, first + k + last - 2))
+      name = slice(token%text, first + k + 1, first + k + last - 2)
+      i = position(self, name)
       if (i > 0) then
         if (.not. self%item(i)%defined) i = 0
       end if
       if (i == 0) then
-        call errors%push_input(at, "unknown parameter '"//slice(token%text, first + k + 1, &
-            first + k + last - 2)//"'", alternatives(self, slice(token%text, first + k + 1, &
-            first + k + last - 2)))
+        call errors%push_input(at, "unknown parameter '"//name//"'"// &
+            suggestion(name, defined_names(self)), expected_names(self))
         return
       end if
       if (last + 1 == len(token%text) .and. .not. token%quoted) then
         do k = 1, self%item(i)%value%count
-          call add_token(list, self%item(i)%value%item(k)%text, self%item(i)%value%item(k)%quoted, &
-              token%at)
+          associate (word => self%item(i)%value%item(k))
+            call add_token(list, word%text, word%quoted, token%at)
+          end associate
         end do
         return
       end if
@@ -165,9 +158,8 @@ contains
     call add_token(list, text//token%text(first:), token%quoted, token%at)
   end subroutine expand
 
-  !> Words of a value with single blanks between them.
+  !> Return the words of a value separated by single blanks.
   pure function plain(value) result(text)
-    !> The value.
     type(token_list_t), intent(in) :: value
     character(len=:), allocatable :: text
 
@@ -180,11 +172,9 @@ contains
     end do
   end function plain
 
-  !> Position of a parameter; 0 if there is none of this name.
+  !> Return the position of a parameter; 0 if not found.
   pure integer function position(self, name)
-    !> The parameters.
     type(substitution_t), intent(in) :: self
-    !> Its name.
     character(len=*), intent(in) :: name
 
     do position = 1, size(self%item)
@@ -193,29 +183,29 @@ contains
     position = 0
   end function position
 
-  !> What a misspelt name may have meant.
-  function alternatives(self, name) result(text)
-    !> The parameters.
+  !> Return the names of the parameters defined in the input.
+  pure function defined_names(self) result(names)
     type(substitution_t), intent(in) :: self
-    !> The name.
-    character(len=*), intent(in) :: name
-    character(len=:), allocatable :: text
+    character(len=name_length), allocatable :: names(:)
 
-    character(len=64), allocatable :: known(:)
     integer :: i
 
-    allocate (known(0))
+    allocate (names(0))
     do i = 1, size(self%item)
-      if (self%item(i)%defined) known = [character(len=64) :: known, &
+      if (self%item(i)%defined) names = [character(len=name_length) :: names, &
           as_written(self%item(i)%name, self%item(i)%at)]
     end do
-    if (size(known) == 0) then
-      text = "a parameter defined above in a *PARAMETER block (none is)"
-    else
-      text = "one of: "//join(known, ", ")
-      if (nearest_name(name, known) /= "") text = "'"//nearest_name(name, known)// &
-          "'? defined are: "//join(known, ", ")
+  end function defined_names
+
+  !> Return the names that could be used, as the expectation of an error.
+  function expected_names(self) result(text)
+    type(substitution_t), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    text = "one of: "//join(defined_names(self), " ")
+    if (size(defined_names(self)) == 0) then
+      text = "a parameter of a *PARAMETER block above; none is defined"
     end if
-  end function alternatives
+  end function expected_names
 
 end module dd3_input_substitution

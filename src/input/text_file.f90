@@ -7,18 +7,17 @@ module dd3_input_text_file
   private
   public :: read_lines, resolve_path, folder_of
 
-  !> Largest file taken for an input file, bytes.
+  !> Maximum size of an input file, bytes.
   integer(i8), parameter :: largest_file = 200000000
 
 contains
 
-  !> Reads a whole text file.
+  !> Read a whole text file.
   subroutine read_lines(path, line, error)
-    !> The file's path.
     character(len=*), intent(in) :: path
-    !> Its lines, without line ends.
+    !> Lines without line ends.
     type(text_t), allocatable, intent(out) :: line(:)
-    !> Why it cannot be read.
+    !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
     character(len=:), allocatable :: content
@@ -30,13 +29,11 @@ contains
     call refuse_control_characters(line, error)
   end subroutine read_lines
 
-  !> Reads all bytes of a file.
+  !> Read all bytes of a file.
   subroutine read_content(path, content, error)
-    !> The file's path.
     character(len=*), intent(in) :: path
-    !> Its bytes.
     character(len=:), allocatable, intent(out) :: content
-    !> Why it cannot be read.
+    !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
     integer(i8) :: length
@@ -46,38 +43,36 @@ contains
 
     inquire (file=path//"/.", exist=there)
     if (there) then
-      call fatal_error(error, "it is a directory")
+      call fatal_error(error, "is a directory")
       return
     end if
     inquire (file=path, exist=there)
     if (.not. there) then
-      call fatal_error(error, "there is no such file")
+      call fatal_error(error, "no such file")
       return
     end if
     open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
-        action="read", &
-          iostat=status)
+        action="read", iostat=status)
     if (status /= 0) then
-      call fatal_error(error, "it cannot be opened for reading")
+      call fatal_error(error, "cannot open it for reading")
       return
     end if
     inquire (unit=unit, size=length)
     if (length > largest_file) then
-      call fatal_error(error, "it is too large for an input file")
+      call fatal_error(error, "too large for an input file")
     else
       allocate (character(len=max(0_i8, length)) :: content)
       if (length > 0) read (unit, iostat=status) content
-      if (status /= 0) call fatal_error(error, "reading it failed")
+      if (status /= 0) call fatal_error(error, "read error")
       if (length <= 0) read (unit, iostat=status) byte
       if (length <= 0 .and. status == 0) call fatal_error(error, &
-          "it is a pipe or a device; a file on a disk is asked for")
+          "a pipe or a device, expected a regular file")
     end if
     close (unit, iostat=status)
   end subroutine read_content
 
-  !> Makes the no-break spaces of UTF-8, which text copied from a page may hold, two blanks each.
+  !> Replace the no-break spaces of UTF-8, as in text copied from a web page, by two blanks each.
   pure subroutine blank_no_break_spaces(content)
-    !> The bytes.
     character(len=*), intent(inout) :: content
 
     integer :: i
@@ -87,15 +82,13 @@ contains
     end do
   end subroutine blank_no_break_spaces
 
-  !> Cuts bytes into lines at LF, CR LF or CR; a UTF-8 byte order mark is dropped.
+  !> Split a text into lines at LF, CR LF or CR; a UTF-8 byte order mark is skipped.
   pure subroutine split_lines(content, line)
-    !> The bytes.
     character(len=*), intent(in) :: content
-    !> The lines.
     type(text_t), allocatable, intent(out) :: line(:)
 
-    character(len=*), parameter :: mark = char(239)//char(187)//char(191), ends = achar(10)// &
-        achar(13)
+    character(len=*), parameter :: mark = char(239)//char(187)//char(191)
+    character(len=*), parameter :: ends = achar(10)//achar(13)
     integer :: start, next, pass, n
 
     do pass = 1, 2
@@ -117,11 +110,9 @@ contains
     end do
   end subroutine split_lines
 
-  !> An error at the first byte that no text has.
+  !> Report the first control character other than tab and form feed.
   pure subroutine refuse_control_characters(line, error)
-    !> The lines.
     type(text_t), intent(in) :: line(:)
-    !> Says which byte in which line.
     type(error_t), allocatable, intent(out) :: error
 
     character(len=2) :: hex
@@ -133,27 +124,25 @@ contains
         if ((byte < 32 .and. byte /= 9 .and. byte /= 12) .or. byte == 127) then
           write (hex, '(z2.2)') byte
           allocate (error)
-          error%message = "it is not a text file: byte 0x"//hex//" in line "//to_text(i)
+          error%message = "not a text file: byte 0x"//hex//" in line "//to_text(i)
           return
         end if
       end do
     end do
   end subroutine refuse_control_characters
 
-  !> Folder part of a path, with its slash; empty where there is none.
+  !> Return the folder part of a path with its slash; empty if there is none.
   pure function folder_of(path) result(folder)
-    !> The path.
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: folder
 
     folder = path(:index(path, "/", back=.true.))
   end function folder_of
 
-  !> A path that was written relative to a folder.
+  !> Return a path that is written relative to a folder.
   pure function resolve_path(folder, path) result(resolved)
-    !> The folder, with a slash at the end, or empty.
+    !> With a slash at the end, or empty.
     character(len=*), intent(in) :: folder
-    !> The path as written.
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: resolved
 

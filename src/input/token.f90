@@ -1,4 +1,4 @@
-!> Cuts a line of input into words, each with its place.
+!> Splits a line of the input into words with their locations.
 module dd3_input_token
   use dd3_base_error, only : location_t, error_list_t
   use dd3_base_text, only : slice
@@ -7,36 +7,33 @@ module dd3_input_token
   private
   public :: line_t, token_list_t, place, split_line, add_token
 
-  !> Characters shown of a long line.
+  !> Number of characters shown of a long line.
   integer, parameter :: shown = 160
-  !> What separates words.
+  !> Characters that separate words.
   character(len=*), parameter :: blanks = " "//achar(9)//achar(12)
 
   !> One line of an input file.
   type :: line_t
-    !> Name of its file as the user would give it.
+    !> Name of the file as given by the user.
     character(len=:), allocatable :: file
-    !> Its number in the file, from 1.
+    !> Line number, from 1.
     integer :: number = 0
-    !> Its position in the whole text with included files unfolded.
+    !> Position in the whole text with included files inserted.
     integer :: order = 0
-    !> Its text.
     character(len=:), allocatable :: text
   end type line_t
 
-  !> Words, as many as come.
+  !> A list of words.
   type :: token_list_t
-    !> Number of words.
     integer :: count = 0
-    !> The words, `item(1:count)`.
+    !> Words, `item(1:count)`.
     type(token_t), allocatable :: item(:)
   end type token_list_t
 
 contains
 
-  !> The place of some characters of a line; of a long line only the part around them is kept.
+  !> Return the location of part of a line; only the text around it is kept of a long line.
   pure function place(line, column, width) result(location)
-    !> The line.
     type(line_t), intent(in) :: line
     !> First character, from 1.
     integer, intent(in) :: column
@@ -61,18 +58,15 @@ contains
     if (start + shown - 1 < len(line%text)) location%text(shown - 2:) = "..."
   end function place
 
-  !> Cuts a line into words. Words are separated by blanks; an equals sign is a word of its own;
-  !> quotes hold blanks
-  !> together; # or ! begins a comment; an ampersand at the end makes the next line go on with this
-  !> one.
+  !> Split a line into words. Words are separated by blanks; an equals sign is a word of its own; a
+  !> word in quotes may contain blanks; # or ! begins a comment; an ampersand at the end continues
+  !> the line on the next one.
   subroutine split_line(line, token, continues, errors)
-    !> The line.
     type(line_t), intent(in) :: line
-    !> Words are added at the end.
+    !> The words are appended.
     type(token_list_t), intent(inout) :: token
-    !> Whether the next line belongs to this one.
+    !> Whether the line is continued on the next one.
     logical, intent(out) :: continues
-    !> Receives the error of a quote that is not closed.
     type(error_list_t), intent(inout) :: errors
 
     integer :: start, last
@@ -93,7 +87,7 @@ contains
         last = closing_quote(line%text, start)
         if (last == 0) then
           call errors%push_input(place(line, start, len_trim(line%text) - start + 1), &
-              "this quote is not closed", "a second "//line%text(start:start)//" on the same line")
+              "unclosed quote", "a second "//line%text(start:start)//" on the same line")
           return
         end if
         call add_token(token, slice(line%text, start + 1, last - 1), .true., place(line, start, &
@@ -116,22 +110,18 @@ contains
     end do
   end subroutine split_line
 
-  !> Position of the quote that closes the one at `start`; 0 if there is none.
+  !> Return the position of the quote that closes the one at `start`; 0 if there is none.
   pure integer function closing_quote(text, start) result(last)
-    !> The line.
     character(len=*), intent(in) :: text
-    !> Position of the opening quote.
     integer, intent(in) :: start
 
     last = index(text(start + 1:), text(start:start))
     if (last > 0) last = start + last
   end function closing_quote
 
-  !> Position of the last character of the word that begins at `start`.
+  !> Return the position of the last character of the word that begins at `start`.
   pure integer function word_end(text, start) result(last)
-    !> The line.
     character(len=*), intent(in) :: text
-    !> Position of its first character.
     integer, intent(in) :: start
 
     last = scan(text(start:), blanks//"=#!")
@@ -142,11 +132,9 @@ contains
     end if
   end function word_end
 
-  !> Whether the word ends in an ampersand with nothing but blanks or a comment behind it.
+  !> Whether the word up to `last` ends in an ampersand, followed only by blanks or a comment.
   pure logical function ends_in_ampersand(text, last)
-    !> The line.
     character(len=*), intent(in) :: text
-    !> Position of the word's last character.
     integer, intent(in) :: last
 
     integer :: next
@@ -157,15 +145,11 @@ contains
     if (next > 0) ends_in_ampersand = scan(text(last + next:last + next), "#!") == 1
   end function ends_in_ampersand
 
-  !> Appends a word.
+  !> Append a word to a list.
   subroutine add_token(token, text, quoted, at)
-    !> The words.
     type(token_list_t), intent(inout) :: token
-    !> The new one.
     character(len=*), intent(in) :: text
-    !> Whether it stood in quotes.
     logical, intent(in) :: quoted
-    !> Where it was written.
     type(location_t), intent(in) :: at
 
     type(token_t), allocatable :: larger(:)
@@ -187,11 +171,9 @@ contains
     token%item(token%count)%at = at
   end subroutine add_token
 
-  !> Moves a place without copying its texts.
+  !> Move a location without copying its texts.
   subroutine move_location(from, to)
-    !> Emptied.
     type(location_t), intent(inout) :: from
-    !> Filled.
     type(location_t), intent(out) :: to
 
     call move_alloc(from%file, to%file)

@@ -1,5 +1,4 @@
-!> Builds the mesh of a case: nodes, elements and node sets, and checks that what the case does to
-!> nodes makes sense.
+!> Builds the mesh of a case: nodes, elements and node sets; checks the prescribed displacements.
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
@@ -13,13 +12,11 @@ module dd3_mesh_build
 
 contains
 
-  !> Builds the mesh; it is whole only if no error was added.
+  !> Build the mesh. It is complete only if no error was added.
   subroutine new_mesh(mesh, case, errors)
-    !> The mesh.
     type(mesh_t), intent(out) :: mesh
-    !> The case, free of errors.
+    !> Without errors.
     type(case_t), intent(in) :: case
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, before
@@ -35,16 +32,11 @@ contains
     end do
   end subroutine new_mesh
 
-  !> Reports prescribed displacements of nodes that a boundary condition holds, or that another one
-  !> moves.
+  !> Report displacements of nodes that are fixed by a boundary condition, or displaced twice.
   subroutine check_displacements(mesh, case, phase, errors)
-    !> The mesh.
     type(mesh_t), intent(in) :: mesh
-    !> The case.
     type(case_t), intent(in) :: case
-    !> The phase.
     type(phase_spec_t), intent(in) :: phase
-    !> Receives all errors found.
     type(error_list_t), intent(inout) :: errors
 
     logical :: held(3, mesh%n_node), moved(3, mesh%n_node)
@@ -61,22 +53,20 @@ contains
       node = mesh%nodes_of(phase%displace(i)%set)
       if (any(held(phase%displace(i)%axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
         call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-            "' is held along this axis by a *BOUNDARY", "nodes that are free to move")
+            "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
       else if (any(moved(phase%displace(i)%axis, node))) then
         call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-            "' is displaced along this axis already in this phase")
+            "' is displaced twice along this axis in this phase", "one displace for each node")
       end if
       moved(phase%displace(i)%axis, node) = .true.
     end do
   end subroutine check_displacements
 
-  !> Marks directions of nodes.
+  !> Mark the directions of some nodes.
   pure subroutine mark(marked, node, direction)
-    !> Marks, (3, number of nodes).
+    !> `(3, n_node)`.
     logical, intent(inout) :: marked(:, :)
-    !> The nodes.
     integer, intent(in) :: node(:)
-    !> The directions to be marked.
     logical, intent(in) :: direction(3)
 
     integer :: i

@@ -8,27 +8,27 @@ module dd3_mesh_mesh
 
   !> A named list of nodes.
   type :: mesh_set_t
-    !> Its name, in small letters.
+    !> In lower case.
     character(len=:), allocatable :: name
     !> Node numbers, ascending.
     integer, allocatable :: node(:)
   end type mesh_set_t
 
-  !> The sheet's mesh.
+  !> The mesh of the sheet.
   type :: mesh_t
-    !> Name of the element, as in the element registry.
+    !> Name of the element type.
     character(len=:), allocatable :: element
-    !> Number of nodes, elements, nodes per element.
+    !> Number of nodes, of elements, of nodes per element.
     integer :: n_node = 0, n_element = 0, n_element_node = 0
-    !> Initial coordinates (3, n_node), mm.
+    !> Initial coordinates, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Nodes of each element (n_element_node, n_element), in the order of VTK.
+    !> Nodes of each element in the order of VTK, `(n_element_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
-    !> Position in `case%material` of each element.
+    !> Position in `case%material`, `(n_element)`.
     integer, allocatable :: material(:)
-    !> Sheet thickness, mm: the length of a structured blank along z.
+    !> Thickness of the sheet, mm.
     real(wp) :: thickness = 0.0_wp
-    !> Node sets: those of the blank, then those of the input file in its order.
+    !> Node sets of the blank, then those of the input file in its order.
     type(mesh_set_t), allocatable :: set(:)
   contains
     procedure :: find_set
@@ -38,11 +38,9 @@ module dd3_mesh_mesh
 
 contains
 
-  !> Position of a set; 0 if there is none of this name.
+  !> Return the position of a set; 0 if not found.
   pure integer function find_set(self, name)
-    !> The mesh.
     class(mesh_t), intent(in) :: self
-    !> Name of the set.
     character(len=*), intent(in) :: name
 
     if (allocated(self%set)) then
@@ -53,11 +51,9 @@ contains
     find_set = 0
   end function find_set
 
-  !> Nodes of a set; none if there is no such set.
+  !> Return the nodes of a set; size 0 if not found.
   pure function nodes_of(self, name) result(node)
-    !> The mesh.
     class(mesh_t), intent(in) :: self
-    !> Name of the set.
     character(len=*), intent(in) :: name
     integer, allocatable :: node(:)
 
@@ -71,9 +67,8 @@ contains
     end if
   end function nodes_of
 
-  !> Diagonal of the box around all nodes, mm.
+  !> Return the diagonal of the bounding box of all nodes, mm.
   pure real(wp) function model_size(self)
-    !> The mesh.
     class(mesh_t), intent(in) :: self
 
     model_size = norm2(maxval(self%x, dim=2) - minval(self%x, dim=2))

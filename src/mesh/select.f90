@@ -1,4 +1,4 @@
-!> Chooses nodes from the initial coordinates: planes, boxes, numbers, the nearest to a point.
+!> Selection of nodes: in a plane, in a box, by number, nearest to a point.
 module dd3_mesh_select
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
@@ -9,18 +9,15 @@ module dd3_mesh_select
   private
   public :: add_set
 
-  !> Tolerance as a fraction of the model's size, where none is given.
+  !> Default tolerance as a fraction of the model's size.
   real(wp), parameter :: relative_tolerance = 1.0e-6_wp
 
 contains
 
-  !> Adds a set to the mesh.
+  !> Add a set to the mesh.
   subroutine add_set(mesh, wanted, errors)
-    !> The mesh.
     type(mesh_t), intent(inout) :: mesh
-    !> The set as asked for.
     type(node_set_spec_t), intent(in) :: wanted
-    !> Receives the error of a set without nodes.
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_set_t) :: set
@@ -53,18 +50,16 @@ contains
     set%node = pack([(i, i=1, mesh%n_node)], member)
     if (size(set%node) == 0 .and. errors%count == before) then
       call errors%push_input(wanted%source%opened, "set '"//wanted%source%called()// &
-          "' holds no node", "at least one node")
+          "' contains no node", "at least one node")
     end if
     mesh%set = [mesh%set, set]
   end subroutine add_set
 
-  !> Keeps the members whose numbers are asked for.
+  !> Keep the members with the numbers of the set.
   subroutine keep_numbers(member, wanted, errors)
     !> Whether each node is a member.
     logical, intent(inout) :: member(:)
-    !> The set as asked for.
     type(node_set_spec_t), intent(in) :: wanted
-    !> Receives the error of numbers that no node has.
     type(error_list_t), intent(inout) :: errors
 
     logical :: named(size(member))
@@ -83,16 +78,14 @@ contains
     member = member .and. named
   end subroutine keep_numbers
 
-  !> Keeps the member nearest to a point: of those that are equally near, the one with the lowest
-  !> number.
+  !> Keep the member nearest to a point; among equals, the one with the lowest number.
   pure subroutine keep_nearest(member, x, point, tolerance)
     !> Whether each node is a member.
     logical, intent(inout) :: member(:)
-    !> Coordinates, (3, n).
+    !> Coordinates, `(3, n)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> The point.
     real(wp), intent(in) :: point(:)
-    !> Distances that differ by no more are equal.
+    !> Largest difference of distances considered equal, mm.
     real(wp), intent(in) :: tolerance
 
     real(wp) :: distance(size(member)), least

@@ -5,12 +5,12 @@ module dd3_model_build
   use dd3_base_error, only : error_list_t, error_t
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
-  use dd3_contact_reader, only : read_surface
   use dd3_element_kinematics, only : element_gradients
-  use dd3_element_registry, only : new_element
+  use dd3_element_registry, only : element_count, element_name, new_element
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
+  use dd3_input_known_name, only : check_known_name
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_materials, only : new_materials
@@ -18,6 +18,7 @@ module dd3_model_build
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_tolerances, only : start_depth, start_search, wrong_side_depth
+  use dd3_model_tool_surface, only : read_tool_surface
   implicit none
   private
   public :: new_model
@@ -36,6 +37,7 @@ contains
     type(mesh_t) :: mesh
 
     call set_title(model, case)
+    call check_element(case, errors)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
@@ -51,6 +53,22 @@ contains
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
   end subroutine new_model
+
+  !> Report an element type that is not in the registry.
+  subroutine check_element(case, errors)
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=len(element_name(1))) :: known(element_count)
+    integer :: b, i, position
+
+    known = [(element_name(i), i=1, element_count)]
+    do b = 1, size(case%blank)
+      if (.not. case%blank(b)%source%has("element")) cycle
+      call check_known_name(case%blank(b)%element, case%blank(b)%source%at("element"), &
+          "element type", known, position, errors)
+    end do
+  end subroutine check_element
 
   !> Join the lines of the title.
   subroutine set_title(model, case)
@@ -82,7 +100,7 @@ contains
       model%tool(t)%name = case%tool(t)%name
       model%tool(t)%friction = case%tool(t)%friction
       model%tool(t)%position = case%tool(t)%position
-      call read_surface(model%tool(t)%surface, case%tool(t)%patches, &
+      call read_tool_surface(model%tool(t)%surface, case%tool(t)%patches, &
           case%tool(t)%source%at("patches"), errors)
     end do
   end subroutine read_tools

@@ -5,7 +5,7 @@ program benchmark_contact
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : location_t, error_list_t
   use dd3_contact_surface, only : surface_t
-  use dd3_contact_reader, only : read_surface
+  use dd3_model_tool_surface, only : read_tool_surface
   use dd3_contact_closest, only : hint_t, hit_t, find_contact
   use dd3_contact_operator, only : contact_operator
   implicit none
@@ -19,7 +19,7 @@ program benchmark_contact
 
   folder = "input_files/bending"
   if (command_argument_count() > 0) call get_command_argument(1, folder)
-  call read_surface(punch, trim(folder)//"/punch.bez", here, errors)
+  call read_tool_surface(punch, trim(folder)//"/punch.bez", here, errors)
   if (errors%count > 0) then
     print '(a)', errors%item(1)%message
     stop 1

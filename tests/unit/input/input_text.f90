@@ -8,7 +8,6 @@ module input_text
   private
   public :: write_file, remove_file, read_text, messages, newline, good_sheet, good_pull, good_tool
 
-  !> Ends a line.
   character(len=1), parameter :: newline = achar(10)
   !> A good sheet with its material.
   character(len=*), parameter :: good_sheet = "*BLANK sheet"//newline//"size = 20 10 1"//newline// &
@@ -20,18 +19,16 @@ module input_text
     "trial = 0.1"//newline//"displace = x_max x 0.1"//newline
   !> A good tool and its contact.
   character(len=*), parameter :: good_tool = "*TOOL punch"//newline//"patches = 'my punch.bez'"// &
-      newline// &
-    "contact = z_max"//newline//"friction = 0.1"//newline//"*CONTACT"//newline//"penalty = 1d3"// &
-    newline
+      newline//"contact = z_max"//newline//"friction = 0.1"//newline//"*CONTACT"//newline// &
+      "penalty = 1d3"//newline
 
 contains
 
-  !> Writes a file, byte by byte.
+  !> Write a file without conversion of line ends.
   subroutine write_file(name, text)
-    !> Its name.
     character(len=*), intent(in) :: name
-    !> Its bytes.
     character(len=*), intent(in) :: text
+
     integer :: unit
 
     call remove_file(name)
@@ -41,26 +38,23 @@ contains
     close (unit)
   end subroutine write_file
 
-  !> Removes a file if it is there.
   subroutine remove_file(name)
-    !> Its name.
     character(len=*), intent(in) :: name
+
     integer :: unit, status
 
     open (newunit=unit, file=name, status="old", iostat=status)
     if (status == 0) close (unit, status="delete")
   end subroutine remove_file
 
-  !> Reads a case from a text, through a file of its own.
+  !> Read a case from a text, by way of a file.
   subroutine read_text(case, text, errors, overrides)
-    !> The case.
     type(case_t), intent(out) :: case
-    !> The input.
     character(len=*), intent(in) :: text
-    !> The errors found.
     type(error_list_t), intent(out) :: errors
-    !> Parameters given from outside.
+    !> Texts `name=value`.
     type(text_t), intent(in), optional :: overrides(:)
+
     type(text_t) :: none(0)
 
     call write_file("case.dat", text)
@@ -72,11 +66,11 @@ contains
     call remove_file("case.dat")
   end subroutine read_text
 
-  !> All messages, one after the other.
+  !> Return all messages, one per line.
   function messages(errors) result(text)
-    !> The errors.
     type(error_list_t), intent(in) :: errors
     character(len=:), allocatable :: text
+
     integer :: i
 
     text = ""

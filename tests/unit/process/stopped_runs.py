@@ -119,7 +119,7 @@ def no_directory(program, directory):
     directory.parent.mkdir(parents=True, exist_ok=True)
     directory.write_text("a file", encoding="utf-8")
     said = run(program, directory / "results", BENDING)
-    check("cannot make the directory" in said and str(directory) in said, f"the directory is not named:\n{said}")
+    check("cannot create the directory" in said and str(directory) in said, f"the directory is not named:\n{said}")
 
 
 def next_to_old(program, directory):

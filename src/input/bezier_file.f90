@@ -1,0 +1,318 @@
+!> Reader of `.bez` files: the Bézier patches of a tool surface as plain data.
+!>
+!> Each patch begins with a line `patch m n` giving the degrees along u and v, followed by
+!> `rational` if every point has a weight; then (m+1)(n+1) lines `x y z` or `x y z w`, u fastest.
+!> All errors of a file are reported.
+module dd3_input_bezier_file
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_t, error_list_t, location_t
+  use dd3_base_text, only : text_t, newline, to_text, same_name
+  use dd3_input_block, only : token_t
+  use dd3_input_number, only : parse_real, parse_integer
+  use dd3_input_number_check, only : not_a_number
+  use dd3_input_text_file, only : read_lines
+  use dd3_input_token, only : line_t, token_list_t, place, split_line
+  implicit none
+  private
+  public :: patch_spec_t, read_patches, push_file_errors
+
+  !> Number of errors shown for one file.
+  integer, parameter :: most_errors = 25
+  !> Largest coordinate, mm; the weights lie between 1/largest_weight and largest_weight.
+  real(wp), parameter :: largest_coordinate = 1.0e7_wp, largest_weight = 1.0e6_wp
+  !> Expected first line of a patch.
+  character(len=*), parameter :: header = "patch m n, or patch m n rational, with the degrees m n"
+
+  !> A patch as written in the file.
+  type :: patch_spec_t
+    !> Degrees along u and v.
+    integer :: degree(2) = 1
+    !> Whether the points have weights.
+    logical :: rational = .false.
+    !> Control points (mm) and their weights, `(4, n)`, u fastest; the weights are 1 if not given.
+    real(wp), allocatable :: point(:, :)
+    !> Position among the patches of the file, from 1.
+    integer :: number = 0
+    !> Header line.
+    type(location_t) :: at
+  end type patch_spec_t
+
+  !> State of the reader.
+  type :: reading_t
+    character(len=:), allocatable :: file
+    !> Largest degree accepted.
+    integer :: largest_degree = 0
+    !> Valid patches, `patch(1:n_patch)`.
+    type(patch_spec_t), allocatable :: patch(:)
+    integer :: n_patch = 0
+    !> Number of headers read.
+    integer :: n_begun = 0
+    !> Whether the next points belong to the patch `current`.
+    logical :: open = .false.
+    !> Whether points outside a patch are ignored, as after an invalid header.
+    logical :: skipping = .false.
+    type(patch_spec_t) :: current
+    !> Number of points read of the current patch.
+    integer :: n_read = 0
+    !> Whether all of them are valid.
+    logical :: valid = .true.
+    type(error_list_t) :: errors
+  end type reading_t
+
+contains
+
+  !> Read all patches of a file. Invalid patches are left out and reported.
+  subroutine read_patches(patches, file, largest_degree, location, errors)
+    type(patch_spec_t), allocatable, intent(out) :: patches(:)
+    character(len=*), intent(in) :: file
+    !> Largest degree accepted.
+    integer, intent(in) :: largest_degree
+    !> Where the input names the file.
+    type(location_t), intent(in) :: location
+    type(error_list_t), intent(inout) :: errors
+
+    type(reading_t) :: self
+    type(text_t), allocatable :: line(:)
+    type(error_t), allocatable :: error
+    integer :: i
+
+    allocate (patches(0))
+    call read_lines(file, line, error)
+    if (allocated(error)) then
+      call errors%push_input(location, "cannot read the tool surface '"//file//"': "// &
+          error%message, "a file of Bézier patches")
+      return
+    end if
+    self%file = file
+    self%largest_degree = largest_degree
+    allocate (self%patch(4))
+    do i = 1, size(line)
+      call read_line(self, i, line(i)%s)
+      if (self%errors%count > most_errors) exit
+    end do
+    if (self%errors%count <= most_errors) call close_patch(self)
+    if (self%n_begun == 0 .and. self%errors%count == 0) then
+      call errors%push_input(location, "the tool surface '"//file//"' contains no patch", header)
+      return
+    end if
+    call push_file_errors(errors, self%errors, location)
+    patches = self%patch(:self%n_patch)
+  end subroutine read_patches
+
+  !> Add the errors of a file to those of the input, sorted at the place that names the file. At
+  !> most `most_errors` are added.
+  subroutine push_file_errors(errors, found, location)
+    type(error_list_t), intent(inout) :: errors
+    !> Errors of the file.
+    type(error_list_t), intent(in) :: found
+    !> Where the input names the file.
+    type(location_t), intent(in) :: location
+
+    type(error_t), allocatable :: error
+    integer :: i
+
+    do i = 1, min(found%count, most_errors)
+      allocate (error, source=found%item(i))
+      error%order = location%order
+      error%column = location%column
+      if (i == most_errors .and. found%count > i) then
+        error%message = error%message//newline//"  further errors of this file are not shown"
+      end if
+      call errors%push(error)
+      deallocate (error)
+    end do
+  end subroutine push_file_errors
+
+  !> Read one line.
+  subroutine read_line(self, number, text)
+    type(reading_t), intent(inout) :: self
+    !> Line number, from 1.
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: text
+
+    type(line_t) :: line
+    type(token_list_t) :: token
+    type(location_t) :: here
+    logical :: continues
+
+    line%file = self%file
+    line%number = number
+    line%text = text
+    call split_line(line, token, continues, self%errors)
+    if (continues) then
+      call self%errors%push_input(place(line, index(text, "&"), 1), &
+          "continuation lines are not allowed in a tool surface")
+    end if
+    if (token%count == 0) return
+    here = place(line, 1, len_trim(text))
+    if (same_name(token%item(1)%text, "patch")) then
+      call close_patch(self)
+      call open_patch(self, token, here)
+    else if (self%open) then
+      call read_point(self, token, here)
+    else if (.not. self%skipping) then
+      self%skipping = .true.
+      call self%errors%push_input(token%item(1)%at, "'"//token%item(1)%text// &
+          "' is outside a patch", header)
+    end if
+  end subroutine read_line
+
+  !> Read the header of a patch.
+  subroutine open_patch(self, token, here)
+    type(reading_t), intent(inout) :: self
+    !> Words of the line.
+    type(token_list_t), intent(in) :: token
+    !> The line.
+    type(location_t), intent(in) :: here
+
+    logical :: ok
+    integer :: i
+
+    self%n_begun = self%n_begun + 1
+    self%skipping = .true.
+    if (token%count < 3) then
+      call self%errors%push_input(here, "the degrees of the patch are missing", header)
+      return
+    end if
+    self%current = patch_spec_t(number=self%n_begun, rational=token%count > 3)
+    do i = 1, 2
+      call parse_integer(token%item(i + 1)%text, self%current%degree(i), ok)
+      if (ok) ok = self%current%degree(i) >= 1 .and. self%current%degree(i) <= self%largest_degree
+      if (ok) cycle
+      call self%errors%push_input(token%item(i + 1)%at, "'"//token%item(i + 1)%text// &
+          "' is not a valid degree", "an integer from 1 to "//to_text(self%largest_degree))
+      return
+    end do
+    if (self%current%rational) then
+      i = merge(5, 4, same_name(token%item(4)%text, "rational"))
+      if (i <= token%count) then
+        call self%errors%push_input(token%item(i)%at, "unexpected '"//token%item(i)%text//"'", &
+            header)
+        return
+      end if
+    end if
+    self%current%at = here
+    allocate (self%current%point(4, product(self%current%degree + 1)), source=1.0_wp)
+    self%open = .true.
+    self%skipping = .false.
+    self%valid = .true.
+    self%n_read = 0
+  end subroutine open_patch
+
+  !> Read a control point.
+  subroutine read_point(self, token, here)
+    type(reading_t), intent(inout) :: self
+    !> Words of the line.
+    type(token_list_t), intent(in) :: token
+    !> The line.
+    type(location_t), intent(in) :: here
+
+    character(len=:), allocatable :: expected
+    integer :: i, n, n_point
+
+    n_point = size(self%current%point, 2)
+    self%n_read = self%n_read + 1
+    if (self%n_read > n_point) then
+      self%valid = .false.
+      if (self%n_read == n_point + 1) then
+        call self%errors%push_input(here, "patch "//to_text(self%n_begun)//" of degrees "// &
+            degrees(self%current)//" has more than "//to_text(n_point)//" points", &
+            "the next patch, or the end of the file")
+      end if
+      return
+    end if
+    n = merge(4, 3, self%current%rational)
+    expected = "x y z"
+    if (self%current%rational) expected = "x y z w, with the weight w"
+    if (token%count == n) then
+      do i = 1, n
+        call read_component(self, token%item(i), i, expected)
+      end do
+    else
+      self%valid = .false.
+      call self%errors%push_input(misfit(token, n, here), "expected "//to_text(n)// &
+          " numbers, got "//to_text(token%count), expected)
+    end if
+  end subroutine read_point
+
+  !> Return the place to show for a line that does not hold n words: the first excess word, or the
+  !> line.
+  pure function misfit(token, n, here) result(at)
+    type(token_list_t), intent(in) :: token
+    integer, intent(in) :: n
+    type(location_t), intent(in) :: here
+    type(location_t) :: at
+
+    at = here
+    if (token%count > n) at = token%item(n + 1)%at
+  end function misfit
+
+  !> Read and check a coordinate or a weight of the current point.
+  subroutine read_component(self, token, i, expected)
+    type(reading_t), intent(inout) :: self
+    type(token_t), intent(in) :: token
+    !> Component of the point: 1 to 3 for a coordinate, 4 for the weight.
+    integer, intent(in) :: i
+    !> Expected form of the line.
+    character(len=*), intent(in) :: expected
+
+    logical :: ok
+
+    associate (value => self%current%point(i, self%n_read))
+      call parse_real(token%text, value, ok)
+      if (.not. ok) then
+        call refuse(self, token, not_a_number(token%text), "coordinates in mm: "//expected)
+      else if (i < 4 .and. abs(value) > largest_coordinate) then
+        call refuse(self, token, "'"//token%text//"' is out of range", "at most 1e7 mm")
+      else if (i == 4 .and. (value < 1.0_wp/largest_weight .or. value > largest_weight)) then
+        call refuse(self, token, "'"//token%text//"' is not a valid weight", &
+            "a number from 1e-6 to 1e6")
+      end if
+    end associate
+  end subroutine read_component
+
+  !> Report a word of a point.
+  subroutine refuse(self, token, message, expected)
+    type(reading_t), intent(inout) :: self
+    type(token_t), intent(in) :: token
+    character(len=*), intent(in) :: message, expected
+
+    self%valid = .false.
+    call self%errors%push_input(token%at, message, expected)
+  end subroutine refuse
+
+  !> Return the degrees of a patch as text.
+  pure function degrees(patch) result(text)
+    type(patch_spec_t), intent(in) :: patch
+    character(len=:), allocatable :: text
+
+    text = to_text(patch%degree(1))//" and "//to_text(patch%degree(2))
+  end function degrees
+
+  !> End the current patch; keep it if it is complete and valid.
+  subroutine close_patch(self)
+    type(reading_t), intent(inout) :: self
+
+    type(patch_spec_t), allocatable :: larger(:)
+    integer :: n_point
+
+    if (.not. self%open) return
+    self%open = .false.
+    n_point = size(self%current%point, 2)
+    if (self%n_read < n_point) then
+      call self%errors%push_input(self%current%at, "patch "//to_text(self%n_begun)// &
+          ": expected "//to_text(n_point)//" points, got "//to_text(self%n_read), &
+          to_text(n_point)//" points for the degrees "//degrees(self%current))
+      return
+    end if
+    if (.not. self%valid) return
+    if (self%n_patch == size(self%patch)) then
+      allocate (larger(2*self%n_patch))
+      larger(:self%n_patch) = self%patch
+      call move_alloc(larger, self%patch)
+    end if
+    self%n_patch = self%n_patch + 1
+    self%patch(self%n_patch) = self%current
+  end subroutine close_patch
+
+end module dd3_input_bezier_file

@@ -1,0 +1,254 @@
+!> The keys of every block of the input, one row each.
+module dd3_input_keys
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : parameter_t, row, kind_real, kind_integer, kind_logical, &
+      kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, kind_other
+  implicit none
+  private
+  public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, contact_keys, &
+      boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, &
+      output_keys, point_keys
+
+  !> Bound of the numbers that must not be negative.
+  real(wp), parameter :: zero = 0.0_wp
+
+contains
+
+  function blank_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("origin", kind_reals, "mm", "0 0 0", "corner with the smallest coordinates", count=3), &
+      row("size", kind_reals, "mm", "", "lengths along x, y and z (thickness)", count=3, &
+          lower=zero, lower_open=.true.), &
+      row("divisions", kind_integers, "", "", "number of elements along x, y and z", count=3, &
+          lower=1.0_wp, upper=1.0e6_wp), &
+      row("grading_x", kind_reals, "", "-", &
+          "node abscissae as fractions, one more than divisions, increasing from 0 to 1", count=0, &
+          lower=zero, upper=1.0_wp), &
+      row("grading_y", kind_reals, "", "-", "the same along y", count=0, lower=zero, &
+          upper=1.0_wp), &
+      row("grading_z", kind_reals, "", "-", "the same along z", count=0, lower=zero, &
+          upper=1.0_wp), &
+      row("skew", kind_real, "", "0", &
+          "interior node lines across y are shifted along x by skew*(lx/nx)*(y/ly - 1/2)"), &
+      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("material", kind_name, "", "", "material", form="material")]
+  end function blank_keys
+
+  function mesh_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("file", kind_text, "", "", &
+          "mesh file: Gmsh .msh 2.2 or 4.1, Abaqus or CalculiX .inp, GiD .msh"), &
+      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("material", kind_name, "", "-", "material", form="material"), &
+      row("material_of", kind_other, "", "-", "material of the elements of a set", &
+          repeatable=.true., form="set material")]
+  end function mesh_keys
+
+  function set_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("plane", kind_other, "mm", "-", "nodes on a plane normal to an axis", &
+          form="axis number"), &
+      row("box", kind_reals, "mm", "-", "nodes in a box: x0 x1 y0 y1 z0 z1", count=6), &
+      row("nodes", kind_other, "", "-", "nodes by number, for example 1 2 5-9", form="range..."), &
+      row("near", kind_reals, "mm", "-", &
+          "node closest to a point; if several are, the one with the lowest number", count=3), &
+      row("of", kind_name, "", "-", "keep only members of this set", form="set"), &
+      row("tolerance", kind_real, "mm", "-", &
+          "tolerance of plane, box and near; default: 1e-6 of the model's size", lower=zero)]
+  end function set_keys
+
+  function material_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("young", kind_real, "MPa", "", "Young's modulus", lower=zero, lower_open=.true.), &
+      row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
+          lower_open=.true., upper_open=.true.), &
+      row("yield", kind_law, "", "", "yield criterion and its parameters"), &
+      row("hardening", kind_law, "", "", "hardening law and its parameters"), &
+      row("backstress", kind_law, "", "none", &
+          "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
+      row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
+          count=3), &
+      row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3)]
+  end function material_keys
+
+  function tool_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("patches", kind_text, "", "", "file of the surface's Bezier patches (.bez)"), &
+      row("friction", kind_real, "", "0", "coefficient of friction", lower=zero), &
+      row("contact", kind_name, "", "", "node set of the candidates on the sheet", form="set"), &
+      row("position", kind_reals, "mm", "0 0 0", "initial offset", count=3)]
+  end function tool_keys
+
+  function contact_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("penalty", kind_real, "N/mm", "", "penalty of the augmented Lagrangian", lower=zero, &
+          lower_open=.true.), &
+      row("search_distance", kind_real, "mm", "-", &
+          "search distance of the tools; default: the thickness of the sheet", lower=zero, &
+          lower_open=.true.)]
+  end function contact_keys
+
+  function boundary_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("set", kind_name, "", "", "node set", form="set"), &
+      row("fix", kind_names, "", "", "fixed directions", count=0, choices="x y z")]
+  end function boundary_keys
+
+  function limits_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    integer :: i
+
+    key = [ &
+      row("strain", kind_real, "", "0.005", "maximum strain increment"), &
+      row("rotation", kind_real, "degrees", "0.05", "maximum rotation increment"), &
+      row("stress_tangential", kind_real, "", "3.0", &
+          "maximum stress increment tangential to the yield surface, over the flow stress"), &
+      row("stress_normal", kind_real, "", "1.0", &
+          "maximum stress increment normal to the yield surface, over the flow stress"), &
+      row("force", kind_reals, "", "off", "bounds c d e on the change of the contact forces", &
+          count=3), &
+      row("force_floor", kind_real, "", "0.1", "floor beta of the reference contact force", &
+          lower=zero), &
+      row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
+      row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
+    do i = 1, size(key)
+      key(i)%may_be_off = .true.
+      if (key(i)%name == "force_floor") cycle
+      key(i)%lower = zero
+      key(i)%lower_open = .true.
+    end do
+  end function limits_keys
+
+  function newton_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
+          lower=zero, lower_open=.true.), &
+      row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
+          lower=2.0_wp, upper=1.0e6_wp), &
+      row("cutback", kind_logical, "", "off", &
+          "on: repeat a failed increment with a smaller r; off: stop the run"), &
+      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", lower=zero, &
+          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("cutback_min", kind_real, "", "1e-5", "minimum of r; the run stops below it", &
+          lower=zero, lower_open=.true.)]
+  end function newton_keys
+
+  function solver_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("method", kind_name, "", "auto", &
+          "linear solver; auto: cgs, and umfpack if it breaks down", &
+          choices="cgs umfpack auto"), &
+      row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
+          lower=zero, upper=100.0_wp), &
+      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", lower=zero, &
+          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs", &
+          lower=1.0_wp, upper=1.0e9_wp), &
+      row("ordering", kind_name, "", "none", &
+          "ordering of the unknowns; none: as the nodes are numbered", &
+          choices="none amd rcm")]
+  end function solver_keys
+
+  !> Keys of a phase: its own, then those of limits, newton and contact, without defaults.
+  function phase_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    type(parameter_t), allocatable :: inherited(:)
+
+    inherited = [limits_keys(), newton_keys(), contact_keys()]
+    inherited%default = "-"
+    key = [ &
+      row("control", kind_name, "", "", "controlling tool, or load"), &
+      row("trial", kind_real, "", "", &
+          "trial increment: mm of the controlling tool, or fraction of the phase for load", &
+          lower=zero, lower_open=.true.), &
+      row("hold", kind_other, "", "-", "tool that does not move", repeatable=.true., &
+          form="tool"), &
+      row("move", kind_other, "mm", "-", "displacement of a tool over the phase", &
+          repeatable=.true., form="tool number number number"), &
+      row("press", kind_other, "N", "-", &
+          "force on a tool at the end of the phase; the tool moves only in its direction", &
+          repeatable=.true., form="tool number number number"), &
+      row("release", kind_other, "", "-", &
+          "tool whose contact is switched off for the rest of the run", repeatable=.true., &
+          form="tool"), &
+      row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
+          repeatable=.true., form="set axis number"), &
+      row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
+          repeatable=.true., form="set number number number"), &
+      row("pressure", kind_other, "MPa", "-", &
+          "pressure on the faces with all nodes in the set", repeatable=.true., &
+          form="set number", later="*"), &
+      row("unload", kind_logical, "", "-", "springback: all tools released", later="*"), &
+      row("until", kind_other, "mm or N", "-", &
+          "ends the phase early: displacement or force of a tool in its direction", &
+          form="displacement|force tool number"), &
+      inherited]
+  end function phase_keys
+
+  function history_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("set", kind_name, "", "", "node set", form="set"), &
+      row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean position", &
+          count=0, choices="displacement reaction position")]
+  end function history_keys
+
+  function output_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("history", kind_other, "", "every 1", &
+          "interval of the rows of history.csv, in increments", form="every count"), &
+      row("fields", kind_other, "", "-", &
+          "output of fields: interval of the travel (mm) in a phase, travels, or interval in "// &
+          "increments; the initial state and the end of each phase are always written", &
+          form="every number [mm]/at number.../increments count"), &
+      row("restart", kind_other, "", "-", "interval of the restart file in increments, or "// &
+          "off; it is also written at the end of each phase and when a run stops", &
+          form="every count/off"), &
+      row("directory", kind_text, "", "-", &
+          "folder of the results; default: the name of the input file with .out")]
+  end function output_keys
+
+  function point_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("material", kind_name, "", "", "material", form="material"), &
+      row("angle", kind_real, "degrees", "-", &
+          "angle of x from the rolling direction, in the plane of the sheet"), &
+      row("control", kind_names, "", "-", &
+          "prescribed components, logarithmic strain e or Cauchy stress s: e11 s22 s33 s12 s23 "// &
+          "s13", &
+          count=6), &
+      row("target", kind_other, "", "-", &
+          "strains (tensorial shear) and stresses (MPa), reached linearly in the number of steps", &
+          repeatable=.true., form="number number number number number number steps = count"), &
+      row("gradient", kind_other, "", "-", &
+          "deformation gradient F11 F12 F13 F21 ... F33 from the initial state, reached "// &
+          "linearly in the number of steps", repeatable=.true., &
+          form="number number number number number number number number number steps = count")]
+  end function point_keys
+
+end module dd3_input_keys
