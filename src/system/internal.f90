@@ -9,7 +9,7 @@ module dd3_system_internal
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_increment, only : element_strain
+  use dd3_element_log_strain, only : element_strain
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_stiffness, only : element_stiffness
   use dd3_element_work, only : element_work_t
@@ -91,9 +91,9 @@ contains
     integer :: p, a
 
     associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
-      work%x_old(:, :) = old%x(:, nodes)
-      work%x_new(:, :) = new%x(:, nodes)
-      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
+      work%x_committed(:, :) = old%x(:, nodes)
+      work%x_trial(:, :) = new%x(:, nodes)
+      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
       call element_strain(model%element, old%orientation(:, :, :, e), work)
@@ -165,14 +165,14 @@ contains
 
     type(verdict_t) :: verdict
 
-    work%x_old(:, :) = old%x(:, model%connectivity(:, e))
+    work%x_committed(:, :) = old%x(:, model%connectivity(:, e))
     if (present(new)) then
-      work%x_new(:, :) = new%x(:, model%connectivity(:, e))
-      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
+      work%x_trial(:, :) = new%x(:, model%connectivity(:, e))
+      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
       call element_strain(model%element, old%orientation(:, :, :, e), work)
       work%stress(:, :) = new%stress(:, :, e)
     else
-      call element_gradients(model%element, work%x_old, work, verdict)
+      call element_gradients(model%element, work%x_committed, work, verdict)
       work%strain = 0.0_wp
       work%rotation(:, :, :) = old%orientation(:, :, :, e)
       work%stress(:, :) = old%stress(:, :, e)
