@@ -40,7 +40,7 @@ module element_cases
     real(wp), allocatable :: x(:, :)
     !> Nodes of the elements: `node(n_element_node,n_element)`.
     integer, allocatable :: node(:, :)
-    !> Whether a node is on the surface of the cube: `held(n_node)`.
+    !> True for nodes on the surface of the cube: `held(n_node)`.
     logical, allocatable :: held(:)
   end type patch_t
 
