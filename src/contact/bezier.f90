@@ -1,11 +1,10 @@
-!> Bézier patches of any degree, polynomial or rational, and their derivatives.
+!> Polynomial and rational Bézier patches of any degree, and their derivatives.
 !>
-!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein
-!> polynomials come from their triangular recurrence, B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1):
-!> the triangle of de Casteljau with the roles of points and weights exchanged. It only adds
-!> positive numbers, so that it is stable for any degree. Derivatives are differences of the
-!> polynomials of the next lower degrees; rational patches are evaluated in homogeneous
-!> coordinates, with the quotient rule.
+!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein polynomials
+!> are computed by the triangular recurrence B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1), which adds
+!> only positive numbers within the patch and is stable for any degree. Derivatives are differences
+!> of the polynomials of the next lower degrees; rational patches are evaluated in homogeneous
+!> coordinates with the quotient rule.
 !> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 5, 13, 14; Piegl and
 !> Tiller, The NURBS Book, 2nd ed. (1997), algorithm A1.3 and section 4.5.
 module dd3_contact_bezier
@@ -15,52 +14,50 @@ module dd3_contact_bezier
   public :: patch_t, new_patch, evaluate, evaluate_relative, position_at, normal_at, unit_normal
   public :: curve_length, largest_degree, n_sample
 
-  !> Largest degree of a patch along one of its parameters.
+  !> Largest degree of a patch in u or v.
   integer, parameter :: largest_degree = 25
-  !> Intervals along each parameter of the grid of stored points.
+  !> Intervals in u and v of the grid of stored points.
   integer, parameter :: n_sample = 8
-  !> A normal is taken as degenerate where |S_u x S_v| is below this share of the patch's size
-  !> squared.
+  !> Below this |S_u x S_v|, relative to the patch's size squared, the normal is undefined.
   real(wp), parameter :: degenerate_area = 1.0e-9_wp
 
-  !> One patch.
+  !> A Bézier patch.
   type :: patch_t
-    !> Degrees along u and v.
+    !> Degrees in u and v.
     integer :: degree(2) = 0
-    !> Whether the weights differ from one.
+    !> True if the weights are not all equal.
     logical :: rational = .false.
-    !> Whether it is a parallelogram: degrees 1 and 1, no twist.
+    !> True for a parallelogram: degrees 1 and 1, no twist.
     logical :: flat = .false.
     !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
     real(wp), allocatable :: control(:, :, :)
     !> Control points relative to `centre`, multiplied by their weights, and the weights,
     !> `(4, 0:degree(1), 0:degree(2))`.
     real(wp), allocatable :: homogeneous(:, :, :)
-    !> Points on a regular grid of the parameters, relative to `centre`, mm; none where it is flat.
+    !> Points on a regular grid of parameters, relative to `centre`, mm; not allocated if flat.
     real(wp), allocatable :: sample(:, :, :)
-    !> Middle of its box, mm.
+    !> Centre of the bounding box, mm.
     real(wp) :: centre(3) = 0.0_wp
-    !> Box that holds it, mm.
+    !> Bounding box of the control points, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
-    !> Diagonal of the box, mm.
+    !> Diagonal of the bounding box, mm.
     real(wp) :: size = 0.0_wp
-    !> Shorter of the mean lengths along u and v, mm.
-    real(wp) :: reach = 0.0_wp
-    !> Line of its file where it begins; 0 where it comes from none.
+    !> Smaller of the mean lengths in u and v, mm.
+    real(wp) :: shorter_side = 0.0_wp
+    !> First line of the patch in its file, or 0.
     integer :: line = 0
   end type patch_t
 
 contains
 
-  !> Makes a patch of its control points.
+  !> Make a patch from its control points.
   subroutine new_patch(self, control, weight, line)
-    !> The patch made.
     type(patch_t), intent(out) :: self
     !> Control points, `(3, m + 1, n + 1)`, u fastest, mm.
     real(wp), intent(in) :: control(:, :, :)
-    !> Their weights, all positive; a polynomial patch without.
+    !> Positive weights of the control points; all 1 by default.
     real(wp), intent(in), optional :: weight(:, :)
-    !> Line of its file where it begins.
+    !> First line of the patch in its file.
     integer, intent(in), optional :: line
 
     integer :: i, j, m, n
@@ -87,19 +84,18 @@ contains
     end do
     if (m == 1 .and. n == 1 .and. .not. self%rational) then
       self%flat = all(abs(self%control(:, 0, 0) - self%control(:, 1, 0) - self%control(:, 0, 1) &
-                          + self%control(:, 1, 1)) <= 1.0e-14_wp*self%size)
+          + self%control(:, 1, 1)) <= 1.0e-14_wp*self%size)
     end if
     if (.not. self%flat) call store_sample(self)
-    self%reach = min(mean_length(self, 1), mean_length(self, 2))
+    self%shorter_side = min(mean_length(self, 1), mean_length(self, 2))
   end subroutine new_patch
 
-  !> Stores the points from which searches begin.
+  !> Store the points from which a global projection starts.
   subroutine store_sample(self)
-    !> The patch.
     type(patch_t), intent(inout) :: self
 
-    integer :: i, j
     real(wp), parameter :: step = 1.0_wp/n_sample
+    integer :: i, j
 
     allocate (self%sample(3, 0:n_sample, 0:n_sample))
     do j = 0, n_sample
@@ -109,9 +105,8 @@ contains
     end do
   end subroutine store_sample
 
-  !> Mean length of the patch along one of its parameters, mm.
+  !> Return the mean length of the patch in u or v, mm.
   pure real(wp) function mean_length(self, direction)
-    !> The patch.
     type(patch_t), intent(in) :: self
     !> 1 for u, 2 for v.
     integer, intent(in) :: direction
@@ -124,35 +119,33 @@ contains
     end do
   end function mean_length
 
-  !> Length of a line of constant parameter, as the sum of eight chords, mm.
+  !> Return the length of a parameter line, as the sum of eight chords, mm.
   pure real(wp) function curve_length(self, direction, other)
-    !> The patch.
     type(patch_t), intent(in) :: self
-    !> Which parameter runs: 1 for u, 2 for v.
+    !> Parameter that varies along the line: 1 for u, 2 for v.
     integer, intent(in) :: direction
     !> Value of the other parameter.
     real(wp), intent(in) :: other
 
-    real(wp) :: at(2), previous(3), next(3)
+    real(wp) :: uv(2), previous(3), next(3)
     integer :: i
 
     curve_length = 0.0_wp
-    at = other
+    uv = other
     do i = 0, 8
-      at(direction) = 0.125_wp*real(i, wp)
-      next = position_at(self, at(1), at(2))
+      uv(direction) = 0.125_wp*real(i, wp)
+      next = position_at(self, uv(1), uv(2))
       if (i > 0) curve_length = curve_length + sqrt(sum((next - previous)**2))
       previous = next
     end do
   end function curve_length
 
-  !> Point of the patch and its first and second derivatives.
+  !> Evaluate a point of the patch and its first and second derivatives.
   pure subroutine evaluate(self, u, v, point, first, second)
-    !> The patch.
     type(patch_t), intent(in) :: self
-    !> Parameters; a little outside 0 ... 1 gives the patch's own continuation.
+    !> Parameters; outside 0 ... 1 the patch is extrapolated.
     real(wp), intent(in) :: u, v
-    !> Point, mm.
+    !> S, mm.
     real(wp), intent(out) :: point(3)
     !> S_u, S_v, mm.
     real(wp), intent(out) :: first(3, 2)
@@ -160,21 +153,20 @@ contains
     real(wp), intent(out) :: second(3, 3)
 
     call evaluate_relative(self%degree(1), self%degree(2), self%rational, self%homogeneous, u, v, &
-                           point, first, second)
+        point, first, second)
     point = point + self%centre
   end subroutine evaluate
 
-  !> Point of the patch relative to its centre, with derivatives, from plain arrays.
+  !> Kernel: evaluate a point relative to the patch's centre, with derivatives.
   pure subroutine evaluate_relative(m, n, rational, homogeneous, u, v, point, first, second)
     !> Degrees.
     integer, intent(in) :: m, n
-    !> Whether the weights count.
+    !> False if all weights are 1.
     logical, intent(in) :: rational
-    !> Weighted control points and weights.
+    !> Weighted control points and weights, mm.
     real(wp), intent(in) :: homogeneous(4, 0:m, 0:n)
-    !> Parameters.
     real(wp), intent(in) :: u, v
-    !> Point, mm.
+    !> S, mm.
     real(wp), intent(out) :: point(3)
     !> S_u, S_v, mm.
     real(wp), intent(out) :: first(3, 2)
@@ -209,16 +201,12 @@ contains
     if (rational) call quotient_rule(sums(4, :), point, first, second)
   end subroutine evaluate_relative
 
-  !> Turns the derivatives of w S and of w into those of S.
+  !> Convert the derivatives of w S and w to those of S.
   pure subroutine quotient_rule(w, point, first, second)
     !> w, w_u, w_v, w_uu, w_vv, w_uv.
     real(wp), intent(in) :: w(0:5)
-    !> The point times w; the point.
-    real(wp), intent(inout) :: point(3)
-    !> Its first derivatives.
-    real(wp), intent(inout) :: first(3, 2)
-    !> Its second derivatives uu, vv, uv.
-    real(wp), intent(inout) :: second(3, 3)
+    !> w S and its derivatives u, v, uu, vv, uv on entry, those of S on return.
+    real(wp), intent(inout) :: point(3), first(3, 2), second(3, 3)
 
     real(wp) :: inverse
 
@@ -231,11 +219,10 @@ contains
     second(:, 3) = inverse*(second(:, 3) - w(1)*first(:, 2) - w(2)*first(:, 1) - w(5)*point)
   end subroutine quotient_rule
 
-  !> Bernstein polynomials of a degree and their first two derivatives.
+  !> Evaluate the Bernstein polynomials of a degree and their first two derivatives.
   pure subroutine bernstein(degree, t, b)
-    !> The degree, at least 1.
+    !> At least 1.
     integer, intent(in) :: degree
-    !> The parameter.
     real(wp), intent(in) :: t
     !> Values, first and second derivatives in `b(0:degree, 0:2)`.
     real(wp), intent(out) :: b(0:largest_degree, 0:2)
@@ -274,27 +261,24 @@ contains
     b(0, 2) = factor*b(0, 2)
   end subroutine bernstein
 
-  !> Point of the patch, mm.
+  !> Return a point of the patch, mm.
   pure function position_at(self, u, v) result(point)
-    !> The patch.
     type(patch_t), intent(in) :: self
-    !> Parameters.
     real(wp), intent(in) :: u, v
-    real(wp) :: point(3), first(3, 2), second(3, 3)
+    real(wp) :: point(3)
+
+    real(wp) :: first(3, 2), second(3, 3)
 
     call evaluate(self, u, v, point, first, second)
   end function position_at
 
-  !> Unit normal S_u x S_v of the patch; where it is degenerate, that of a near point towards the
-  !> middle.
+  !> Return the unit normal S_u x S_v, at a degenerate point that of a near one towards the centre.
   pure subroutine normal_at(self, u, v, normal, regular)
-    !> The patch.
     type(patch_t), intent(in) :: self
-    !> Parameters.
     real(wp), intent(in) :: u, v
-    !> Unit normal; zero where no near point has one.
+    !> Unit normal, or zero.
     real(wp), intent(out) :: normal(3)
-    !> Whether a normal was found.
+    !> False if no near point has a normal.
     logical, intent(out) :: regular
 
     real(wp) :: point(3), first(3, 2), second(3, 3), step
@@ -309,15 +293,14 @@ contains
     end do
   end subroutine normal_at
 
-  !> Unit normal from the first derivatives.
+  !> Return the unit normal from the first derivatives.
   pure subroutine unit_normal(self, first, normal, regular)
-    !> The patch.
     type(patch_t), intent(in) :: self
     !> S_u, S_v, mm.
     real(wp), intent(in) :: first(3, 2)
-    !> Unit normal; zero where there is none.
+    !> Unit normal, or zero.
     real(wp), intent(out) :: normal(3)
-    !> Whether there is one.
+    !> False at a degenerate point.
     logical, intent(out) :: regular
 
     real(wp) :: length

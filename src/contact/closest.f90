@@ -1,11 +1,11 @@
 !> Closest point of a tool's surface to a node.
 !>
-!> The whole surface is searched once per increment, and when a node has come far: patches whose
-!> box lies near enough are sampled and solved one by one, the nearest first-hand solution wins,
-!> and among equals the patch of the last query does. In between, a query starts from the last
-!> closest point, and steps over to the neighbour where it leaves a patch. The patches go on in a
-!> narrow band beyond smooth edges, so that a node near such an edge does not change patch with
-!> every iteration. What lies deeper inside than a given depth is on the wrong side and no
+!> The global search runs once per increment, and again for a node that has moved far: it projects
+!> the node on every patch whose bounding box is near enough and keeps the nearest point; among
+!> equal ones it prefers the patch of the last query. All other queries are local: they start from
+!> the last closest point and cross edges to neighbouring patches. Patches are extended by a narrow
+!> band beyond smooth edges, so that a node near such an edge does not change patch in every
+!> iteration. A node deeper inside the tool than a given depth is on its wrong side and not in
 !> contact.
 !> Source: Wang and Makinouchi, inside-outside contact search, in: Nakamachi, Makinouchi
 !> (eds.), Proc. NUMISHEET (1996); Oliveira, Alves and Menezes, Arch. Comput. Methods Eng. 15
@@ -13,237 +13,243 @@
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t
-  use dd3_contact_surface, only : surface_t, edge_of, edge_parameters
-  use dd3_contact_project, only : foot_t, project, project_globally
-  use dd3_contact_hit, only : hit_t, new_hit, place_of, place_border
+  use dd3_contact_hit, only : hit_t, new_hit, projection_location, on_border
+  use dd3_contact_project, only : project, project_globally
+  use dd3_contact_projection, only : projection_t
+  use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
   implicit none
   private
   public :: hint_t, hit_t, find_contact
 
-  !> Patches passed in one local query.
-  integer, parameter :: most_steps = 4
-  !> Distances that differ by less than this share of the surface's size are equal.
-  real(wp), parameter :: equal = 1.0e-9_wp
-  !> A foot held at an edge must be nearer than another one by this share of the surface's size.
-  real(wp), parameter :: held = 1.0e-12_wp
+  !> Largest number of patches visited in a local search.
+  integer, parameter :: most_patches = 4
+  !> Largest difference of equal distances, relative to the surface's size.
+  real(wp), parameter :: equal_distance = 1.0e-9_wp
+  !> Distance, relative to the surface's size, by which a point on an edge must be nearer than
+  !> another one to be preferred.
+  real(wp), parameter :: edge_margin = 1.0e-12_wp
 
-  !> What is remembered of a node's last query.
+  !> What is kept of a node's last query.
   type :: hint_t
-    !> Patch of the last closest point; 0 for none.
+    !> Patch of the closest point; 0 if none was found.
     integer :: patch = 0
-    !> Its parameters.
+    !> Parameters of the closest point.
     real(wp) :: u = 0.5_wp, v = 0.5_wp
-    !> Whether the whole surface is to be searched next time.
+    !> True if a global search is due.
     logical :: due = .true.
-    !> Where the node stood when the whole surface was searched last, in the surface's frame, mm.
+    !> Position of the node in the last global search, in the surface's frame, mm.
     real(wp) :: anchor(3) = 0.0_wp
-    !> Lower bound of its distance from the surface there, known where nothing was found, mm.
+    !> Lower bound of its distance from the surface there, used if nothing was found, mm.
     real(wp) :: clearance = 0.0_wp
   end type hint_t
 
+  !> A query for the closest point.
+  type :: query_t
+    !> Position of the node in the surface's frame, mm.
+    real(wp) :: x(3)
+    !> Largest distances of a contact outside and inside the tool, mm.
+    real(wp) :: search_distance, depth
+  end type query_t
+
 contains
 
-  !> Finds the point of a surface that a node touches or is nearest to.
+  !> Find the closest point of a surface to a node.
   pure subroutine find_contact(surface, x, hint, search_distance, depth, hit)
-    !> The surface.
     type(surface_t), intent(in) :: surface
-    !> The node, in the surface's frame, mm.
+    !> Position of the node in the surface's frame, mm.
     real(wp), intent(in) :: x(3)
-    !> What is remembered of the node.
     type(hint_t), intent(inout) :: hint
-    !> Nodes farther outside than this have no contact, mm.
+    !> Largest distance of a contact outside the tool, mm.
     real(wp), intent(in) :: search_distance
-    !> Nodes deeper inside than this are on the wrong side, mm.
+    !> Largest depth of a contact inside the tool, mm.
     real(wp), intent(in) :: depth
-    !> The closest point.
     type(hit_t), intent(out) :: hit
 
-    type(foot_t) :: foot
+    type(query_t) :: query
     real(wp) :: moved
-    integer :: k
-    logical :: ok
 
+    query = query_t(x, search_distance, depth)
     if (.not. hint%due) then
       moved = sum((x - hint%anchor)**2)
       if (hint%patch == 0) then
         if (sqrt(moved) + max(search_distance, depth) < hint%clearance) return
-      else if (moved <= (0.5_wp*surface%patch(hint%patch)%reach)**2) then
-        k = hint%patch
-        foot%at = [hint%u, hint%v]
-        call follow(surface, x, k, foot, ok)
-        if (ok) call new_hit(hit, surface, k, x, foot)
-        if (hit%found) call accept(hit, search_distance, depth)
-        if (hit%found) then
-          hint%patch = k
-          hint%u = hit%u
-          hint%v = hit%v
-          return
-        end if
+      else if (moved <= (0.5_wp*surface%patch(hint%patch)%shorter_side)**2) then
+        call search_locally(surface, query, hint, hit)
+        if (hit%found) return
       end if
     end if
-    call search_surface(surface, x, hint, search_distance, depth, hit)
+    call search_globally(surface, query, hint, hit)
   end subroutine find_contact
 
-  !> Drops a hit that is too far off or too deep.
-  pure subroutine accept(hit, search_distance, depth)
-    !> The hit.
-    type(hit_t), intent(inout) :: hit
-    !> Largest distance outside, mm.
-    real(wp), intent(in) :: search_distance
-    !> Largest depth inside, mm.
-    real(wp), intent(in) :: depth
-
-    hit%found = hit%found .and. hit%distance <= search_distance .and. hit%distance > -depth
-  end subroutine accept
-
-  !> Follows the closest point from a known patch over its edges.
-  pure subroutine follow(surface, x, k, foot, ok)
-    !> The surface.
+  !> Search from the last closest point.
+  pure subroutine search_locally(surface, query, hint, hit)
     type(surface_t), intent(in) :: surface
-    !> The node, mm.
+    type(query_t), intent(in) :: query
+    type(hint_t), intent(inout) :: hint
+    !> Not found if a global search is needed.
+    type(hit_t), intent(inout) :: hit
+
+    type(projection_t) :: projection
+    integer :: k
+    logical :: ok
+
+    k = hint%patch
+    projection%uv = [hint%u, hint%v]
+    call project_across_edges(surface, query%x, k, projection, ok)
+    if (.not. ok) return
+    call new_hit(hit, surface, k, query%x, projection)
+    call apply_limits(hit, query)
+    if (hit%found) call keep_point(hint, hit)
+  end subroutine search_locally
+
+  !> Discard a hit that is too far outside or too deep inside.
+  pure subroutine apply_limits(hit, query)
+    type(hit_t), intent(inout) :: hit
+    type(query_t), intent(in) :: query
+
+    hit%found = hit%found .and. hit%distance <= query%search_distance &
+        .and. hit%distance > -query%depth
+  end subroutine apply_limits
+
+  !> Keep the closest point for the next query.
+  pure subroutine keep_point(hint, hit)
+    type(hint_t), intent(inout) :: hint
+    type(hit_t), intent(in) :: hit
+
+    hint%patch = hit%patch
+    hint%u = hit%u
+    hint%v = hit%v
+  end subroutine keep_point
+
+  !> Project on a patch and, across its edges, on the neighbours.
+  pure subroutine project_across_edges(surface, x, k, projection, ok)
+    type(surface_t), intent(in) :: surface
+    !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
-    !> The patch.
+    !> Patch of the initial point on entry, of the closest point on return.
     integer, intent(inout) :: k
-    !> Where to start; the foot.
-    type(foot_t), intent(inout) :: foot
-    !> Whether it ended inside a patch or on an edge; else the whole surface must be searched.
+    !> `uv` is the initial point on entry.
+    type(projection_t), intent(inout) :: projection
+    !> False if the closest point is beside the surface or the search did not end.
     logical, intent(out) :: ok
 
-    type(foot_t) :: other
-    real(wp) :: lower(2), upper(2)
-    integer :: step, a, e, next
+    type(projection_t) :: other
+    real(wp) :: lower(2), upper(2), t
+    integer :: visited, a, e, next
 
     ok = .false.
-    call bounds(surface, k, lower, upper)
-    call project(surface%patch(k), x, lower, upper, foot)
-    do step = 1, most_steps
-      ok = all(foot%side == 0)
-      if (ok .or. all(foot%side /= 0)) return
-      a = merge(1, 2, foot%side(1) /= 0)
-      e = edge_of(a, foot%side(a) > 0)
+    call parameter_bounds(surface, k, lower, upper)
+    call project(surface%patch(k), x, lower, upper, projection)
+    do visited = 1, most_patches
+      ok = all(projection%active == 0)
+      if (ok .or. all(projection%active /= 0)) return
+      a = merge(1, 2, projection%active(1) /= 0)
+      e = edge_number(a, projection%active(a) > 0)
       next = surface%edge(e, k)%patch
       if (next == 0) then
-        ok = .not. surface%edge(e, k)%pole .and. place_of(surface, k, foot) /= place_border
+        ok = .not. surface%edge(e, k)%pole &
+            .and. projection_location(surface, k, projection) /= on_border
         return
       end if
-      other%at = edge_parameters(surface%edge(e, k)%edge, &
-                                 merge(1.0_wp - foot%at(3 - a), foot%at(3 - a), &
-                                       surface%edge(e, k)%reversed))
-      call bounds(surface, next, lower, upper)
+      t = projection%uv(3 - a)
+      other%uv = edge_parameters(surface%edge(e, k)%edge, &
+          merge(1.0_wp - t, t, surface%edge(e, k)%reversed))
+      call parameter_bounds(surface, next, lower, upper)
       call project(surface%patch(next), x, lower, upper, other)
-      if (any(other%side /= 0) .and. other%distance >= foot%distance - held*surface%size) then
+      if (any(other%active /= 0) &
+          .and. other%distance >= projection%distance - edge_margin*surface%size) then
         ok = .true.
         return
       end if
-      foot = other
+      projection = other
       k = next
     end do
     ok = .false.
-  end subroutine follow
+  end subroutine project_across_edges
 
-  !> Bounds of a patch's parameters, with the bands beyond its smooth edges.
-  pure subroutine bounds(surface, k, lower, upper)
-    !> The surface.
+  !> Return the bounds of a patch's parameters, with the bands beyond its smooth edges.
+  pure subroutine parameter_bounds(surface, k, lower, upper)
     type(surface_t), intent(in) :: surface
-    !> The patch.
+    !> Number of the patch.
     integer, intent(in) :: k
-    !> The bounds.
     real(wp), intent(out) :: lower(2), upper(2)
 
     lower = -surface%edge([1, 3], k)%band
     upper = 1.0_wp + surface%edge([2, 4], k)%band
-  end subroutine bounds
+  end subroutine parameter_bounds
 
-  !> Searches the whole surface.
-  pure subroutine search_surface(surface, x, hint, search_distance, depth, hit)
-    !> The surface.
+  !> Search the whole surface.
+  pure subroutine search_globally(surface, query, hint, hit)
     type(surface_t), intent(in) :: surface
-    !> The node, mm.
-    real(wp), intent(in) :: x(3)
-    !> What is remembered of the node.
+    type(query_t), intent(in) :: query
     type(hint_t), intent(inout) :: hint
-    !> Largest distance outside, mm.
-    real(wp), intent(in) :: search_distance
-    !> Largest depth inside, mm.
-    real(wp), intent(in) :: depth
-    !> The closest point.
     type(hit_t), intent(out) :: hit
 
-    type(foot_t) :: foot
+    type(projection_t) :: projection
     type(hit_t) :: candidate
-    real(wp) :: reach, best, value, clearance, near
+    real(wp) :: radius, best, distance, clearance, near
     integer :: k
 
-    reach = max(search_distance, depth)
+    radius = max(query%search_distance, query%depth)
     best = huge(1.0_wp)
     clearance = huge(1.0_wp)
     do k = 1, size(surface%patch)
-      near = box_distance(surface%patch(k), x)
-      if (near <= min(reach, best)) then
-        call project_globally(surface%patch(k), x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], foot)
-        near = foot%distance
+      near = box_distance(surface%patch(k), query%x)
+      if (near <= min(radius, best)) then
+        call project_globally(surface%patch(k), query%x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], &
+            projection)
+        near = projection%distance
       end if
       clearance = min(clearance, near)
-      if (near > min(reach, best)) cycle
-      value = foot%distance
-      if (any(foot%side /= 0)) value = value + held*surface%size
-      if (value >= best) cycle
-      call new_hit(candidate, surface, k, x, foot)
+      if (near > min(radius, best)) cycle
+      distance = projection%distance
+      if (any(projection%active /= 0)) distance = distance + edge_margin*surface%size
+      if (distance >= best) cycle
+      call new_hit(candidate, surface, k, query%x, projection)
       if (candidate%found) then
-        call accept(candidate, search_distance, depth)
+        call apply_limits(candidate, query)
         if (.not. candidate%found) cycle
       end if
       hit = candidate
-      best = value
+      best = distance
     end do
-    if (hint%patch > 0) call prefer_last(surface, x, hint, search_distance, depth, best, hit)
+    if (hint%patch > 0) call prefer_last_patch(surface, query, hint, best, hit)
     hint%due = .false.
-    hint%anchor = x
+    hint%anchor = query%x
     hint%clearance = clearance
     hint%patch = 0
-    if (.not. hit%found) return
-    hint%patch = hit%patch
-    hint%u = hit%u
-    hint%v = hit%v
-  end subroutine search_surface
+    if (hit%found) call keep_point(hint, hit)
+  end subroutine search_globally
 
-  !> Takes the patch of the last query where it is as near as the best one and the foot lies
-  !> inside it.
-  pure subroutine prefer_last(surface, x, hint, search_distance, depth, best, hit)
-    !> The surface.
+  !> Replace the hit by one on the patch of the last query if that is as near and inside the patch.
+  pure subroutine prefer_last_patch(surface, query, hint, best, hit)
     type(surface_t), intent(in) :: surface
-    !> The node, mm.
-    real(wp), intent(in) :: x(3)
-    !> What is remembered of the node.
+    type(query_t), intent(in) :: query
     type(hint_t), intent(in) :: hint
-    !> Largest distance outside, mm.
-    real(wp), intent(in) :: search_distance
-    !> Largest depth inside, mm.
-    real(wp), intent(in) :: depth
-    !> Distance of the best foot, mm.
+    !> Distance of the hit, mm.
     real(wp), intent(in) :: best
-    !> The closest point.
     type(hit_t), intent(inout) :: hit
 
-    type(foot_t) :: foot
+    type(projection_t) :: projection
     type(hit_t) :: candidate
     real(wp) :: lower(2), upper(2)
 
     if (hint%patch == hit%patch) return
-    call bounds(surface, hint%patch, lower, upper)
-    foot%at = [hint%u, hint%v]
-    call project(surface%patch(hint%patch), x, lower, upper, foot)
-    if (any(foot%side /= 0) .or. foot%distance > best + equal*surface%size) return
-    call new_hit(candidate, surface, hint%patch, x, foot)
-    call accept(candidate, search_distance, depth)
+    call parameter_bounds(surface, hint%patch, lower, upper)
+    projection%uv = [hint%u, hint%v]
+    call project(surface%patch(hint%patch), query%x, lower, upper, projection)
+    if (any(projection%active /= 0)) return
+    if (projection%distance > best + equal_distance*surface%size) return
+    call new_hit(candidate, surface, hint%patch, query%x, projection)
+    call apply_limits(candidate, query)
     if (candidate%found) hit = candidate
-  end subroutine prefer_last
+  end subroutine prefer_last_patch
 
-  !> Distance of a point from a patch's box, mm; the patch is no nearer.
+  !> Return the distance of a point from a patch's bounding box, mm: a lower bound of its distance
+  !> from the patch.
   pure real(wp) function box_distance(patch, x)
-    !> The patch.
     type(patch_t), intent(in) :: patch
-    !> The point, mm.
+    !> mm.
     real(wp), intent(in) :: x(3)
 
     real(wp) :: outside(3)

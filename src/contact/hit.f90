@@ -1,47 +1,43 @@
-!> What a node finds at its closest point: gap, normal, and how the normal turns with the node.
+!> Gap, normal and gradient of the normal at the closest point.
 !>
 !> Inside a patch, with a_ab = y_,a . y_,b, b_ab = y_,ab . n and A = a - d b:
 !>     dn/dx = - y_,c (a^-1 b A^-1)^cd y_,d^T,
 !> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
 !> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
-!> On the outer border nothing can be touched: a surface ends there, and its continuation is no
-!> tool.
+!> A node beside the outer border of the surface has no contact.
 !> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov
 !> and Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges
 !> Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243-253.
 module dd3_contact_hit
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, evaluate, normal_at, unit_normal
-  use dd3_contact_surface, only : surface_t, edge_of, edge_parameters
-  use dd3_contact_project, only : foot_t
+  use dd3_contact_projection, only : projection_t
+  use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
   implicit none
   private
-  public :: hit_t, new_hit, place_border, place_of
+  public :: hit_t, new_hit, on_border, projection_location
 
-  !> The foot lies inside its patch, or at a smooth edge.
-  integer, parameter :: place_smooth = 0
-  !> The foot lies on a sharp inner edge, the node beside it.
-  integer, parameter :: place_crease = 1
-  !> The foot lies on the outer border, the node beside it.
-  integer, parameter :: place_border = 2
+  !> Location of a closest point: inside its patch or at a smooth edge; on a sharp inner edge or the
+  !> outer border, with the node beside the patch.
+  integer, parameter :: on_patch = 0, on_sharp_edge = 1, on_border = 2
 
-  !> A node stands beside a border or an edge if it is farther off than this share of the
+  !> A node is beside the border or a sharp edge from this tangential distance on, relative to the
   !> surface's size.
-  real(wp), parameter :: beside_border = 1.0e-6_wp, beside_crease = 1.0e-9_wp
-  !> The centre of curvature is near where det A is below this share of det a.
-  real(wp), parameter :: near_centre = 1.0e-8_wp
+  real(wp), parameter :: beside_border = 1.0e-6_wp, beside_sharp_edge = 1.0e-9_wp
+  !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
+  real(wp), parameter :: smallest_determinant = 1.0e-8_wp
 
   !> Closest point of a surface to a node.
   type :: hit_t
-    !> Whether there is a point that the node can touch.
+    !> True if the node can touch the surface there.
     logical :: found = .false.
-    !> Whether the node stands beside the surface, its closest point on the outer border: `found`
-    !> is false then.
+    !> True if the node is beside the surface, its closest point on the outer border; `found` is
+    !> false then.
     logical :: border = .false.
-    !> Patch of the closest point; 0 for none.
+    !> Patch of the closest point, or 0.
     integer :: patch = 0
-    !> Its parameters.
+    !> Parameters of the closest point.
     real(wp) :: u = 0.0_wp, v = 0.0_wp
     !> Gap, negative inside the tool, mm.
     real(wp) :: distance = huge(1.0_wp)
@@ -49,92 +45,88 @@ module dd3_contact_hit
     real(wp) :: point(3) = 0.0_wp
     !> Outward unit normal.
     real(wp) :: normal(3) = 0.0_wp
-    !> Turning of the normal with the node, dn/dx, symmetric, 1/mm.
+    !> Gradient of the normal, dn/dx, symmetric, 1/mm.
     real(wp) :: dnormal(3, 3) = 0.0_wp
   end type hit_t
 
 contains
 
-  !> Makes a hit of a foot.
-  pure subroutine new_hit(hit, surface, k, x, foot)
-    !> The hit made; `found` where it can be touched, whatever its distance.
+  !> Make a hit from a projection.
+  pure subroutine new_hit(hit, surface, k, x, projection)
+    !> `found` whatever its distance.
     type(hit_t), intent(inout) :: hit
-    !> The surface.
     type(surface_t), intent(in) :: surface
-    !> The patch.
+    !> Number of the patch.
     integer, intent(in) :: k
-    !> The node, mm.
+    !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
-    !> Its foot on the patch.
-    type(foot_t), intent(in) :: foot
+    type(projection_t), intent(in) :: projection
 
     real(wp) :: normal(3), first(3, 2), second(3, 3)
-    integer :: place
+    integer :: location
     logical :: regular
 
-    place = place_smooth
-    if (any(foot%side /= 0)) place = place_of(surface, k, foot)
+    location = on_patch
+    if (any(projection%active /= 0)) location = projection_location(surface, k, projection)
     hit%patch = k
-    hit%u = foot%at(1)
-    hit%v = foot%at(2)
-    hit%point = x + foot%to_foot
-    hit%border = place == place_border
+    hit%u = projection%uv(1)
+    hit%v = projection%uv(2)
+    hit%point = x + projection%offset
+    hit%border = location == on_border
     hit%found = .not. hit%border
-    select case (place)
-    case (place_border)
-      hit%distance = foot%distance
-      hit%normal = -foot%to_foot/foot%distance
+    select case (location)
+    case (on_border)
+      hit%distance = projection%distance
+      hit%normal = -projection%offset/projection%distance
       hit%dnormal = 0.0_wp
-    case (place_crease)
-      call hit_crease(hit, surface, k, foot)
+    case (on_sharp_edge)
+      call set_edge_hit(hit, surface, k, projection)
     case default
-      call unit_normal(surface%patch(k), foot%first, normal, regular)
+      call unit_normal(surface%patch(k), projection%first, normal, regular)
       if (regular) then
-        call hit_smooth(hit, surface%patch(k)%flat, normal, foot%to_foot, foot%first, foot%second)
+        call set_patch_hit(hit, surface%patch(k)%flat, normal, projection%offset, &
+            projection%first, projection%second)
       else
-        call leave_pole(surface%patch(k), foot%at, normal, first, second, hit%found)
-        call hit_smooth(hit, .false., normal, foot%to_foot, first, second)
+        call evaluate_near_pole(surface%patch(k), projection%uv, normal, first, second, hit%found)
+        call set_patch_hit(hit, .false., normal, projection%offset, first, second)
       end if
     end select
   end subroutine new_hit
 
-  !> Where a foot lies that is held at a bound.
-  pure integer function place_of(surface, k, foot) result(place)
-    !> The surface.
+  !> Return the location of a projection with active bounds.
+  pure integer function projection_location(surface, k, projection) result(location)
     type(surface_t), intent(in) :: surface
-    !> The patch.
+    !> Number of the patch.
     integer, intent(in) :: k
-    !> The foot.
-    type(foot_t), intent(in) :: foot
+    type(projection_t), intent(in) :: projection
 
-    real(wp) :: off
+    real(wp) :: tangential
     integer :: a, e
 
-    place = place_smooth
+    location = on_patch
     do a = 1, 2
-      if (foot%side(a) == 0) cycle
-      e = edge_of(a, foot%side(a) > 0)
+      if (projection%active(a) == 0) cycle
+      e = edge_number(a, projection%active(a) > 0)
       if (surface%edge(e, k)%pole) cycle
-      off = abs(dot_product(foot%to_foot, foot%first(:, a))) &
-            /max(sqrt(dot_product(foot%first(:, a), foot%first(:, a))), tiny(1.0_wp))
+      tangential = abs(dot_product(projection%offset, projection%first(:, a))) &
+          /max(sqrt(dot_product(projection%first(:, a), projection%first(:, a))), tiny(1.0_wp))
       if (surface%edge(e, k)%patch == 0) then
-        if (off > beside_border*surface%size) place = place_border
+        if (tangential > beside_border*surface%size) location = on_border
       else if (.not. surface%edge(e, k)%smooth) then
-        if (off > beside_crease*surface%size) place = max(place, place_crease)
+        if (tangential > beside_sharp_edge*surface%size) location = max(location, on_sharp_edge)
       end if
     end do
-  end function place_of
+  end function projection_location
 
-  !> Gap, normal and its turning on a smooth patch.
-  pure subroutine hit_smooth(hit, flat, normal, to_foot, first, second)
-    !> The hit.
+  !> Set gap, normal and its gradient on a smooth patch.
+  pure subroutine set_patch_hit(hit, flat, normal, offset, first, second)
     type(hit_t), intent(inout) :: hit
-    !> Whether the patch has no curvature.
+    !> True if the patch has no curvature.
     logical, intent(in) :: flat
     !> Unit normal.
     real(wp), intent(in) :: normal(3)
-    !> From the node to the foot, mm.
-    real(wp), intent(in) :: to_foot(3)
+    !> Vector from the node to the closest point, mm.
+    real(wp), intent(in) :: offset(3)
     !> S_u, S_v, mm.
     real(wp), intent(in) :: first(3, 2)
     !> S_uu, S_vv, S_uv, mm.
@@ -144,7 +136,7 @@ contains
     integer :: i
 
     hit%normal = normal
-    hit%distance = -dot_product(to_foot, normal)
+    hit%distance = -dot_product(offset, normal)
     hit%dnormal = 0.0_wp
     if (flat) return
     a(1) = dot_product(first(:, 1), first(:, 1))
@@ -156,7 +148,7 @@ contains
     c = a - hit%distance*b
     determinant(1) = a(1)*a(2) - a(3)**2
     determinant(2) = c(1)*c(2) - c(3)**2
-    if (min(c(1), c(2)) <= 0.0_wp .or. determinant(2) <= near_centre*determinant(1)) then
+    if (min(c(1), c(2)) <= 0.0_wp .or. determinant(2) <= smallest_determinant*determinant(1)) then
       c = a
       determinant(2) = determinant(1)
     end if
@@ -169,87 +161,84 @@ contains
     m(1, 2) = 0.5_wp*(m(1, 2) + m(2, 1))
     do i = 1, 3
       hit%dnormal(:, i) = -(m(1, 1)*first(i, 1) + m(1, 2)*first(i, 2))*first(:, 1) &
-                          - (m(1, 2)*first(i, 1) + m(2, 2)*first(i, 2))*first(:, 2)
+          - (m(1, 2)*first(i, 1) + m(2, 2)*first(i, 2))*first(:, 2)
     end do
-  end subroutine hit_smooth
+  end subroutine set_patch_hit
 
-  !> Normal and derivatives at a point near a pole.
-  pure subroutine leave_pole(patch, at, normal, first, second, regular)
-    !> The patch.
+  !> Evaluate normal and derivatives at a point near a pole.
+  pure subroutine evaluate_near_pole(patch, uv, normal, first, second, regular)
     type(patch_t), intent(in) :: patch
     !> Parameters of the pole.
-    real(wp), intent(in) :: at(2)
+    real(wp), intent(in) :: uv(2)
     !> Unit normal.
     real(wp), intent(out) :: normal(3)
-    !> S_u, S_v near it, mm.
+    !> S_u, S_v near the pole, mm.
     real(wp), intent(out) :: first(3, 2)
-    !> S_uu, S_vv, S_uv near it, mm.
+    !> S_uu, S_vv, S_uv near the pole, mm.
     real(wp), intent(out) :: second(3, 3)
-    !> Whether a normal was found.
+    !> False if there is no normal.
     logical, intent(out) :: regular
 
     real(wp), parameter :: step = 1.0e-3_wp
     real(wp) :: point(3), near(2)
 
-    call normal_at(patch, at(1), at(2), normal, regular)
-    near = at + step*(0.5_wp - at)
+    call normal_at(patch, uv(1), uv(2), normal, regular)
+    near = uv + step*(0.5_wp - uv)
     call evaluate(patch, near(1), near(2), point, first, second)
-  end subroutine leave_pole
+  end subroutine evaluate_near_pole
 
-  !> Gap, normal and its turning at a sharp inner edge or corner.
-  pure subroutine hit_crease(hit, surface, k, foot)
-    !> The hit.
+  !> Set gap, normal and its gradient at a sharp inner edge or corner.
+  pure subroutine set_edge_hit(hit, surface, k, projection)
     type(hit_t), intent(inout) :: hit
-    !> The surface.
     type(surface_t), intent(in) :: surface
-    !> The patch.
+    !> Number of the patch.
     integer, intent(in) :: k
-    !> The foot.
-    type(foot_t), intent(in) :: foot
+    type(projection_t), intent(in) :: projection
 
     real(wp) :: mean(3), tangent(3), stretch
     integer :: a, i
 
-    mean = mean_normal(surface, k, foot)
-    hit%distance = sign(foot%distance, -dot_product(foot%to_foot, mean))
-    hit%normal = -foot%to_foot/hit%distance
+    mean = mean_normal(surface, k, projection)
+    hit%distance = sign(projection%distance, -dot_product(projection%offset, mean))
+    hit%normal = -projection%offset/hit%distance
     hit%dnormal = 0.0_wp
     do i = 1, 3
       hit%dnormal(i, i) = 1.0_wp/hit%distance
       hit%dnormal(:, i) = hit%dnormal(:, i) - hit%normal*hit%normal(i)/hit%distance
     end do
     do a = 1, 2
-      if (foot%side(a) /= 0) cycle
-      tangent = foot%first(:, a)
+      if (projection%active(a) /= 0) cycle
+      tangent = projection%first(:, a)
       stretch = dot_product(tangent, tangent)
-      stretch = max(stretch + dot_product(foot%to_foot, foot%second(:, a)), near_centre*stretch)
+      stretch = max(stretch + dot_product(projection%offset, projection%second(:, a)), &
+          smallest_determinant*stretch)
       do i = 1, 3
         hit%dnormal(:, i) = hit%dnormal(:, i) - tangent*tangent(i)/(stretch*hit%distance)
       end do
     end do
-  end subroutine hit_crease
+  end subroutine set_edge_hit
 
-  !> Sum of the normals of a patch and of those behind the edges that hold the foot.
-  pure function mean_normal(surface, k, foot) result(mean)
-    !> The surface.
+  !> Return the sum of the normals of a patch and of its neighbours across the active bounds.
+  pure function mean_normal(surface, k, projection) result(mean)
     type(surface_t), intent(in) :: surface
-    !> The patch.
+    !> Number of the patch.
     integer, intent(in) :: k
-    !> The foot.
-    type(foot_t), intent(in) :: foot
-    real(wp) :: mean(3), normal(3), at(2), along
+    type(projection_t), intent(in) :: projection
+    real(wp) :: mean(3)
+
+    real(wp) :: normal(3), uv(2), t
     integer :: a, e
     logical :: regular
 
-    call normal_at(surface%patch(k), foot%at(1), foot%at(2), mean, regular)
+    call normal_at(surface%patch(k), projection%uv(1), projection%uv(2), mean, regular)
     do a = 1, 2
-      if (foot%side(a) == 0) cycle
-      e = edge_of(a, foot%side(a) > 0)
+      if (projection%active(a) == 0) cycle
+      e = edge_number(a, projection%active(a) > 0)
       associate (edge => surface%edge(e, k))
         if (edge%patch == 0) cycle
-        along = foot%at(3 - a)
-        at = edge_parameters(edge%edge, merge(1.0_wp - along, along, edge%reversed))
-        call normal_at(surface%patch(edge%patch), at(1), at(2), normal, regular)
+        t = projection%uv(3 - a)
+        uv = edge_parameters(edge%edge, merge(1.0_wp - t, t, edge%reversed))
+        call normal_at(surface%patch(edge%patch), uv(1), uv(2), normal, regular)
       end associate
       mean = mean + normal
     end do

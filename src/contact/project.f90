@@ -1,59 +1,41 @@
-!> Closest point of one patch: Newton's method on half the squared distance, kept inside the
-!> patch's bounds.
+!> Closest-point projection of a node on a patch: Newton's method on half the squared distance,
+!> within bounds of the parameters.
 !>
 !> phi(u,v) = |S(u,v) - x|^2 / 2, gradient g_a = (S - x).S_a, Hessian
-!> h_ab = S_a.S_b + (S - x).S_ab. Bounds at which -g points outwards are active. Where the Hessian
-!> is not positive definite its Gauss-Newton part is taken. Steps are cut at the bounds and halved
-!> until they descend (Armijo). If this fails it starts anew from a 33 x 33 grid, and if that
-!> fails too the best point of the grid is improved by golden sections along u and v in turn. A
-!> parallelogram is solved at once. Source: Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246
-!> (projected Newton); Armijo, Pacific J. Math. 16 (1966) 1-3; Kiefer, Proc. Amer. Math. Soc. 4
-!> (1953) 502-506 (golden section).
+!> h_ab = S_a.S_b + (S - x).S_ab. Bounds at which -g points outwards are active. If the Hessian is
+!> not positive definite, its Gauss-Newton part S_a.S_b, the metric, is used. Steps are cut at the
+!> bounds and halved until phi decreases (Armijo). If this fails, the iteration restarts from the
+!> best point of a 33 x 33 grid; if that fails too, the grid point is improved by golden sections.
+!> For a parallelogram phi is quadratic and solved directly. Source: Bertsekas, SIAM J. Control
+!> Optim. 20 (1982) 221-246 (projected Newton); Armijo, Pacific J. Math. 16 (1966) 1-3.
 module dd3_contact_project
   use dd3_base_kinds, only : wp
-  use dd3_contact_bezier, only : patch_t, evaluate_relative, n_sample
+  use dd3_contact_bezier, only : patch_t, n_sample
+  use dd3_contact_golden_section, only : best_of_grid, project_by_sections
+  use dd3_contact_projection, only : projection_t, evaluate_projection
   implicit none
   private
-  public :: foot_t, project, project_globally, project_by_sections
+  public :: project, project_globally
 
-  !> Newton iterations, and halvings of one step.
+  !> Largest numbers of Newton iterations and of halvings of a step.
   integer, parameter :: most_iterations = 30, most_halvings = 20
-  !> Gradients below this share of their parts are zero.
-  real(wp), parameter :: zero_gradient = 1.0e-14_wp
-  !> Steps of the parameters below this are none.
-  real(wp), parameter :: zero_step = 1.0e-15_wp
-  !> Intervals of the fine grid.
-  integer, parameter :: n_fine = 32
-
-  !> Foot of the perpendicular from a node to a patch.
-  type :: foot_t
-    !> Parameters u, v.
-    real(wp) :: at(2)
-    !> From the node to the foot: S - x, mm.
-    real(wp) :: to_foot(3)
-    !> S_u, S_v, mm.
-    real(wp) :: first(3, 2)
-    !> S_uu, S_vv, S_uv, mm.
-    real(wp) :: second(3, 3)
-    !> -1 or 1 where u (v) is held at its lower or upper bound, else 0.
-    integer :: side(2)
-    !> Distance of the node from the foot, mm.
-    real(wp) :: distance
-  end type foot_t
+  !> Converged if each gradient component is below this, relative to its factors.
+  real(wp), parameter :: gradient_tolerance = 1.0e-14_wp
+  !> Converged if the steps of the parameters are below this.
+  real(wp), parameter :: step_tolerance = 1.0e-15_wp
 
 contains
 
-  !> Foot near a known one.
-  pure subroutine project(patch, x, lower, upper, foot, iterations)
-    !> The patch.
+  !> Find the closest point near a known one.
+  pure subroutine project(patch, x, lower, upper, projection, iterations)
     type(patch_t), intent(in) :: patch
-    !> The node, mm.
+    !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
     !> Bounds of the parameters.
     real(wp), intent(in) :: lower(2), upper(2)
-    !> The foot; `at` is where to start.
-    type(foot_t), intent(inout) :: foot
-    !> Newton iterations from there.
+    !> `uv` is the initial point on entry.
+    type(projection_t), intent(inout) :: projection
+    !> Newton iterations from the initial point.
     integer, intent(out), optional :: iterations
 
     real(wp) :: relative(3)
@@ -63,54 +45,33 @@ contains
     relative = x - patch%centre
     if (present(iterations)) iterations = 0
     if (patch%flat) then
-      call project_flat(patch, relative, lower, upper, foot)
+      call project_flat(patch, relative, lower, upper, projection)
       return
     end if
-    call descend(patch, relative, lower, upper, foot, taken, ok)
+    call newton(patch, relative, lower, upper, projection, taken, ok)
     if (present(iterations)) iterations = taken
     if (ok) return
-    call sample_finely(patch, relative, lower, upper, foot%at)
-    call descend(patch, relative, lower, upper, foot, taken, ok)
-    if (.not. ok) call project_by_sections(patch, x, lower, upper, foot)
+    call best_of_grid(patch, relative, lower, upper, projection%uv)
+    call newton(patch, relative, lower, upper, projection, taken, ok)
+    if (.not. ok) call project_by_sections(patch, x, lower, upper, projection)
   end subroutine project
 
-  !> Foot without derivatives: the best point of the fine grid, improved by golden sections.
-  pure subroutine project_by_sections(patch, x, lower, upper, foot)
-    !> The patch.
+  !> Find the closest point of the whole patch, from the local minima of the stored grid.
+  pure subroutine project_globally(patch, x, lower, upper, projection)
     type(patch_t), intent(in) :: patch
-    !> The node, mm.
+    !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
     !> Bounds of the parameters.
     real(wp), intent(in) :: lower(2), upper(2)
-    !> The foot.
-    type(foot_t), intent(inout) :: foot
+    type(projection_t), intent(out) :: projection
 
-    real(wp) :: relative(3)
-
-    relative = x - patch%centre
-    call sample_finely(patch, relative, lower, upper, foot%at)
-    call evaluate_foot(patch, relative, foot)
-    call golden_sections(patch, relative, lower, upper, foot)
-  end subroutine project_by_sections
-
-  !> Foot nearest of all on a patch.
-  pure subroutine project_globally(patch, x, lower, upper, foot)
-    !> The patch.
-    type(patch_t), intent(in) :: patch
-    !> The node, mm.
-    real(wp), intent(in) :: x(3)
-    !> Bounds of the parameters.
-    real(wp), intent(in) :: lower(2), upper(2)
-    !> The foot.
-    type(foot_t), intent(out) :: foot
-
-    type(foot_t) :: other
+    type(projection_t) :: other
     real(wp) :: square(0:n_sample, 0:n_sample), relative(3), cell
     integer :: i, j, start(2)
 
-    foot%at = 0.5_wp
+    projection%uv = 0.5_wp
     if (patch%flat) then
-      call project(patch, x, lower, upper, foot)
+      call project(patch, x, lower, upper, projection)
       return
     end if
     relative = x - patch%centre
@@ -120,179 +81,164 @@ contains
       end do
     end do
     start = minloc(square) - 1
-    foot%at = real(start, wp)/n_sample
-    call project(patch, x, lower, upper, foot)
+    projection%uv = real(start, wp)/n_sample
+    call project(patch, x, lower, upper, projection)
     cell = patch%size/n_sample
     do j = 0, n_sample
       do i = 0, n_sample
         if (all(abs([i, j] - start) <= 1)) cycle
-        if (square(i, j) > (foot%distance + cell)**2) cycle
+        if (square(i, j) > (projection%distance + cell)**2) cycle
         if (any(square(max(i - 1, 0):min(i + 1, n_sample), max(j - 1, 0):min(j + 1, n_sample)) &
-                < square(i, j))) cycle
-        other%at = real([i, j], wp)/n_sample
+            < square(i, j))) cycle
+        other%uv = real([i, j], wp)/n_sample
         call project(patch, x, lower, upper, other)
-        if (other%distance < foot%distance) foot = other
+        if (other%distance < projection%distance) projection = other
       end do
     end do
   end subroutine project_globally
 
-  !> Foot on a parallelogram: a quadratic function of two bounded variables has its least value
-  !> where it has it without bounds, or on one of the bounds that this place violates.
-  pure subroutine project_flat(patch, x, lower, upper, foot)
-    !> The patch.
+  !> Find the closest point of a parallelogram. The minimum of a quadratic function within bounds is
+  !> the free minimum or lies on one of the bounds that the free minimum violates.
+  pure subroutine project_flat(patch, x, lower, upper, projection)
     type(patch_t), intent(in) :: patch
-    !> The node relative to the patch's centre, mm.
+    !> Position of the node relative to the patch's centre, mm.
     real(wp), intent(in) :: x(3)
     !> Bounds of the parameters.
     real(wp), intent(in) :: lower(2), upper(2)
-    !> The foot.
-    type(foot_t), intent(inout) :: foot
+    type(projection_t), intent(inout) :: projection
 
-    real(wp) :: origin(3), gram(3), g(2), free(2), trial(2), value, best
-    integer :: a, b
+    real(wp) :: metric(3), g(2), free(2)
 
-    foot%second = 0.0_wp
-    foot%first(:, 1) = patch%control(:, 1, 0) - patch%control(:, 0, 0)
-    foot%first(:, 2) = patch%control(:, 0, 1) - patch%control(:, 0, 0)
-    origin = patch%homogeneous(1:3, 0, 0) - x
-    gram = [dot_product(foot%first(:, 1), foot%first(:, 1)), &
-            dot_product(foot%first(:, 2), foot%first(:, 2)), &
-            dot_product(foot%first(:, 1), foot%first(:, 2))]
-    g(1) = dot_product(origin, foot%first(:, 1))
-    g(2) = dot_product(origin, foot%first(:, 2))
-    free(1) = (gram(3)*g(2) - gram(2)*g(1))/(gram(1)*gram(2) - gram(3)**2)
-    free(2) = -(g(2) + gram(3)*free(1))/gram(2)
-    foot%at = free
-    foot%side = 0
+    projection%second = 0.0_wp
+    projection%first(:, 1) = patch%control(:, 1, 0) - patch%control(:, 0, 0)
+    projection%first(:, 2) = patch%control(:, 0, 1) - patch%control(:, 0, 0)
+    projection%offset = patch%homogeneous(1:3, 0, 0) - x
+    call gradient_and_metric(projection, g, metric)
+    free(1) = (metric(3)*g(2) - metric(2)*g(1))/(metric(1)*metric(2) - metric(3)**2)
+    free(2) = -(g(2) + metric(3)*free(1))/metric(2)
+    projection%uv = free
+    projection%active = 0
     if (any(free < lower .or. free > upper)) then
-      best = huge(1.0_wp)
-      do a = 1, 2
-        if (free(a) >= lower(a) .and. free(a) <= upper(a)) cycle
-        b = 3 - a
-        trial(a) = min(max(free(a), lower(a)), upper(a))
-        trial(b) = min(max(-(g(b) + gram(3)*trial(a))/gram(b), lower(b)), upper(b))
-        value = dot_product(trial, g) + 0.5_wp*(gram(1)*trial(1)**2 + gram(2)*trial(2)**2) &
-                + gram(3)*trial(1)*trial(2)
-        if (value >= best) cycle
-        best = value
-        foot%at = trial
-      end do
-      where (foot%at <= lower) foot%side = -1
-      where (foot%at >= upper) foot%side = 1
+      call bounded_minimum(g, metric, free, lower, upper, projection%uv)
+      where (projection%uv <= lower) projection%active = -1
+      where (projection%uv >= upper) projection%active = 1
     end if
-    foot%to_foot = origin + foot%at(1)*foot%first(:, 1) + foot%at(2)*foot%first(:, 2)
-    foot%distance = sqrt(dot_product(foot%to_foot, foot%to_foot))
+    projection%offset = projection%offset + projection%uv(1)*projection%first(:, 1) &
+        + projection%uv(2)*projection%first(:, 2)
+    projection%distance = sqrt(dot_product(projection%offset, projection%offset))
   end subroutine project_flat
 
-  !> Newton's method from `foot%at`.
-  pure subroutine descend(patch, x, lower, upper, foot, iteration, ok)
-    !> The patch.
+  !> Find the minimum of a quadratic function on the bounds that its free minimum violates.
+  pure subroutine bounded_minimum(g, metric, free, lower, upper, uv)
+    !> Gradient at u = v = 0; second derivatives uu, vv, uv.
+    real(wp), intent(in) :: g(2), metric(3)
+    !> Free minimum.
+    real(wp), intent(in) :: free(2)
+    !> Bounds of the parameters.
+    real(wp), intent(in) :: lower(2), upper(2)
+    real(wp), intent(inout) :: uv(2)
+
+    real(wp) :: trial(2), value, best
+    integer :: a, b
+
+    best = huge(1.0_wp)
+    do a = 1, 2
+      if (free(a) >= lower(a) .and. free(a) <= upper(a)) cycle
+      b = 3 - a
+      trial(a) = min(max(free(a), lower(a)), upper(a))
+      trial(b) = min(max(-(g(b) + metric(3)*trial(a))/metric(b), lower(b)), upper(b))
+      value = dot_product(trial, g) + 0.5_wp*(metric(1)*trial(1)**2 + metric(2)*trial(2)**2) &
+          + metric(3)*trial(1)*trial(2)
+      if (value >= best) cycle
+      best = value
+      uv = trial
+    end do
+  end subroutine bounded_minimum
+
+  !> Run Newton's method from `projection%uv`.
+  pure subroutine newton(patch, x, lower, upper, projection, iteration, ok)
     type(patch_t), intent(in) :: patch
-    !> The node relative to the patch's centre, mm.
+    !> Position of the node relative to the patch's centre, mm.
     real(wp), intent(in) :: x(3)
     !> Bounds of the parameters.
     real(wp), intent(in) :: lower(2), upper(2)
-    !> Where to start; the foot.
-    type(foot_t), intent(inout) :: foot
-    !> The iteration it ended in.
+    !> Initial point on entry.
+    type(projection_t), intent(inout) :: projection
+    !> Number of the last iteration.
     integer, intent(out) :: iteration
-    !> Whether it converged.
+    !> True if converged.
     logical, intent(out) :: ok
 
-    type(foot_t) :: trial
-    real(wp) :: g(2), metric(3), step(2), slope, slack, reach
+    type(projection_t) :: trial
+    real(wp) :: g(2), metric(3), step(2), slope, slack, length
     integer :: halving
 
     ok = .false.
-    foot%at = min(max(foot%at, lower), upper)
-    call evaluate_foot(patch, x, foot)
+    projection%uv = min(max(projection%uv, lower), upper)
+    call evaluate_projection(patch, x, projection)
     do iteration = 1, most_iterations
-      call gradient_and_metric(foot, g, metric)
-      call find_sides(foot%at, lower, upper, g, foot%side)
-      reach = patch%size + foot%distance
-      ok = all(foot%side /= 0 .or. abs(g) <= zero_gradient*reach*sqrt(metric(1:2)))
+      call gradient_and_metric(projection, g, metric)
+      call find_active_bounds(projection%uv, lower, upper, g, projection%active)
+      length = patch%size + projection%distance
+      ok = all(projection%active /= 0 .or. abs(g) <= gradient_tolerance*length*sqrt(metric(1:2)))
       if (ok) return
-      call newton_step(foot, g, metric, step)
-      slack = 4.0_wp*epsilon(1.0_wp)*reach*(foot%distance + epsilon(1.0_wp)*reach)
+      call newton_step(projection, g, metric, step)
+      slack = 4.0_wp*epsilon(1.0_wp)*length*(projection%distance + epsilon(1.0_wp)*length)
       do halving = 0, most_halvings
-        trial%at = min(max(foot%at + step, lower), upper)
-        slope = dot_product(g, trial%at - foot%at)
+        trial%uv = min(max(projection%uv + step, lower), upper)
+        slope = dot_product(g, trial%uv - projection%uv)
         if (slope >= 0.0_wp .and. halving == 0) then
-          step = merge(-g/max(metric(1:2), tiny(1.0_wp)), 0.0_wp, foot%side == 0)
+          step = merge(-g/max(metric(1:2), tiny(1.0_wp)), 0.0_wp, projection%active == 0)
           cycle
         end if
-        call evaluate_foot(patch, x, trial)
-        if (0.5_wp*(trial%distance**2 - foot%distance**2) <= 1.0e-4_wp*slope + slack) exit
+        call evaluate_projection(patch, x, trial)
+        if (0.5_wp*(trial%distance**2 - projection%distance**2) <= 1.0e-4_wp*slope + slack) exit
         step = 0.5_wp*step
       end do
       if (halving > most_halvings) return
-      ok = all(abs(trial%at - foot%at) <= zero_step)
-      foot = trial
+      ok = all(abs(trial%uv - projection%uv) <= step_tolerance)
+      projection = trial
       if (ok) then
-        call gradient_and_metric(foot, g, metric)
-        call find_sides(foot%at, lower, upper, g, foot%side)
+        call gradient_and_metric(projection, g, metric)
+        call find_active_bounds(projection%uv, lower, upper, g, projection%active)
         return
       end if
     end do
-  end subroutine descend
+  end subroutine newton
 
-  !> Point, derivatives and distance at `foot%at`.
-  pure subroutine evaluate_foot(patch, x, foot)
-    !> The patch.
-    type(patch_t), intent(in) :: patch
-    !> The node relative to the patch's centre, mm.
-    real(wp), intent(in) :: x(3)
-    !> The foot.
-    type(foot_t), intent(inout) :: foot
+  !> Evaluate the gradient of phi and the metric S_u.S_u, S_v.S_v, S_u.S_v.
+  pure subroutine gradient_and_metric(projection, g, metric)
+    type(projection_t), intent(in) :: projection
+    !> mm2.
+    real(wp), intent(out) :: g(2), metric(3)
 
-    call evaluate_relative(patch%degree(1), patch%degree(2), patch%rational, patch%homogeneous, &
-                           foot%at(1), foot%at(2), foot%to_foot, foot%first, foot%second)
-    foot%to_foot = foot%to_foot - x
-    foot%side = 0
-    foot%distance = sqrt(dot_product(foot%to_foot, foot%to_foot))
-  end subroutine evaluate_foot
-
-  !> Gradient of phi and the metric a_11, a_22, a_12.
-  pure subroutine gradient_and_metric(foot, g, metric)
-    !> The foot.
-    type(foot_t), intent(in) :: foot
-    !> The gradient.
-    real(wp), intent(out) :: g(2)
-    !> The metric.
-    real(wp), intent(out) :: metric(3)
-
-    g(1) = dot_product(foot%to_foot, foot%first(:, 1))
-    g(2) = dot_product(foot%to_foot, foot%first(:, 2))
-    metric(1) = dot_product(foot%first(:, 1), foot%first(:, 1))
-    metric(2) = dot_product(foot%first(:, 2), foot%first(:, 2))
-    metric(3) = dot_product(foot%first(:, 1), foot%first(:, 2))
+    g(1) = dot_product(projection%offset, projection%first(:, 1))
+    g(2) = dot_product(projection%offset, projection%first(:, 2))
+    metric(1) = dot_product(projection%first(:, 1), projection%first(:, 1))
+    metric(2) = dot_product(projection%first(:, 2), projection%first(:, 2))
+    metric(3) = dot_product(projection%first(:, 1), projection%first(:, 2))
   end subroutine gradient_and_metric
 
-  !> Bounds at which the descent points outwards.
-  pure subroutine find_sides(at, lower, upper, g, side)
-    !> The parameters.
-    real(wp), intent(in) :: at(2)
-    !> Their bounds.
+  !> Find the bounds at which the descent direction points outwards.
+  pure subroutine find_active_bounds(uv, lower, upper, g, active)
+    real(wp), intent(in) :: uv(2)
+    !> Bounds of the parameters.
     real(wp), intent(in) :: lower(2), upper(2)
-    !> The gradient.
+    !> Gradient of phi.
     real(wp), intent(in) :: g(2)
     !> -1, 0 or 1 for u and v.
-    integer, intent(out) :: side(2)
+    integer, intent(out) :: active(2)
 
-    side = 0
-    where (at <= lower .and. g >= 0.0_wp) side = -1
-    where (at >= upper .and. g <= 0.0_wp) side = 1
-  end subroutine find_sides
+    active = 0
+    where (uv <= lower .and. g >= 0.0_wp) active = -1
+    where (uv >= upper .and. g <= 0.0_wp) active = 1
+  end subroutine find_active_bounds
 
-  !> Newton step of the parameters that are not held.
-  pure subroutine newton_step(foot, g, metric, step)
-    !> The foot with its sides.
-    type(foot_t), intent(in) :: foot
-    !> The gradient.
-    real(wp), intent(in) :: g(2)
-    !> The metric.
-    real(wp), intent(in) :: metric(3)
-    !> The step.
+  !> Evaluate the Newton step of the parameters without active bound.
+  pure subroutine newton_step(projection, g, metric, step)
+    type(projection_t), intent(in) :: projection
+    !> Gradient of phi and metric.
+    real(wp), intent(in) :: g(2), metric(3)
     real(wp), intent(out) :: step(2)
 
     real(wp), parameter :: positive = 1.0e-10_wp
@@ -300,9 +246,9 @@ contains
     integer :: a
 
     do a = 1, 3
-      h(a) = metric(a) + dot_product(foot%to_foot, foot%second(:, a))
+      h(a) = metric(a) + dot_product(projection%offset, projection%second(:, a))
     end do
-    if (all(foot%side == 0)) then
+    if (all(projection%active == 0)) then
       determinant = h(1)*h(2) - h(3)**2
       if (min(h(1), h(2)) <= 0.0_wp .or. determinant <= positive*metric(1)*metric(2)) then
         h = metric
@@ -316,84 +262,11 @@ contains
     end if
     do a = 1, 2
       step(a) = 0.0_wp
-      if (foot%side(a) /= 0) cycle
+      if (projection%active(a) /= 0) cycle
       if (h(a) <= positive*metric(a)) h(a) = metric(a)
       step(a) = -g(a)/max(h(a), tiny(1.0_wp))
       step(a) = max(-1.0_wp, min(1.0_wp, step(a)))
     end do
   end subroutine newton_step
-
-  !> Best point of the fine grid.
-  pure subroutine sample_finely(patch, x, lower, upper, at)
-    !> The patch.
-    type(patch_t), intent(in) :: patch
-    !> The node relative to the patch's centre, mm.
-    real(wp), intent(in) :: x(3)
-    !> Bounds of the parameters.
-    real(wp), intent(in) :: lower(2), upper(2)
-    !> Parameters of the best point.
-    real(wp), intent(out) :: at(2)
-
-    type(foot_t) :: foot
-    real(wp) :: best
-    integer :: i, j
-
-    best = huge(1.0_wp)
-    at = lower
-    do j = 0, n_fine
-      do i = 0, n_fine
-        foot%at = lower + (upper - lower)*real([i, j], wp)/n_fine
-        call evaluate_foot(patch, x, foot)
-        if (foot%distance >= best) cycle
-        best = foot%distance
-        at = foot%at
-      end do
-    end do
-  end subroutine sample_finely
-
-  !> Improves a foot by golden sections along u and v in turn.
-  pure subroutine golden_sections(patch, x, lower, upper, foot)
-    !> The patch.
-    type(patch_t), intent(in) :: patch
-    !> The node relative to the patch's centre, mm.
-    real(wp), intent(in) :: x(3)
-    !> Bounds of the parameters.
-    real(wp), intent(in) :: lower(2), upper(2)
-    !> Where to start; the foot.
-    type(foot_t), intent(inout) :: foot
-
-    integer, parameter :: most_sweeps = 50
-    real(wp), parameter :: golden = 0.6180339887498949_wp
-    type(foot_t) :: left, right
-    real(wp) :: a, b, previous
-    integer :: sweep, direction
-
-    do sweep = 1, most_sweeps
-      previous = foot%distance
-      do direction = 1, 2
-        a = max(lower(direction), foot%at(direction) - 1.0_wp/n_fine)
-        b = min(upper(direction), foot%at(direction) + 1.0_wp/n_fine)
-        left = foot
-        right = foot
-        do while (b - a > 1.0e-9_wp)
-          left%at(direction) = b - golden*(b - a)
-          right%at(direction) = a + golden*(b - a)
-          call evaluate_foot(patch, x, left)
-          call evaluate_foot(patch, x, right)
-          if (left%distance < right%distance) then
-            b = right%at(direction)
-          else
-            a = left%at(direction)
-          end if
-        end do
-        if (left%distance < foot%distance) foot = left
-        if (right%distance < foot%distance) foot = right
-      end do
-      if (foot%distance >= previous*(1.0_wp - 1.0e-14_wp)) exit
-    end do
-    foot%side = 0
-    where (foot%at - lower <= 1.0e-8_wp) foot%side = -1
-    where (upper - foot%at <= 1.0e-8_wp) foot%side = 1
-  end subroutine golden_sections
 
 end module dd3_contact_project

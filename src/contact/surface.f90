@@ -1,60 +1,60 @@
-!> The surface of a tool: its patches, their boxes, and which patch follows behind which edge.
+!> The surface of a tool: its patches, their bounding box and their neighbours across edges.
 module dd3_contact_surface
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, position_at, normal_at, curve_length
   implicit none
   private
-  public :: surface_t, edge_t, new_surface, edge_parameters, edge_of
+  public :: surface_t, edge_t, new_surface, edge_parameters, edge_number
 
-  !> Points at which two edges are compared.
+  !> Number of points at which two edges are compared.
   integer, parameter :: n_compared = 5
-  !> Two edges are the same where they are nearer to each other than this share of the surface's
-  !> size.
-  real(wp), parameter :: same_place = 1.0e-6_wp
-  !> A surface is smooth across an edge where the sine of the angle between its normals is below
-  !> this.
+  !> Largest distance between coincident edges, relative to the surface's size.
+  real(wp), parameter :: coincident = 1.0e-6_wp
+  !> Largest sine of the angle between the normals across a smooth edge.
   real(wp), parameter :: smooth_sine = 1.0e-3_wp
-  !> Width of the band beyond a smooth edge, as a share of the shortest patch, in which a node
-  !> keeps its patch.
+  !> Largest cosine of the angle between opposite normals.
+  real(wp), parameter :: opposite_cosine = -0.99_wp
+  !> Width of the band beyond a smooth edge, relative to the shortest patch, in which a node keeps
+  !> its patch.
   real(wp), parameter :: band_width = 1.0e-5_wp
+  !> Largest band in terms of the parameter.
+  real(wp), parameter :: largest_band = 1.0e-3_wp
 
-  !> What lies behind an edge of a patch. The edges are 1: u = 0, 2: u = 1, 3: v = 0, 4: v = 1.
+  !> An edge of a patch. The edges are 1: u = 0, 2: u = 1, 3: v = 0, 4: v = 1.
   type :: edge_t
-    !> The patch behind it; 0 on the outer border and at a pole.
+    !> Neighbouring patch; 0 on the outer border and at a pole.
     integer :: patch = 0
-    !> Its edge there.
+    !> Number of the edge in the neighbouring patch.
     integer :: edge = 0
-    !> Whether the two edges run in opposite directions.
+    !> True if the two edges run in opposite directions.
     logical :: reversed = .false.
-    !> Whether the normals agree across it.
+    !> True if the normals agree across the edge.
     logical :: smooth = .false.
-    !> Whether the normals across it point to opposite sides.
+    !> True if the normals across the edge are opposite.
     logical :: opposite = .false.
-    !> Whether it is no longer than a point.
+    !> True if the edge is degenerate to a point.
     logical :: pole = .false.
-    !> How far the parameter may run beyond it before the neighbour takes over.
+    !> Distance in the parameter by which a patch is extended beyond the edge.
     real(wp) :: band = 0.0_wp
   end type edge_t
 
   !> The surface of a tool.
   type :: surface_t
-    !> Its patches.
     type(patch_t), allocatable :: patch(:)
-    !> Their edges, `(4, number of patches)`.
+    !> Edges, `edge(4, n_patch)`.
     type(edge_t), allocatable :: edge(:, :)
-    !> Box that holds all patches, mm.
+    !> Bounding box, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
-    !> Diagonal of that box, mm.
+    !> Diagonal of the bounding box, mm.
     real(wp) :: size = 0.0_wp
   end type surface_t
 
 contains
 
-  !> Makes a surface of its patches.
+  !> Make a surface from its patches.
   subroutine new_surface(self, patch)
-    !> The surface made.
     type(surface_t), intent(out) :: self
-    !> Its patches, at least one.
+    !> At least one patch.
     type(patch_t), intent(in) :: patch(:)
 
     integer :: i, k
@@ -70,60 +70,55 @@ contains
     self%size = sqrt(sum((self%upper - self%lower)**2))
     do i = 1, size(patch)
       do k = 1, 4
-        self%edge(k, i)%pole = edge_length(patch(i), k) <= same_place*self%size
+        self%edge(k, i)%pole = edge_length(patch(i), k) <= coincident*self%size
       end do
     end do
     call find_neighbours(self)
     call set_bands(self)
   end subroutine new_surface
 
-  !> Length of an edge, mm.
+  !> Return the length of edge k, mm.
   pure real(wp) function edge_length(patch, k)
-    !> The patch.
     type(patch_t), intent(in) :: patch
-    !> The edge.
     integer, intent(in) :: k
 
     edge_length = curve_length(patch, merge(2, 1, k <= 2), real(mod(k + 1, 2), wp))
   end function edge_length
 
-  !> Parameters of a point on an edge.
-  pure function edge_parameters(k, t) result(at)
-    !> The edge.
+  !> Return the parameters u, v of a point on edge k.
+  pure function edge_parameters(k, t) result(uv)
     integer, intent(in) :: k
-    !> Place along it, 0 to 1.
+    !> Parameter along the edge, 0 to 1.
     real(wp), intent(in) :: t
-    real(wp) :: at(2)
+    real(wp) :: uv(2)
 
-    at = t
-    at((k + 1)/2) = real(mod(k + 1, 2), wp)
+    uv = t
+    uv((k + 1)/2) = real(mod(k + 1, 2), wp)
   end function edge_parameters
 
-  !> The edge at an end of a parameter's range.
-  pure integer function edge_of(direction, upper)
+  !> Return the number of the edge at the lower or upper bound of a parameter.
+  pure integer function edge_number(direction, upper)
     !> 1 for u, 2 for v.
     integer, intent(in) :: direction
-    !> Whether the upper end is meant.
     logical, intent(in) :: upper
 
-    edge_of = 2*direction - merge(0, 1, upper)
-  end function edge_of
+    edge_number = 2*direction - merge(0, 1, upper)
+  end function edge_number
 
-  !> Finds the pairs of edges that lie on each other from end to end.
+  !> Find the pairs of edges that coincide over their whole length.
   subroutine find_neighbours(self)
-    !> The surface.
     type(surface_t), intent(inout) :: self
 
-    real(wp) :: points(3, n_compared, 4, size(self%patch)), tolerance, at(2)
+    real(wp) :: points(3, n_compared, 4, size(self%patch)), tolerance, uv(2)
     integer :: i, j, k, l, s
     logical :: same, reversed
 
-    tolerance = same_place*self%size
+    tolerance = coincident*self%size
     do i = 1, size(self%patch)
       do k = 1, 4
         do s = 1, n_compared
-          at = edge_parameters(k, real(s - 1, wp)/(n_compared - 1))
-          points(:, s, k, i) = position_at(self%patch(i), at(1), at(2))
+          uv = edge_parameters(k, real(s - 1, wp)/(n_compared - 1))
+          points(:, s, k, i) = position_at(self%patch(i), uv(1), uv(2))
         end do
       end do
     end do
@@ -136,23 +131,23 @@ contains
             if (i == j .and. l <= k) cycle
             if (self%edge(k, i)%pole .or. self%edge(l, j)%pole) cycle
             if (self%edge(k, i)%patch > 0 .or. self%edge(l, j)%patch > 0) cycle
-            call compare(points(:, :, k, i), points(:, :, l, j), tolerance, same, reversed)
-            if (same) call join(self, i, k, j, l, reversed)
+            call compare_edges(points(:, :, k, i), points(:, :, l, j), tolerance, same, reversed)
+            if (same) call set_neighbours(self, i, k, j, l, reversed)
           end do
         end do
       end do
     end do
   end subroutine find_neighbours
 
-  !> Compares two rows of points, forwards and backwards.
-  pure subroutine compare(a, b, tolerance, same, reversed)
-    !> The rows of points, mm.
+  !> Compare the points of two edges, forwards and backwards.
+  pure subroutine compare_edges(a, b, tolerance, same, reversed)
+    !> Points of the edges, mm.
     real(wp), intent(in) :: a(:, :), b(:, :)
-    !> Largest distance between points that are the same, mm.
+    !> Largest distance between coincident points, mm.
     real(wp), intent(in) :: tolerance
-    !> Whether the rows are the same.
+    !> True if the edges coincide.
     logical, intent(out) :: same
-    !> Whether they run in opposite directions.
+    !> True if they run in opposite directions.
     logical, intent(out) :: reversed
 
     same = all(abs(a - b) <= tolerance)
@@ -160,17 +155,13 @@ contains
     if (same) return
     reversed = all(abs(a - b(:, size(b, 2):1:-1)) <= tolerance)
     same = reversed
-  end subroutine compare
+  end subroutine compare_edges
 
-  !> Notes that two edges lie on each other.
-  subroutine join(self, i, k, j, l, reversed)
-    !> The surface.
+  !> Record that edge k of patch i and edge l of patch j coincide.
+  subroutine set_neighbours(self, i, k, j, l, reversed)
     type(surface_t), intent(inout) :: self
-    !> Patch and edge on one side.
-    integer, intent(in) :: i, k
-    !> Patch and edge on the other.
-    integer, intent(in) :: j, l
-    !> Whether the edges run in opposite directions.
+    integer, intent(in) :: i, k, j, l
+    !> True if the edges run in opposite directions.
     logical, intent(in) :: reversed
 
     real(wp) :: a(2), b(2), t, normal_a(3), normal_b(3), cosine
@@ -187,8 +178,8 @@ contains
       call normal_at(self%patch(j), b(1), b(2), normal_b, regular(2))
       cosine = dot_product(normal_a, normal_b)
       smooth = smooth .and. all(regular) .and. cosine > 0.0_wp &
-               .and. sum((normal_a - cosine*normal_b)**2) < smooth_sine**2
-      opposite = opposite .and. cosine < -0.99_wp
+          .and. sum((normal_a - cosine*normal_b)**2) < smooth_sine**2
+      opposite = opposite .and. cosine < opposite_cosine
     end do
     self%edge(k, i)%patch = j
     self%edge(k, i)%edge = l
@@ -200,22 +191,21 @@ contains
     self%edge(l, j)%smooth = smooth
     self%edge(k, i)%opposite = opposite
     self%edge(l, j)%opposite = opposite
-  end subroutine join
+  end subroutine set_neighbours
 
-  !> Gives the smooth inner edges their bands.
+  !> Set the bands of the smooth inner edges.
   subroutine set_bands(self)
-    !> The surface.
     type(surface_t), intent(inout) :: self
 
-    real(wp) :: width, across
+    real(wp) :: width, length
     integer :: i, k
 
-    width = band_width*minval(self%patch%reach)
+    width = band_width*minval(self%patch%shorter_side)
     do i = 1, size(self%patch)
       do k = 1, 4
         if (.not. self%edge(k, i)%smooth) cycle
-        across = curve_length(self%patch(i), (k + 1)/2, 0.5_wp)
-        if (across > 0.0_wp) self%edge(k, i)%band = min(1.0e-3_wp, width/across)
+        length = curve_length(self%patch(i), (k + 1)/2, 0.5_wp)
+        if (length > 0.0_wp) self%edge(k, i)%band = min(largest_band, width/length)
       end do
     end do
   end subroutine set_bands

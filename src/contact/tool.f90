@@ -1,4 +1,4 @@
-!> A rigid tool: its surface, its friction and where it stands at the start.
+!> A rigid tool: its surface, friction and initial position.
 module dd3_contact_tool
   use dd3_base_kinds, only : wp
   use dd3_contact_surface, only : surface_t
@@ -6,15 +6,15 @@ module dd3_contact_tool
   private
   public :: tool_t
 
-  !> A rigid tool that can be translated.
+  !> A rigid tool; it moves by translation.
   type :: tool_t
-    !> Its name in the input.
+    !> Name in the input.
     character(len=:), allocatable :: name
-    !> Its surface, in the frame of its own file.
+    !> Surface in the frame of its file.
     type(surface_t) :: surface
     !> Coefficient of Coulomb friction against the sheet.
     real(wp) :: friction = 0.0_wp
-    !> Offset of the surface's frame from the global one at the start, mm.
+    !> Initial offset of the surface's frame from the global one, mm.
     real(wp) :: position(3) = 0.0_wp
   end type tool_t
 

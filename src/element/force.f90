@@ -1,6 +1,5 @@
 !> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean
-!> of the Cauchy stress, g_a the group's mean gradient; where a point belongs to no group, sum w j T
-!> G_a.
+!> of the Cauchy stress, g_a the group's mean gradient; sum w j T G_a for points without a group.
 module dd3_element_force
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -11,11 +10,10 @@ module dd3_element_force
 
 contains
 
-  !> Stresses in the global frame, after `element_strain` and once `work%stress` is set.
+  !> Transform the stresses to the global frame; call `element_strain` and set `work%stress` first.
   subroutine element_cauchy(element, work)
-    !> The element's table.
     type(element_t), intent(in) :: element
-    !> `cauchy` and `mean_stress_integral` are set.
+    !> Sets `cauchy` and `mean_stress_integral`.
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: s(3, 3)
@@ -28,28 +26,27 @@ contains
       if (g == 0) cycle
       s = work%weight(p)*work%cauchy(:, :, p)
       work%mean_stress_integral(g) = work%mean_stress_integral(g) &
-        + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
+          + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
     end do
   end subroutine element_cauchy
 
-  !> Internal forces, after `element_cauchy`.
+  !> Evaluate the internal forces; call `element_cauchy` first.
   subroutine element_force(element, work)
-    !> The element's table.
     type(element_t), intent(in) :: element
-    !> `force` is set.
+    !> Sets `force`.
     type(element_work_t), intent(inout) :: work
 
     if (element%n_node == 8 .and. element%n_point == 8 .and. element%n_group == 1) then
       call add_forces(8, 8, 1, element%group, work%weight, work%cauchy, work%gradient, &
-                      work%mean_gradient, work%mean_stress_integral, work%force)
+          work%mean_gradient, work%mean_stress_integral, work%force)
     else
       call add_forces(element%n_node, element%n_point, element%n_group, element%group, &
-                      work%weight, work%cauchy, work%gradient, work%mean_gradient, &
-                      work%mean_stress_integral, work%force)
+          work%weight, work%cauchy, work%gradient, work%mean_gradient, &
+          work%mean_stress_integral, work%force)
     end if
   end subroutine element_force
 
-  !> A tensor of the material frame in the global one: Q T Q^T.
+  !> Return Q T Q^T, the global components of a tensor given in the material frame.
   pure function global_tensor(stress, q) result(cauchy)
     !> Tensor in the material frame, Kelvin.
     real(wp), intent(in) :: stress(6)
@@ -70,18 +67,17 @@ contains
     end do
   end function global_tensor
 
-  !> Sums the forces over the points.
+  !> Kernel: sum the forces over the points.
   pure subroutine add_forces(n_node, n_point, n_group, group, weight, cauchy, gradient, &
-                             mean_gradient, mean_stress_integral, force)
-    !> Sizes.
+      mean_gradient, mean_stress_integral, force)
     integer, intent(in) :: n_node, n_point, n_group
-    !> Group of each point.
+    !> Group of each point, or 0.
     integer, intent(in) :: group(n_point)
     !> Weight times Jacobian, mm3.
     real(wp), intent(in) :: weight(n_point)
     !> Cauchy stress, MPa, global frame.
     real(wp), intent(in) :: cauchy(3, 3, n_point)
-    !> Gradients and their means, 1/mm.
+    !> Gradients of the shape functions and their group means, 1/mm.
     real(wp), intent(in) :: gradient(n_node, 3, n_point), mean_gradient(n_node, 3, n_group)
     !> Volume integral of the mean stress of each group, N mm.
     real(wp), intent(in) :: mean_stress_integral(n_group)
@@ -102,7 +98,7 @@ contains
       end if
       do i = 1, 3
         by_node(:, i) = by_node(:, i) + s(i, 1)*gradient(:, 1, p) + s(i, 2)*gradient(:, 2, p) &
-                        + s(i, 3)*gradient(:, 3, p)
+            + s(i, 3)*gradient(:, 3, p)
       end do
     end do
     do g = 1, n_group

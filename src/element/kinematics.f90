@@ -1,7 +1,7 @@
-!> Kinematics of an element: gradients at the current configuration, their means over the groups
-!> that share a mean dilatation, volumes, and the deformation gradient of the increment. Mean
-!> dilatation after Nagtegaal, Parks & Rice (1974): J_0 = v/V of the group replaces det F, and g_a =
-!> (1/v) sum w j G_a goes with it.
+!> Kinematics of an element: gradients in the trial configuration, their means over the groups that
+!> share a mean dilatation, volumes, and the deformation gradient of the increment. Mean dilatation
+!> after Nagtegaal, Parks & Rice (1974): det F is replaced by J_0 = v/V of the group, with the mean
+!> gradient g_a = (1/v) sum w j G_a.
 module dd3_element_kinematics
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
@@ -13,85 +13,79 @@ module dd3_element_kinematics
 
 contains
 
-  !> All kinematics of an increment that moves the nodes from `x_old` to `x_new`.
-  subroutine element_kinematics(element, x_old, x_new, work, verdict)
-    !> The element's table.
+  !> Evaluate the kinematics of an increment.
+  subroutine element_kinematics(element, x_committed, x_trial, work, verdict)
     type(element_t), intent(in) :: element
-    !> Positions at the start of the increment, mm: `x_old(3,n_node)`.
-    real(wp), intent(in) :: x_old(3, element%n_node)
-    !> Positions now, mm: `x_new(3,n_node)`.
-    real(wp), intent(in) :: x_new(3, element%n_node)
-    !> Gradients, weights, volumes, deformation gradients and dilatations are set.
+    !> Committed and trial positions of the nodes, mm.
+    real(wp), intent(in) :: x_committed(3, element%n_node), x_trial(3, element%n_node)
+    !> Sets gradients, weights, volumes, deformation gradients and dilatations.
     type(element_work_t), intent(inout) :: work
-    !> Retry, with the point, where an element is turned inside out.
+    !> Retry, with the point, if a Jacobian determinant is not positive.
     type(verdict_t), intent(out) :: verdict
 
     integer :: bad_point
 
-    call element_gradients(element, x_new, work, verdict)
+    call element_gradients(element, x_trial, work, verdict)
     if (verdict%outcome /= verdict_converged) return
     associate (n => element%n_node, m => element%n_point)
       if (n == 8 .and. m == 8) then
-        call jacobians(24, 8, element%slope, x_old, work%jacobian_old)
+        call jacobians(24, 8, element%slope, x_committed, work%jacobian_committed)
       else
-        call jacobians(3*m, n, element%slope, x_old, work%jacobian_old)
+        call jacobians(3*m, n, element%slope, x_committed, work%jacobian_committed)
       end if
-      call deform(m, element%weight, work%jacobian_old, work%jacobian, work%deformation, &
-                  work%weight_old, bad_point)
+      call deformation_gradients(m, element%weight, work%jacobian_committed, work%jacobian, &
+          work%deformation, work%weight_committed, bad_point)
       if (bad_point > 0) then
-        call blame(verdict, bad_point)
+        call record_failure(verdict, bad_point)
         return
       end if
-      call dilate(m, element%n_group, element%group, work)
+      call dilatations(m, element%n_group, element%group, work)
     end associate
   end subroutine element_kinematics
 
-  !> Gradients, weights and volumes at one configuration.
+  !> Evaluate gradients, weights and volumes in one configuration.
   subroutine element_gradients(element, x, work, verdict)
-    !> The element's table.
     type(element_t), intent(in) :: element
-    !> Positions, mm: `x(3,n_node)`.
+    !> Positions of the nodes, mm.
     real(wp), intent(in) :: x(3, element%n_node)
-    !> `gradient`, `mean_gradient`, `weight` and `volume` are set.
+    !> Sets `gradient`, `mean_gradient`, `weight` and `volume`.
     type(element_work_t), intent(inout) :: work
-    !> Retry, with the point, where an element is turned inside out.
+    !> Retry, with the point, if a Jacobian determinant is not positive.
     type(verdict_t), intent(out) :: verdict
 
     integer :: bad_point
 
     associate (n => element%n_node, m => element%n_point, g => element%n_group)
-      ! Constant sizes let the compiler make a copy of each kernel for the commonest element.
+      ! Constant sizes let the compiler specialise each kernel for hex8.
       if (n == 8 .and. m == 8 .and. g == 1) then
         call jacobians(24, 8, element%slope, x, work%jacobian)
-        call invert(8, 8, element%slope_row, element%weight, work%jacobian, work%gradient, &
-                    work%weight, bad_point)
-        if (bad_point == 0) call average(24, 8, 1, element%group, work%weight, work%gradient, &
-                                         work%mean_gradient, work%volume)
+        call gradients(8, 8, element%slope_row, element%weight, work%jacobian, work%gradient, &
+            work%weight, bad_point)
+        if (bad_point == 0) call mean_gradients(24, 8, 1, element%group, work%weight, &
+            work%gradient, work%mean_gradient, work%volume)
       else
         call jacobians(3*m, n, element%slope, x, work%jacobian)
-        call invert(n, m, element%slope_row, element%weight, work%jacobian, work%gradient, &
-                    work%weight, bad_point)
-        if (bad_point == 0) call average(3*n, m, g, element%group, work%weight, work%gradient, &
-                                         work%mean_gradient, work%volume)
+        call gradients(n, m, element%slope_row, element%weight, work%jacobian, work%gradient, &
+            work%weight, bad_point)
+        if (bad_point == 0) call mean_gradients(3*n, m, g, element%group, work%weight, &
+            work%gradient, work%mean_gradient, work%volume)
       end if
     end associate
     verdict%outcome = verdict_converged
-    if (bad_point > 0) call blame(verdict, bad_point)
+    if (bad_point > 0) call record_failure(verdict, bad_point)
   end subroutine element_gradients
 
-  !> Says which point is turned inside out.
-  subroutine blame(verdict, point)
-    !> The verdict.
+  !> Record the point whose Jacobian determinant is not positive.
+  subroutine record_failure(verdict, point)
     type(verdict_t), intent(inout) :: verdict
-    !> The point.
     integer, intent(in) :: point
 
     verdict%outcome = verdict_retry
     verdict%reason = "an element is turned inside out"
     verdict%point = point
-  end subroutine blame
+  end subroutine record_failure
 
-  !> dx/dxi at all points: `jacobian(q,i)` with q running over natural direction and point.
+  !> Evaluate dx/dxi at all points: `jacobian(q,i)`, q over natural directions and points.
   pure subroutine jacobians(n_slope, n_node, slope, x, jacobian)
     !> Three times the number of points, number of nodes.
     integer, intent(in) :: n_slope, n_node
@@ -99,7 +93,7 @@ contains
     real(wp), intent(in) :: slope(n_slope, n_node)
     !> Positions, mm.
     real(wp), intent(in) :: x(3, n_node)
-    !> The derivatives of the positions, mm.
+    !> dx/dxi, mm.
     real(wp), intent(out) :: jacobian(n_slope, 3)
 
     real(wp) :: total
@@ -116,10 +110,9 @@ contains
     end do
   end subroutine jacobians
 
-  !> G_a = (dN_a/dxi)(dxi/dx) and w j at all points.
-  pure subroutine invert(n_node, n_point, slope, weight, jacobian, gradient, volume_weight, &
-                         bad_point)
-    !> Sizes.
+  !> Kernel: evaluate G_a = (dN_a/dxi)(dxi/dx) and w j at all points.
+  pure subroutine gradients(n_node, n_point, slope, weight, jacobian, gradient, volume_weight, &
+      bad_point)
     integer, intent(in) :: n_node, n_point
     !> Derivatives of the shape functions.
     real(wp), intent(in) :: slope(n_node, 3, n_point)
@@ -127,19 +120,19 @@ contains
     real(wp), intent(in) :: weight(n_point)
     !> dx/dxi, mm.
     real(wp), intent(in) :: jacobian(3, n_point, 3)
-    !> Gradients, 1/mm.
+    !> Gradients of the shape functions, 1/mm.
     real(wp), intent(out) :: gradient(n_node, 3, n_point)
     !> Weight times Jacobian, mm3.
     real(wp), intent(out) :: volume_weight(n_point)
-    !> First point where the determinant is not positive, 0 where all are.
+    !> First point whose determinant is not positive, or 0.
     integer, intent(out) :: bad_point
 
-    real(wp) :: inverted(3, 3), det
+    real(wp) :: inverse(3, 3), det
     integer :: a, i, p
 
     bad_point = 0
     do p = 1, n_point
-      call invert_transposed(jacobian(:, p, 1), jacobian(:, p, 2), jacobian(:, p, 3), inverted, det)
+      call invert_transposed(jacobian(:, p, 1), jacobian(:, p, 2), jacobian(:, p, 3), inverse, det)
       if (.not. det > 0.0_wp) then
         bad_point = p
         return
@@ -147,20 +140,17 @@ contains
       volume_weight(p) = weight(p)*det
       do i = 1, 3
         do a = 1, n_node
-          gradient(a, i, p) = slope(a, 1, p)*inverted(1, i) + slope(a, 2, p)*inverted(2, i) &
-                              + slope(a, 3, p)*inverted(3, i)
+          gradient(a, i, p) = slope(a, 1, p)*inverse(1, i) + slope(a, 2, p)*inverse(2, i) &
+              + slope(a, 3, p)*inverse(3, i)
         end do
       end do
     end do
-  end subroutine invert
+  end subroutine gradients
 
-  !> Inverse of the matrix whose rows are a, b, c; left alone where the determinant is not positive.
-  pure subroutine invert_transposed(a, b, c, inverted, det)
-    !> Rows.
+  !> Invert the matrix with the rows a, b, c; zero if the determinant is not positive.
+  pure subroutine invert_transposed(a, b, c, inverse, det)
     real(wp), intent(in) :: a(3), b(3), c(3)
-    !> The inverse.
-    real(wp), intent(out) :: inverted(3, 3)
-    !> The determinant.
+    real(wp), intent(out) :: inverse(3, 3)
     real(wp), intent(out) :: det
 
     real(wp) :: u(3), v(3), w(3), factor
@@ -171,20 +161,21 @@ contains
     det = a(1)*u(1) + a(2)*u(2) + a(3)*u(3)
     factor = 0.0_wp
     if (det > 0.0_wp) factor = 1.0_wp/det
-    inverted(:, 1) = u*factor
-    inverted(:, 2) = v*factor
-    inverted(:, 3) = w*factor
+    inverse(:, 1) = u*factor
+    inverse(:, 2) = v*factor
+    inverse(:, 3) = w*factor
   end subroutine invert_transposed
 
-  !> Volume and mean gradients of each group.
-  pure subroutine average(n_entry, n_point, n_group, group, weight, gradient, mean_gradient, volume)
+  !> Kernel: evaluate the volume and mean gradients of each group.
+  pure subroutine mean_gradients(n_entry, n_point, n_group, group, weight, gradient, &
+      mean_gradient, volume)
     !> Three times the number of nodes, number of points and of groups.
     integer, intent(in) :: n_entry, n_point, n_group
-    !> Group of each point.
+    !> Group of each point, or 0.
     integer, intent(in) :: group(n_point)
     !> Weight times Jacobian, mm3.
     real(wp), intent(in) :: weight(n_point)
-    !> Gradients, 1/mm.
+    !> Gradients of the shape functions, 1/mm.
     real(wp), intent(in) :: gradient(n_entry, n_point)
     !> Means of the gradients, 1/mm.
     real(wp), intent(out) :: mean_gradient(n_entry, n_group)
@@ -204,67 +195,67 @@ contains
     do g = 1, n_group
       mean_gradient(:, g) = mean_gradient(:, g)/volume(g)
     end do
-  end subroutine average
+  end subroutine mean_gradients
 
-  !> F = (dx_new/dxi)(dxi/dx_old) and w j at the start of the increment.
-  pure subroutine deform(n_point, weight, old, new, deformation, weight_old, bad_point)
-    !> Number of points.
+  !> Evaluate F = (dx_trial/dxi)(dxi/dx_committed) and w j of the committed configuration.
+  pure subroutine deformation_gradients(n_point, weight, committed, trial, deformation, &
+      weight_committed, bad_point)
     integer, intent(in) :: n_point
     !> Quadrature weights.
     real(wp), intent(in) :: weight(n_point)
-    !> dx/dxi at the start of the increment and now, mm.
-    real(wp), intent(in) :: old(3, n_point, 3), new(3, n_point, 3)
-    !> Deformation gradients.
+    !> dx/dxi in both configurations, mm.
+    real(wp), intent(in) :: committed(3, n_point, 3), trial(3, n_point, 3)
     real(wp), intent(out) :: deformation(3, 3, n_point)
-    !> Weight times Jacobian, mm3.
-    real(wp), intent(out) :: weight_old(n_point)
-    !> First point where the determinant is not positive, 0 where all are.
+    !> Weight times Jacobian of the committed configuration, mm3.
+    real(wp), intent(out) :: weight_committed(n_point)
+    !> First point whose determinant is not positive, or 0.
     integer, intent(out) :: bad_point
 
-    real(wp) :: inverted(3, 3), det
+    real(wp) :: inverse(3, 3), det
     integer :: i, j, p
 
     bad_point = 0
     do p = 1, n_point
-      call invert_transposed(old(:, p, 1), old(:, p, 2), old(:, p, 3), inverted, det)
+      call invert_transposed(committed(:, p, 1), committed(:, p, 2), committed(:, p, 3), inverse, &
+          det)
       if (.not. det > 0.0_wp) then
         bad_point = p
         return
       end if
-      weight_old(p) = weight(p)*det
+      weight_committed(p) = weight(p)*det
       do j = 1, 3
         do i = 1, 3
-          deformation(i, j, p) = new(1, p, i)*inverted(1, j) + new(2, p, i)*inverted(2, j) &
-                                 + new(3, p, i)*inverted(3, j)
+          deformation(i, j, p) = trial(1, p, i)*inverse(1, j) + trial(2, p, i)*inverse(2, j) &
+              + trial(3, p, i)*inverse(3, j)
         end do
       end do
     end do
-  end subroutine deform
+  end subroutine deformation_gradients
 
-  !> The dilatation that the material sees: v/V of the point's group, or its own.
-  pure subroutine dilate(n_point, n_group, group, work)
-    !> Sizes.
+  !> Evaluate the dilatation of each point: v/V of its group, or its own.
+  pure subroutine dilatations(n_point, n_group, group, work)
     integer, intent(in) :: n_point, n_group
-    !> Group of each point.
+    !> Group of each point, or 0.
     integer, intent(in) :: group(n_point)
-    !> `volume_old` and `dilatation` are set.
+    !> Sets `volume_committed` and `dilatation`.
     type(element_work_t), intent(inout) :: work
 
     integer :: g, p
 
-    work%volume_old(1:n_group) = 0.0_wp
+    work%volume_committed(1:n_group) = 0.0_wp
     do p = 1, n_point
       g = group(p)
-      if (g > 0) work%volume_old(g) = work%volume_old(g) + work%weight_old(p)
+      if (g == 0) cycle
+      work%volume_committed(g) = work%volume_committed(g) + work%weight_committed(p)
     end do
     do p = 1, n_point
       g = group(p)
       if (g > 0) then
-        work%dilatation(p) = work%volume(g)/work%volume_old(g)
+        work%dilatation(p) = work%volume(g)/work%volume_committed(g)
       else
-        work%dilatation(p) = work%weight(p)/work%weight_old(p)
+        work%dilatation(p) = work%weight(p)/work%weight_committed(p)
       end if
     end do
-  end subroutine dilate
+  end subroutine dilatations
 
 end module dd3_element_kinematics

@@ -1,16 +1,16 @@
 !> Exact tangent moduli of the incremental update: dT = c : d + w T - T w for any change of shape
 !> d + w, d symmetric, w skew.
 !>
-!> In the eigenbasis of the log strain E = ln U, with h_ij = E_i - E_j, the rates are in closed form
+!> In the eigenbasis of the log strain E = ln U, with h_ij = E_i - E_j, the rates are
 !>   dE_ij = d_ij h_ij/sinh(h_ij),   (R^T dR)_ij = w_ij - tanh(h_ij/2) d_ij
-!> (d, w in the unrotated frame). Both are functions of the commutator ad(d) = E d - d E, so that no
-!> eigenbasis is needed. With Z the 3x6 matrix that takes d (Kelvin) to the commutator's axial
+!> (d, w in the unrotated frame). Both are functions of the commutator ad(d) = E d - d E, so no
+!> eigenbasis is needed. Let Z be the 3x6 matrix that maps d (Kelvin) to the commutator's axial
 !> vector (times sqrt 2), B = Z Z^T, Z_T the same for the stress, and C the material's
-!> d stress/d strain:
+!> d stress/d strain. Then
 !>   c = C - (C Z^T P(B) - Z_T^T S(B)) Z,   P(x^2) = (1 - x/sinh x)/x^2,   S(x^2) = tanh(x/2)/x.
-!> B has the eigenvalues h_ij^2: power series when they are small, else the eigenvectors of E, whose
-!> k-th is also the axial vector of the pair (i,j). Rates of U and R: Hill, Aspects of invariance in
-!> solid mechanics, 1978.
+!> B has the eigenvalues h_ij^2. P and S are power series if these are small; otherwise they use
+!> the eigenvectors of E, the k-th of which is the axial vector of the pair (i,j). Rates of U and R:
+!> Hill, Aspects of invariance in solid mechanics, 1978.
 module dd3_element_moduli
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : kelvin_rotation, symmetric_eigen, tensor_from_kelvin
@@ -18,14 +18,14 @@ module dd3_element_moduli
   private
   public :: point_moduli, material_moduli, commutator
 
-  !> Largest trace of B for the power series; the remainder is then under 1e-14 of the moduli.
+  !> Largest trace of B for the power series; their remainder is under 1e-14 of the moduli.
   real(wp), parameter :: series_limit = 1.0e-3_wp
-  !> Factor between tensors' shears and Kelvin vectors'.
+  !> Factor from a Kelvin vector's shear component to the tensor's.
   real(wp), parameter :: half_root = sqrt(0.5_wp)
 
 contains
 
-  !> Moduli in the global frame, Kelvin.
+  !> Evaluate the moduli in the global frame, Kelvin.
   pure subroutine point_moduli(strain, stress, tangent, rotation, moduli)
     !> Logarithmic strain increment, Kelvin, material frame.
     real(wp), intent(in) :: strain(6)
@@ -33,31 +33,31 @@ contains
     real(wp), intent(in) :: stress(6)
     !> d stress/d strain, MPa, material frame.
     real(wp), intent(in) :: tangent(6, 6)
-    !> Material axes as columns, at the end of the increment.
+    !> Trial material axes, as columns.
     real(wp), intent(in) :: rotation(3, 3)
-    !> The moduli, MPa.
+    !> Moduli, MPa.
     real(wp), intent(out) :: moduli(6, 6)
 
-    real(wp) :: c(6, 6), half(6, 6), r(6, 6)
+    real(wp) :: c(6, 6), cr(6, 6), r(6, 6)
     integer :: j, k
 
     call material_moduli(strain, stress, tangent, c)
     r = kelvin_rotation(rotation)
     do j = 1, 6
-      half(:, j) = 0.0_wp
+      cr(:, j) = 0.0_wp
       do k = 1, 6
-        half(:, j) = half(:, j) + c(:, k)*r(j, k)
+        cr(:, j) = cr(:, j) + c(:, k)*r(j, k)
       end do
     end do
     do j = 1, 6
       moduli(:, j) = 0.0_wp
       do k = 1, 6
-        moduli(:, j) = moduli(:, j) + r(:, k)*half(k, j)
+        moduli(:, j) = moduli(:, j) + r(:, k)*cr(k, j)
       end do
     end do
   end subroutine point_moduli
 
-  !> Moduli in the material frame, Kelvin; without strain, as in a predictor, they are the tangent.
+  !> Evaluate the moduli in the material frame, Kelvin. At zero strain they are the tangent.
   pure subroutine material_moduli(strain, stress, tangent, moduli)
     !> Logarithmic strain increment, Kelvin, material frame.
     real(wp), intent(in) :: strain(6)
@@ -65,7 +65,7 @@ contains
     real(wp), intent(in) :: stress(6)
     !> d stress/d strain, MPa, material frame.
     real(wp), intent(in) :: tangent(6, 6)
-    !> The moduli, MPa.
+    !> Moduli, MPa.
     real(wp), intent(out) :: moduli(6, 6)
 
     real(wp) :: z(3, 6), zt(3, 6), b(3, 3), p(3, 3), s(3, 3), cz(6, 3), x(6, 3)
@@ -80,7 +80,7 @@ contains
     do j = 1, 3
       do i = 1, 3
         b(i, j) = z(i, 1)*z(j, 1) + z(i, 2)*z(j, 2) + z(i, 3)*z(j, 3) + z(i, 4)*z(j, 4) &
-                  + z(i, 5)*z(j, 5) + z(i, 6)*z(j, 6)
+            + z(i, 5)*z(j, 5) + z(i, 6)*z(j, 6)
       end do
     end do
     if (b(1, 1) + b(2, 2) + b(3, 3) <= series_limit) then
@@ -90,12 +90,12 @@ contains
     end if
     do j = 1, 3
       cz(:, j) = tangent(:, 1)*z(j, 1) + tangent(:, 2)*z(j, 2) + tangent(:, 3)*z(j, 3) &
-                 + tangent(:, 4)*z(j, 4) + tangent(:, 5)*z(j, 5) + tangent(:, 6)*z(j, 6)
+          + tangent(:, 4)*z(j, 4) + tangent(:, 5)*z(j, 5) + tangent(:, 6)*z(j, 6)
     end do
     do j = 1, 3
       do i = 1, 6
         x(i, j) = cz(i, 1)*p(1, j) + cz(i, 2)*p(2, j) + cz(i, 3)*p(3, j) &
-                  - zt(1, i)*s(1, j) - zt(2, i)*s(2, j) - zt(3, i)*s(3, j)
+            - zt(1, i)*s(1, j) - zt(2, i)*s(2, j) - zt(3, i)*s(3, j)
       end do
     end do
     do j = 1, 6
@@ -103,11 +103,10 @@ contains
     end do
   end subroutine material_moduli
 
-  !> The matrix that takes d (Kelvin) to sqrt(2) times the axial vector of E d - d E.
+  !> Return the matrix Z that maps d (Kelvin) to sqrt(2) times the axial vector of E d - d E.
   pure subroutine commutator(kelvin, z)
     !> E, Kelvin.
     real(wp), intent(in) :: kelvin(6)
-    !> The matrix.
     real(wp), intent(out) :: z(3, 6)
 
     real(wp) :: e23, e31, e12
@@ -120,11 +119,9 @@ contains
     z(3, :) = [kelvin(6), -kelvin(6), 0.0_wp, -e31, e23, kelvin(2) - kelvin(1)]
   end subroutine commutator
 
-  !> P(B) and S(B) by their power series.
+  !> Evaluate P(B) and S(B) by power series.
   pure subroutine small_functions(b, p, s)
-    !> B.
     real(wp), intent(in) :: b(3, 3)
-    !> P(B) and S(B).
     real(wp), intent(out) :: p(3, 3), s(3, 3)
 
     real(wp) :: bb(3, 3)
@@ -141,11 +138,10 @@ contains
     end do
   end subroutine small_functions
 
-  !> P(B) and S(B) from the eigenvectors of E.
+  !> Evaluate P(B) and S(B) from the eigenvectors of E.
   pure subroutine large_functions(strain, p, s)
     !> E, Kelvin.
     real(wp), intent(in) :: strain(6)
-    !> P(B) and S(B).
     real(wp), intent(out) :: p(3, 3), s(3, 3)
 
     real(wp) :: values(3), vectors(3, 3), h
@@ -163,7 +159,7 @@ contains
     end do
   end subroutine large_functions
 
-  !> (1 - h/sinh h)/h^2.
+  !> Return (1 - h/sinh h)/h^2.
   pure real(wp) function strain_factor(h) result(factor)
     !> Difference of two log stretches.
     real(wp), intent(in) :: h
@@ -173,14 +169,14 @@ contains
     if (h < 0.3_wp) then
       y = h*h
       factor = 1.0_wp/6.0_wp - y*(7.0_wp/360.0_wp - y*(31.0_wp/15120.0_wp &
-               - y*(127.0_wp/604800.0_wp - y*(73.0_wp/3421440.0_wp &
-               - y*(1414477.0_wp/653837184000.0_wp - y*8191.0_wp/37362124800.0_wp)))))
+          - y*(127.0_wp/604800.0_wp - y*(73.0_wp/3421440.0_wp &
+          - y*(1414477.0_wp/653837184000.0_wp - y*8191.0_wp/37362124800.0_wp)))))
     else
       factor = (1.0_wp - h/sinh(h))/(h*h)
     end if
   end function strain_factor
 
-  !> tanh(h/2)/h.
+  !> Return tanh(h/2)/h.
   pure real(wp) function spin_factor(h) result(factor)
     !> Difference of two log stretches.
     real(wp), intent(in) :: h

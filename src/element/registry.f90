@@ -1,83 +1,76 @@
-!> The elements the program knows, by name.
+!> The registry of elements: one row per element, with its name and constructor.
 module dd3_element_registry
   use dd3_base_error, only : error_t, fatal_error
   use dd3_element_hex8, only : new_hex8
   use dd3_element_table, only : element_t
   implicit none
   private
-  public :: element_count, element_name, new_element, known_elements
+  public :: element_names, known_elements, new_element
 
   abstract interface
-    !> Fills an element's table.
-    subroutine constructor_i(self)
+    !> Fill an element's table.
+    subroutine constructor_interface(self)
       import :: element_t
-      !> The table.
       type(element_t), intent(out) :: self
-    end subroutine constructor_i
+    end subroutine constructor_interface
   end interface
 
-  !> One row: name and constructor together.
-  type :: entry_t
+  !> A row of the registry.
+  type :: row_t
     !> Name as written in the input.
     character(len=16) :: name = ""
-    !> Fills the table.
-    procedure(constructor_i), pointer, nopass :: make => null()
-  end type entry_t
-
-  !> Number of elements.
-  integer, parameter :: element_count = 1
+    !> Constructor.
+    procedure(constructor_interface), pointer, nopass :: make => null()
+  end type row_t
 
 contains
 
-  !> The registry: one row per element.
-  subroutine fill_registry(entries)
-    !> The rows.
-    type(entry_t), intent(out) :: entries(element_count)
+  !> Return the registry: one row per element.
+  function registry() result(row)
+    type(row_t), allocatable :: row(:)
 
-    entries(1) = entry_t("hex8", new_hex8)
-  end subroutine fill_registry
+    row = [row_t("hex8", new_hex8)]
+  end function registry
 
-  !> Name of the i-th element.
-  function element_name(i) result(name)
-    !> Its number in the registry.
-    integer, intent(in) :: i
-    character(len=16) :: name
+  !> Return the names of all elements.
+  function element_names() result(name)
+    character(len=16), allocatable :: name(:)
 
-    type(entry_t) :: entries(element_count)
+    type(row_t), allocatable :: row(:)
 
-    call fill_registry(entries)
-    name = entries(i)%name
-  end function element_name
+    row = registry()
+    name = row%name
+  end function element_names
 
-  !> All names, separated by blanks.
-  function known_elements() result(names)
-    character(len=:), allocatable :: names
+  !> Return the names of all elements in one line, separated by blanks.
+  function known_elements() result(line)
+    character(len=:), allocatable :: line
 
+    character(len=16), allocatable :: name(:)
     integer :: i
 
-    names = ""
-    do i = 1, element_count
-      names = trim(names//" "//element_name(i))
+    name = element_names()
+    line = trim(name(1))
+    do i = 2, size(name)
+      line = line//" "//trim(name(i))
     end do
-    names = adjustl(names)
   end function known_elements
 
-  !> Makes an element by its name.
+  !> Make the table of an element.
   subroutine new_element(self, name, error)
-    !> The table.
     type(element_t), intent(out) :: self
     !> Name as written in the input.
     character(len=*), intent(in) :: name
-    !> Set where the name is unknown.
+    !> Set if the name is unknown.
     type(error_t), allocatable, intent(out) :: error
 
-    type(entry_t) :: entries(element_count)
+    type(row_t), allocatable :: row(:)
     integer :: i
 
-    call fill_registry(entries)
-    do i = 1, element_count
-      if (entries(i)%name == name) then
-        call entries(i)%make(self)
+    row = registry()
+    do i = 1, size(row)
+      if (row(i)%name == name) then
+        call row(i)%make(self)
         return
       end if
     end do

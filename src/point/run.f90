@@ -8,7 +8,7 @@ module dd3_point_run
   use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_converged, verdict_t
-  use dd3_element_increment, only : polar_increment
+  use dd3_element_log_strain, only : polar_increment
   use dd3_input_case, only : case_t
   use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
       kelvin_from_tensor, symmetric_eigen

@@ -161,8 +161,8 @@ contains
 
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e), work => system%element(1))
-        work%x_old(:, :) = committed%x(:, nodes)
-        call element_gradients(model%element, work%x_old, work, verdict)
+        work%x_committed(:, :) = committed%x(:, nodes)
+        call element_gradients(model%element, work%x_committed, work, verdict)
         call element_rate(model%element, self%displacement(:, nodes), &
             committed%orientation(:, :, :, e), work)
         self%strain(:, :, e) = work%strain_increment

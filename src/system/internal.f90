@@ -8,7 +8,7 @@ module dd3_system_internal
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_increment, only : element_strain
+  use dd3_element_log_strain, only : element_strain
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_stiffness, only : element_stiffness
   use dd3_element_work, only : element_work_t
@@ -81,19 +81,18 @@ contains
     integer :: p, a
 
     associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
-      work%x_old(:, :) = committed%x(:, nodes)
-      work%x_new(:, :) = trial%x(:, nodes)
-      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
+      work%x_committed(:, :) = committed%x(:, nodes)
+      work%x_trial(:, :) = trial%x(:, nodes)
+      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
       call element_strain(model%element, committed%orientation(:, :, :, e), work)
       do p = 1, model%element%n_point
-        call material%update(committed%stress(:, p, e), &
-            committed%internal_variables(:material%n_internal, p, e), &
-                             work%strain(:, p), trial%stress(:, p, e), &
-                             trial%internal_variables(:material%n_internal, p, e), tangent(:, :, &
-                             p), &
-                             trial%plastic(p, e), verdict)
+        associate (n => material%n_internal)
+          call material%update(committed%stress(:, p, e), committed%internal_variables(:n, p, e), &
+              work%strain(:, p), trial%stress(:, p, e), trial%internal_variables(:n, p, e), &
+              tangent(:, :, p), trial%plastic(p, e), verdict)
+        end associate
         verdict%element = e
         verdict%point = p
         if (verdict%outcome /= verdict_converged) return
@@ -150,14 +149,14 @@ contains
 
     type(verdict_t) :: verdict
 
-    work%x_old(:, :) = committed%x(:, model%connectivity(:, e))
+    work%x_committed(:, :) = committed%x(:, model%connectivity(:, e))
     if (present(trial)) then
-      work%x_new(:, :) = trial%x(:, model%connectivity(:, e))
-      call element_kinematics(model%element, work%x_old, work%x_new, work, verdict)
+      work%x_trial(:, :) = trial%x(:, model%connectivity(:, e))
+      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
       call element_strain(model%element, committed%orientation(:, :, :, e), work)
       work%stress(:, :) = trial%stress(:, :, e)
     else
-      call element_gradients(model%element, work%x_old, work, verdict)
+      call element_gradients(model%element, work%x_committed, work, verdict)
       work%strain = 0.0_wp
       work%rotation(:, :, :) = committed%orientation(:, :, :, e)
       work%stress(:, :) = committed%stress(:, :, e)

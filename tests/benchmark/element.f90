@@ -5,10 +5,10 @@ program benchmark_element
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_increment, only : element_strain
+  use dd3_element_log_strain, only : element_strain
   use dd3_element_kinematics, only : element_gradients, element_kinematics
   use dd3_element_rate, only : element_rate
-  use dd3_element_registry, only : element_count, element_name, new_element
+  use dd3_element_registry, only : element_names, new_element
   use dd3_element_stiffness, only : element_stiffness
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t, new_element_work
@@ -16,10 +16,12 @@ program benchmark_element
 
   !> Best of so many rounds of so many calls.
   integer, parameter :: rounds = 5, calls = 20000
+  character(len=16), allocatable :: name(:)
   integer :: i
 
-  do i = 1, element_count
-    call measure(trim(element_name(i)))
+  name = element_names()
+  do i = 1, size(name)
+    call measure(trim(name(i)))
   end do
 
 contains

@@ -1,4 +1,4 @@
-!> Surfaces and random numbers for the tests of contact.
+!> Surfaces and random numbers for the contact tests.
 module contact_examples
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, new_patch, position_at
@@ -11,9 +11,8 @@ module contact_examples
   !> cos 45 degrees.
   real(wp), parameter :: c45 = sqrt(0.5_wp)
 
-  !> A small generator of random numbers that gives the same ones everywhere (Park and Miller 1988).
+  !> A portable generator of random numbers (Park and Miller 1988).
   type :: random_t
-    !> Its state.
     integer(kind=selected_int_kind(15)) :: state = 20250
   contains
     procedure :: next
@@ -22,22 +21,20 @@ module contact_examples
 
 contains
 
-  !> A random number between -1 and 1.
+  !> Return a random number between -1 and 1.
   real(wp) function next(self)
-    !> The generator.
     class(random_t), intent(inout) :: self
 
     self%state = mod(16807*self%state, int(2147483647, kind(self%state)))
     next = 2.0_wp*real(self%state, wp)/2147483647.0_wp - 1.0_wp
   end function next
 
-  !> A vector of random numbers between -1 and 1.
+  !> Return a vector of n random numbers between -1 and 1.
   function vector(self, n) result(v)
-    !> The generator.
     class(random_t), intent(inout) :: self
-    !> Number of components.
     integer, intent(in) :: n
     real(wp) :: v(n)
+
     integer :: i
 
     do i = 1, n
@@ -45,11 +42,12 @@ contains
     end do
   end function vector
 
-  !> A parallelogram.
+  !> Make a parallelogram.
   function plane_patch(origin, a, b) result(patch)
-    !> A corner and the two sides from it.
+    !> Corner and the two sides from it, mm.
     real(wp), intent(in) :: origin(3), a(3), b(3)
     type(patch_t) :: patch
+
     real(wp) :: p(3, 2, 2)
 
     p(:, 1, 1) = origin
@@ -59,11 +57,12 @@ contains
     call new_patch(patch, p)
   end function plane_patch
 
-  !> Exact quarter of a cylinder from `start` to `finish` round `corner`, drawn along b.
+  !> Make an exact quarter of a cylinder from `start` to `finish`, extruded by b.
   function arc_patch(start, corner, finish, b) result(patch)
-    !> First point, crossing of the tangents, last point, and the axis.
+    !> End points, intersection of their tangents, and extrusion, mm.
     real(wp), intent(in) :: start(3), corner(3), finish(3), b(3)
     type(patch_t) :: patch
+
     real(wp) :: p(3, 3, 2)
 
     p(:, :, 1) = reshape([start, corner, finish], [3, 3])
@@ -71,28 +70,30 @@ contains
     call new_patch(patch, p, reshape([1.0_wp, c45, 1.0_wp, 1.0_wp, c45, 1.0_wp], [3, 2]))
   end function arc_patch
 
-  !> Cubic quarter circle of a radius round the y axis, from +x to +z, its normal outwards.
+  !> Make a cubic quarter circle around the y axis, from +x to +z, normal outwards.
   function cubic_fillet(radius, width) result(patch)
-    !> Radius and width, mm.
+    !> mm.
     real(wp), intent(in) :: radius, width
     type(patch_t) :: patch
+
     real(wp), parameter :: k = 0.5522847498_wp
     real(wp) :: p(3, 4, 2)
 
     p(:, :, 1) = radius*reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, k, k, 0.0_wp, 1.0_wp, &
-                                 0.0_wp, 0.0_wp, 1.0_wp], [3, 4])
+        0.0_wp, 0.0_wp, 1.0_wp], [3, 4])
     p(:, :, 2) = p(:, :, 1)
     p(2, :, 1) = width
     call new_patch(patch, p)
   end function cubic_fillet
 
-  !> Exact eighth of a sphere round the origin: rational biquadratic, with a pole at v = 1.
+  !> Make an exact octant of a sphere around the origin: rational biquadratic, pole at v = 1.
   function octant(radius, quarter) result(patch)
-    !> Radius, mm.
+    !> mm.
     real(wp), intent(in) :: radius
-    !> Number of quarter turns round z.
+    !> Number of quarter turns around z.
     integer, intent(in) :: quarter
     type(patch_t) :: patch
+
     real(wp) :: p(3, 3, 3), w(3, 3), around(2, 3), up(2, 3), weight(3), turn(2, 2), xy(2)
     integer :: i, j
 
@@ -113,17 +114,17 @@ contains
     call new_patch(patch, p, w)
   end function octant
 
-  !> A patch over the unit square, bent at random.
+  !> Make a random patch over the unit square.
   function random_patch(random, m, n, height, rational) result(patch)
-    !> Source of random numbers.
     type(random_t), intent(inout) :: random
     !> Degrees.
     integer, intent(in) :: m, n
-    !> Size of the random part.
+    !> Amplitude of the random part, mm.
     real(wp), intent(in) :: height
-    !> Whether with random weights.
+    !> True for random weights.
     logical, intent(in) :: rational
     type(patch_t) :: patch
+
     real(wp) :: p(3, 0:m, 0:n), w(0:m, 0:n)
     integer :: i, j
 
@@ -140,9 +141,10 @@ contains
     end if
   end function random_patch
 
-  !> Two bicubic waves that share an edge, smooth across it; the second runs backwards.
+  !> Make two bicubic waves with a smooth common edge; the second runs backwards.
   function wave_surface() result(surface)
     type(surface_t) :: surface
+
     type(patch_t) :: patch(2)
     real(wp) :: p(3, 0:3, 0:3), q(3, 0:3, 0:3)
     integer :: i, j
@@ -160,40 +162,42 @@ contains
     call new_surface(surface, patch)
   end function wave_surface
 
-  !> A punch: flat, exact fillet of radius 5, wall; the normal down and outwards.
+  !> Make a punch: bottom, exact fillet of radius 5, wall; normals down and outwards.
   function strip_surface() result(surface)
     type(surface_t) :: surface
+
     type(patch_t) :: patch(3)
     real(wp), parameter :: b(3) = [0.0_wp, -20.0_wp, 0.0_wp]
 
     patch(1) = plane_patch([0.0_wp, 10.0_wp, 0.0_wp], [20.0_wp, 0.0_wp, 0.0_wp], b)
     patch(2) = arc_patch([20.0_wp, 10.0_wp, 0.0_wp], [25.0_wp, 10.0_wp, 0.0_wp], &
-                         [25.0_wp, 10.0_wp, 5.0_wp], b)
+        [25.0_wp, 10.0_wp, 5.0_wp], b)
     patch(3) = plane_patch([25.0_wp, 10.0_wp, 5.0_wp], [0.0_wp, 0.0_wp, 30.0_wp], b)
     call new_surface(surface, patch)
   end function strip_surface
 
-  !> Two planes that meet in a ridge along y at x = 0 (or a valley), 45 degrees steep, normals
-  !> upwards.
+  !> Make two planes, inclined by 45 degrees, that meet in a ridge (or valley) along y at x = 0;
+  !> normals upwards.
   function roof_surface(valley) result(surface)
-    !> Whether they meet in a valley.
     logical, intent(in) :: valley
     type(surface_t) :: surface
+
     type(patch_t) :: patch(2)
     real(wp) :: h
 
     h = merge(-4.0_wp, 4.0_wp, valley)
     patch(1) = plane_patch([-4.0_wp, -5.0_wp, -h], [4.0_wp, 0.0_wp, h], [0.0_wp, 10.0_wp, 0.0_wp])
-    patch(2) = plane_patch([0.0_wp, -5.0_wp, 0.0_wp], [4.0_wp, 0.0_wp, -h], [0.0_wp, 10.0_wp, &
-                           0.0_wp])
+    patch(2) = plane_patch([0.0_wp, -5.0_wp, 0.0_wp], [4.0_wp, 0.0_wp, -h], &
+        [0.0_wp, 10.0_wp, 0.0_wp])
     call new_surface(surface, patch)
   end function roof_surface
 
-  !> Half a sphere of four eighths, its pole on top.
+  !> Make a hemisphere of four octants, its pole on top.
   function dome_surface(radius) result(surface)
-    !> Radius, mm.
+    !> mm.
     real(wp), intent(in) :: radius
     type(surface_t) :: surface
+
     type(patch_t) :: patch(4)
     integer :: k
 
@@ -203,14 +207,13 @@ contains
     call new_surface(surface, patch)
   end function dome_surface
 
-  !> Distance of a point from a surface by trying many of its points, and finer ones near the best.
+  !> Return the distance of a point from a surface, by grids refined around the closest point.
   real(wp) function brute_distance(surface, x) result(best)
-    !> The surface.
     type(surface_t), intent(in) :: surface
-    !> The point.
     real(wp), intent(in) :: x(3)
+
     integer, parameter :: n = 40
-    real(wp) :: centre(2), width, at(2), here(2), distance, square
+    real(wp) :: centre(2), width, uv(2), closest(2), distance, square
     integer :: k, i, j, level
 
     best = huge(1.0_wp)
@@ -219,17 +222,17 @@ contains
       width = 0.5_wp
       distance = huge(1.0_wp)
       do level = 1, 8
-        here = centre
+        closest = centre
         do j = -n, n
           do i = -n, n
-            at = min(max(centre + width*real([i, j], wp)/n, 0.0_wp), 1.0_wp)
-            square = sum((position_at(surface%patch(k), at(1), at(2)) - x)**2)
+            uv = min(max(centre + width*real([i, j], wp)/n, 0.0_wp), 1.0_wp)
+            square = sum((position_at(surface%patch(k), uv(1), uv(2)) - x)**2)
             if (square >= distance) cycle
             distance = square
-            here = at
+            closest = uv
           end do
         end do
-        centre = here
+        centre = closest
         width = width*merge(0.05_wp, 0.1_wp, level == 1)
       end do
       best = min(best, sqrt(distance))

@@ -1,12 +1,12 @@
-!> What the element tests share: states, a made-up material, meshes, forces of a whole evaluation.
+!> Shared by the element tests: random numbers, a smooth material law, patch meshes, evaluation.
 module element_cases
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_increment, only : element_strain
+  use dd3_element_log_strain, only : element_strain
   use dd3_element_kinematics, only : element_kinematics
-  use dd3_element_registry, only : element_name, new_element
+  use dd3_element_registry, only : new_element
   use dd3_element_stiffness, only : element_stiffness
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t, new_element_work
@@ -15,40 +15,39 @@ module element_cases
   private
   public :: law_t, patch_t
   public :: seed, random_number_in, random_rotation, rotation_about, elasticity, bent_law
-  public :: identities, make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system, element_volume
+  public :: identities, make_element, distorted, evaluate, evaluate_law, patch_mesh, patch_system
+  public :: element_volume
 
   !> A smooth law: T = T0 + C e + kappa (a.e) B e, with an unsymmetric tangent; kappa = 0 is
   !> elastic, flow > 0 adds a radial return (Wilkins 1964).
   type :: law_t
     !> Elastic moduli, MPa.
     real(wp) :: c(6, 6) = 0.0_wp
-    !> Inner matrix.
+    !> Matrix B.
     real(wp) :: b(6, 6) = 0.0_wp
-    !> Inner vector.
+    !> Vector a.
     real(wp) :: a(6) = 0.0_wp
-    !> Strength of the nonlinear part.
+    !> Factor kappa, MPa.
     real(wp) :: kappa = 0.0_wp
-    !> Mises-like: modulus, flow stress; used where `flow > 0`.
-    real(wp) :: shear = 0.0_wp, bulk = 0.0_wp, flow = 0.0_wp, slope = 0.0_wp
+    !> Radial return, used if `flow > 0`: shear modulus, radius, its slope, MPa.
+    real(wp) :: shear = 0.0_wp, flow = 0.0_wp, slope = 0.0_wp
   end type law_t
 
-  !> A small mesh.
+  !> A small mesh of the unit cube.
   type :: patch_t
-    !> Sizes.
     integer :: n_node = 0, n_element = 0
     !> Positions, mm: `x(3,n_node)`.
     real(wp), allocatable :: x(:, :)
     !> Nodes of the elements: `node(n_element_node,n_element)`.
     integer, allocatable :: node(:, :)
-    !> Whether a node is on the surface of the cube: `held(n_node)`.
+    !> True for nodes on the surface of the cube: `held(n_node)`.
     logical, allocatable :: held(:)
   end type patch_t
 
 contains
 
-  !> Makes the random numbers repeatable.
+  !> Seed the random numbers.
   subroutine seed(number)
-    !> Any number.
     integer, intent(in) :: number
 
     integer, allocatable :: values(:)
@@ -59,20 +58,19 @@ contains
     call random_seed(put=values)
   end subroutine seed
 
-  !> A random number between two bounds.
+  !> Return a random number between two bounds.
   real(wp) function random_number_in(lower, upper) result(r)
-    !> The bounds.
     real(wp), intent(in) :: lower, upper
 
     call random_number(r)
     r = lower + (upper - lower)*r
   end function random_number_in
 
-  !> Rotation by an angle about an axis (Rodrigues).
+  !> Return the rotation about an axis (Rodrigues).
   pure function rotation_about(axis, angle) result(q)
-    !> The axis, any length.
+    !> Axis, of any length.
     real(wp), intent(in) :: axis(3)
-    !> The angle, rad.
+    !> Angle, rad.
     real(wp), intent(in) :: angle
     real(wp) :: q(3, 3)
 
@@ -87,7 +85,7 @@ contains
     end do
   end function rotation_about
 
-  !> A random rotation.
+  !> Return a random rotation.
   function random_rotation() result(q)
     real(wp) :: q(3, 3)
 
@@ -100,9 +98,8 @@ contains
     q = rotation_about(axis, random_number_in(-3.0_wp, 3.0_wp))
   end function random_rotation
 
-  !> Identity at every point.
+  !> Return n identity matrices.
   pure function identities(n) result(q)
-    !> Number of points.
     integer, intent(in) :: n
     real(wp) :: q(3, 3, n)
 
@@ -114,7 +111,7 @@ contains
     end do
   end function identities
 
-  !> Isotropic elasticity.
+  !> Return isotropic elastic moduli, Kelvin.
   pure function elasticity(young, poisson) result(c)
     !> Young's modulus, MPa, and Poisson's ratio.
     real(wp), intent(in) :: young, poisson
@@ -131,7 +128,7 @@ contains
     end do
   end function elasticity
 
-  !> A law with an unsymmetric tangent that depends on the strain.
+  !> Return a law with an unsymmetric tangent that depends on the strain.
   function bent_law() result(law)
     type(law_t) :: law
 
@@ -147,11 +144,10 @@ contains
     end do
   end function bent_law
 
-  !> Stress and tangent of a law.
+  !> Evaluate the stress and tangent of a law.
   pure subroutine evaluate_law(law, start, strain, stress, tangent)
-    !> The law.
     type(law_t), intent(in) :: law
-    !> Stress at the start, MPa, and strain increment, Kelvin.
+    !> Committed stress, MPa, and strain increment, Kelvin.
     real(wp), intent(in) :: start(6), strain(6)
     !> Stress, MPa, Kelvin.
     real(wp), intent(out) :: stress(6)
@@ -171,38 +167,34 @@ contains
     s = kelvin_deviator(stress)
     size = norm2(s)
     if (size <= law%flow) return
-    ! Radial return with linear hardening of the radius: what plastic flow does to a tangent.
+    ! Radial return with linear hardening of the radius.
     n = s/size
     ratio = (size - law%flow)/(2.0_wp*law%shear + law%slope)
     stress = stress - 2.0_wp*law%shear*ratio*n
     do j = 1, 6
       tangent(:, j) = tangent(:, j) - (2.0_wp*law%shear)**2*n*n(j) &
-                      *(1.0_wp/(2.0_wp*law%shear + law%slope) - ratio/size)
+          *(1.0_wp/(2.0_wp*law%shear + law%slope) - ratio/size)
       tangent(j, j) = tangent(j, j) - (2.0_wp*law%shear)**2*ratio/size
       if (j <= 3) tangent(1:3, j) = tangent(1:3, j) + (2.0_wp*law%shear)**2*ratio/size/3.0_wp
     end do
   end subroutine evaluate_law
 
-  !> The i-th element of the registry.
-  subroutine make_element(i, element, work)
-    !> Its number.
-    integer, intent(in) :: i
-    !> Its table.
+  !> Make an element of the registry and its workspace.
+  subroutine make_element(name, element, work)
+    character(len=*), intent(in) :: name
     type(element_t), intent(out) :: element
-    !> A workspace for it.
     type(element_work_t), intent(out) :: work
 
     type(error_t), allocatable :: error
 
-    call new_element(element, trim(element_name(i)), error)
+    call new_element(element, trim(name), error)
     call new_element_work(work, element)
   end subroutine make_element
 
-  !> Nodes of a single element, moved at random.
+  !> Return the nodes of an element, moved at random.
   function distorted(element, amount) result(x)
-    !> The element.
     type(element_t), intent(in) :: element
-    !> How far nodes are moved, mm; the element is 2 mm wide.
+    !> Largest displacement in each direction, mm; the element is 2 mm wide.
     real(wp), intent(in) :: amount
     real(wp) :: x(3, element%n_node)
 
@@ -216,65 +208,60 @@ contains
     end do
   end function distorted
 
-  !> Kinematics, law at every point, stiffness: everything of one evaluation.
-  subroutine evaluate(element, law, x_old, x_new, rotation_old, start, work, ok)
-    !> The element.
+  !> Evaluate kinematics, the law at every point, forces and stiffness.
+  subroutine evaluate(element, law, x_committed, x_trial, rotation_committed, start, work, ok)
     type(element_t), intent(in) :: element
-    !> The law.
     type(law_t), intent(in) :: law
-    !> Positions, mm.
-    real(wp), intent(in) :: x_old(:, :), x_new(:, :)
-    !> Material axes at the start.
-    real(wp), intent(in) :: rotation_old(:, :, :)
-    !> Stresses at the start, MPa, Kelvin, material frame.
+    !> Committed and trial positions, mm.
+    real(wp), intent(in) :: x_committed(:, :), x_trial(:, :)
+    !> Committed material axes.
+    real(wp), intent(in) :: rotation_committed(:, :, :)
+    !> Committed stresses, MPa, Kelvin, material frame.
     real(wp), intent(in) :: start(:, :)
-    !> All results.
     type(element_work_t), intent(inout) :: work
-    !> Whether it converged.
+    !> False if a Jacobian determinant is not positive.
     logical, intent(out) :: ok
 
     type(verdict_t) :: verdict
     integer :: p
 
-    call element_kinematics(element, x_old, x_new, work, verdict)
+    call element_kinematics(element, x_committed, x_trial, work, verdict)
     ok = verdict%outcome == verdict_converged
     if (.not. ok) return
-    call element_strain(element, rotation_old, work)
+    call element_strain(element, rotation_committed, work)
     do p = 1, element%n_point
       call evaluate_law(law, start(:, p), work%strain(:, p), work%stress(:, p), &
-                        work%tangent(:, :, p))
+          work%tangent(:, :, p))
     end do
     call element_cauchy(element, work)
     call element_force(element, work)
     call element_stiffness(element, work)
   end subroutine evaluate
 
-  !> The unit cube as seven distorted elements (MacNeal & Harder 1985).
+  !> Make the unit cube of seven distorted elements (MacNeal & Harder 1985).
   subroutine patch_mesh(element, patch)
-    !> The element.
     type(element_t), intent(in) :: element
-    !> The mesh.
     type(patch_t), intent(out) :: patch
 
     integer, parameter :: corners(8, 7) = reshape([ &
-      9, 10, 11, 12, 13, 14, 15, 16, 9, 12, 11, 10, 1, 4, 3, 2, &
-      13, 14, 15, 16, 5, 6, 7, 8, 9, 10, 14, 13, 1, 2, 6, 5, &
-      10, 11, 15, 14, 2, 3, 7, 6, 11, 12, 16, 15, 3, 4, 8, 7, &
-      12, 9, 13, 16, 4, 1, 5, 8], [8, 7])
-    real(wp) :: place(3, 16), x(3)
+        9, 10, 11, 12, 13, 14, 15, 16, 9, 12, 11, 10, 1, 4, 3, 2, &
+        13, 14, 15, 16, 5, 6, 7, 8, 9, 10, 14, 13, 1, 2, 6, 5, &
+        10, 11, 15, 14, 2, 3, 7, 6, 11, 12, 16, 15, 3, 4, 8, 7, &
+        12, 9, 13, 16, 4, 1, 5, 8], [8, 7])
+    real(wp) :: vertex(3, 16), x(3)
     integer :: a, b, e
 
-    place(:, 1:8) = reshape([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, &
-                             0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8])
-    place(:, 9:16) = reshape([0.249_wp, 0.342_wp, 0.192_wp, 0.826_wp, 0.288_wp, 0.288_wp, &
-                              0.850_wp, 0.649_wp, 0.263_wp, 0.273_wp, 0.750_wp, 0.230_wp, &
-                              0.320_wp, 0.186_wp, 0.643_wp, 0.677_wp, 0.305_wp, 0.683_wp, &
-                              0.788_wp, 0.693_wp, 0.644_wp, 0.165_wp, 0.745_wp, 0.702_wp], [3, 8])
+    vertex(:, 1:8) = reshape([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, &
+        0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8])
+    vertex(:, 9:16) = reshape([0.249_wp, 0.342_wp, 0.192_wp, 0.826_wp, 0.288_wp, 0.288_wp, &
+        0.850_wp, 0.649_wp, 0.263_wp, 0.273_wp, 0.750_wp, 0.230_wp, &
+        0.320_wp, 0.186_wp, 0.643_wp, 0.677_wp, 0.305_wp, 0.683_wp, &
+        0.788_wp, 0.693_wp, 0.644_wp, 0.165_wp, 0.745_wp, 0.702_wp], [3, 8])
     patch%n_element = 7
     allocate (patch%x(3, 7*element%n_node), patch%node(element%n_node, 7))
     do e = 1, 7
       do a = 1, element%n_node
-        x = trilinear(element%node(:, a), place(:, corners(:, e)))
+        x = trilinear(element%node(:, a), vertex(:, corners(:, e)))
         do b = 1, patch%n_node
           if (norm2(x - patch%x(:, b)) < 1.0e-9_wp) exit
         end do
@@ -287,16 +274,14 @@ contains
     patch%held = any(patch%x < 1.0e-9_wp .or. patch%x > 1.0_wp - 1.0e-9_wp, dim=1)
   end subroutine patch_mesh
 
-  !> Place in a hexahedron with straight edges.
+  !> Return the position of a point in a hexahedron with straight edges.
   pure function trilinear(natural, corner) result(x)
-    !> Natural coordinates.
-    real(wp), intent(in) :: natural(3)
-    !> Its corners.
-    real(wp), intent(in) :: corner(3, 8)
+    real(wp), intent(in) :: natural(3), corner(3, 8)
     real(wp) :: x(3)
 
-    real(wp), parameter :: side(3, 8) = real(reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
-                                             -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], [3, 8]), wp)
+    real(wp), parameter :: side(3, 8) = real(reshape([ &
+        -1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
+        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], [3, 8]), wp)
     integer :: a
 
     x = 0.0_wp
@@ -305,18 +290,16 @@ contains
     end do
   end function trilinear
 
-  !> Forces and dense stiffness of a mesh, axes of the material along the global ones.
+  !> Evaluate the forces and the dense stiffness of a mesh; material and global axes agree.
   subroutine patch_system(element, work, law, patch, x, start, force, stiffness, stress)
-    !> The element and its workspace.
     type(element_t), intent(in) :: element
     type(element_work_t), intent(inout) :: work
-    !> The law.
     type(law_t), intent(in) :: law
-    !> The mesh, with the positions at the start.
+    !> Mesh with the committed positions.
     type(patch_t), intent(in) :: patch
-    !> Positions now, mm.
+    !> Trial positions, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Stress at the start, the same everywhere, MPa, Kelvin.
+    !> Committed stress, uniform, MPa, Kelvin.
     real(wp), intent(in) :: start(6)
     !> Forces, N.
     real(wp), intent(out) :: force(:, :)
@@ -333,7 +316,7 @@ contains
     do e = 1, patch%n_element
       associate (node => patch%node(:, e))
         call evaluate(element, law, patch%x(:, node), x(:, node), identities(element%n_point), &
-                      spread(start, 2, element%n_point), work, ok)
+            spread(start, 2, element%n_point), work, ok)
         stress(:, :, e) = work%stress
         do a = 1, element%n_node
           i = 3*node(a)
@@ -347,9 +330,8 @@ contains
     end do
   end subroutine patch_system
 
-  !> Volume, mm3.
+  !> Return the volume, mm3.
   pure real(wp) function element_volume(element, x) result(volume)
-    !> The element's table.
     type(element_t), intent(in) :: element
     !> Positions, mm: `x(3,n_node)`.
     real(wp), intent(in) :: x(3, element%n_node)
@@ -361,9 +343,9 @@ contains
     do p = 1, element%n_point
       j = matmul(x, transpose(element%dshape(:, :, p)))
       volume = volume + element%weight(p)*( &
-               j(1, 1)*(j(2, 2)*j(3, 3) - j(2, 3)*j(3, 2)) &
-               + j(1, 2)*(j(2, 3)*j(3, 1) - j(2, 1)*j(3, 3)) &
-               + j(1, 3)*(j(2, 1)*j(3, 2) - j(2, 2)*j(3, 1)))
+          j(1, 1)*(j(2, 2)*j(3, 3) - j(2, 3)*j(3, 2)) &
+          + j(1, 2)*(j(2, 3)*j(3, 1) - j(2, 1)*j(3, 3)) &
+          + j(1, 3)*(j(2, 1)*j(3, 2) - j(2, 2)*j(3, 1)))
     end do
   end function element_volume
 

@@ -1,13 +1,12 @@
-!> Incremental kinematics of the points: right polar decomposition F = R U and logarithmic strain
-!> E = ln U, in the material frame, with the volume change replaced by the mean one. The material
-!> axes turn with R, so that nothing stored in them has to be rotated (Hughes 1984; Weber & Anand
-!> 1990).
+!> Logarithmic strain increment E = ln U at the points, from the polar decomposition F = R U, in the
+!> material frame, with the volume change replaced by the mean one. The material axes rotate with R,
+!> so tensors stored in them need no rotation (Hughes 1984; Weber & Anand 1990).
 !>
-!> For small stretches, which is what increments are, E and R come from series in X = e (I+e)^-1,
-!> e = (C-I)/2, that is X = tanh E: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both with powers of
-!> X^2 up to X^8. Below the limit on |e| the remainder is under 2e-16, and equal stretches need no
-!> special case. Larger ones take the eigenvalues of C.
-module dd3_element_increment
+!> For small stretches, the usual case, E and R come from series in X = e (I+e)^-1 = tanh E,
+!> e = (C-I)/2: E = artanh X and U^-1 = sqrt((I-X)/(I+X)), both with powers of X^2 up to X^8. Below
+!> the limit on |e| the remainder is under 2e-16, and equal stretches need no special case. Larger
+!> stretches use the eigenvalues of C.
+module dd3_element_log_strain
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
@@ -16,41 +15,39 @@ module dd3_element_increment
   private
   public :: element_strain, polar_increment
 
-  !> Largest Frobenius norm of e for which the series are used.
+  !> Largest Frobenius norm of e for the series.
   real(wp), parameter :: series_limit = 0.03_wp
-  !> Factor between shears of tensors and of Kelvin vectors.
+  !> Factor from a tensor's shear component to the Kelvin vector's.
   real(wp), parameter :: root2 = sqrt(2.0_wp)
 
 contains
 
-  !> Strain increments and new material axes of all points, after `element_kinematics`.
-  subroutine element_strain(element, rotation_old, work)
-    !> The element's table.
+  !> Evaluate strain increments and trial material axes; call `element_kinematics` first.
+  subroutine element_strain(element, rotation_committed, work)
     type(element_t), intent(in) :: element
-    !> Material axes at the start of the increment, as columns: `rotation_old(3,3,n_point)`.
-    real(wp), intent(in) :: rotation_old(3, 3, element%n_point)
-    !> `strain` and `rotation` are set.
+    !> Committed material axes, as columns.
+    real(wp), intent(in) :: rotation_committed(3, 3, element%n_point)
+    !> Sets `strain` and `rotation`.
     type(element_work_t), intent(inout) :: work
 
-    real(wp) :: stretch(6), turn(3, 3), excess
+    real(wp) :: strain(6), r(3, 3), excess
     integer :: p
 
     do p = 1, element%n_point
-      call polar_increment(work%deformation(:, :, p), stretch, turn)
-      excess = (log(work%dilatation(p)) - stretch(1) - stretch(2) - stretch(3))/3.0_wp
-      stretch(1:3) = stretch(1:3) + excess
-      call to_material(rotation_old(:, :, p), stretch, work%strain(:, p))
-      call turn_axes(turn, rotation_old(:, :, p), work%rotation(:, :, p))
+      call polar_increment(work%deformation(:, :, p), strain, r)
+      excess = (log(work%dilatation(p)) - strain(1) - strain(2) - strain(3))/3.0_wp
+      strain(1:3) = strain(1:3) + excess
+      call to_material(rotation_committed(:, :, p), strain, work%strain(:, p))
+      call rotate_axes(r, rotation_committed(:, :, p), work%rotation(:, :, p))
     end do
   end subroutine element_strain
 
-  !> E = ln U and R of F = R U; F has a positive determinant.
+  !> Return E = ln U and R of F = R U, det F > 0.
   pure subroutine polar_increment(f, strain, rotation)
     !> Deformation gradient.
     real(wp), intent(in) :: f(3, 3)
-    !> Logarithmic strain: plain components 11 22 33 23 31 12.
+    !> Logarithmic strain, plain components 11 22 33 23 31 12.
     real(wp), intent(out) :: strain(6)
-    !> Rotation.
     real(wp), intent(out) :: rotation(3, 3)
 
     real(wp) :: green(6), h(3, 3), inverse_stretch(6)
@@ -75,13 +72,13 @@ contains
     call multiply(f, inverse_stretch, rotation)
   end subroutine polar_increment
 
-  !> Series in X = tanh E.
+  !> Evaluate ln U and U^-1 by series in X = tanh E.
   pure subroutine small_stretch(green, strain, inverse_stretch)
-    !> Green strain e = (C-I)/2: plain components.
+    !> Green strain e = (C-I)/2, plain components.
     real(wp), intent(in) :: green(6)
-    !> Logarithmic strain: plain components.
+    !> Logarithmic strain, plain components.
     real(wp), intent(out) :: strain(6)
-    !> U^-1: plain components.
+    !> U^-1, plain components.
     real(wp), intent(out) :: inverse_stretch(6)
 
     real(wp) :: s(6), x(6), y(6), yy(6), inner(6), det
@@ -89,7 +86,7 @@ contains
     s = green
     s(1:3) = s(1:3) + 1.0_wp
     inner = [s(2)*s(3) - s(4)*s(4), s(3)*s(1) - s(5)*s(5), s(1)*s(2) - s(6)*s(6), &
-             s(5)*s(6) - s(1)*s(4), s(6)*s(4) - s(2)*s(5), s(4)*s(5) - s(3)*s(6)]
+        s(5)*s(6) - s(1)*s(4), s(6)*s(4) - s(2)*s(5), s(4)*s(5) - s(3)*s(6)]
     det = s(1)*inner(1) + s(6)*inner(6) + s(5)*inner(5)
     inner = inner/det
     call product_of(green, inner, x)
@@ -110,13 +107,13 @@ contains
     inverse_stretch = s - inner
   end subroutine small_stretch
 
-  !> Eigenvalues of C = F^T F.
+  !> Evaluate ln U and U^-1 from the eigenvalues of C = F^T F.
   pure subroutine large_stretch(f, strain, inverse_stretch)
     !> Deformation gradient.
     real(wp), intent(in) :: f(3, 3)
-    !> Logarithmic strain: plain components.
+    !> Logarithmic strain, plain components.
     real(wp), intent(out) :: strain(6)
-    !> U^-1: plain components.
+    !> U^-1, plain components.
     real(wp), intent(out) :: inverse_stretch(6)
 
     real(wp) :: values(3), vectors(3, 3), dyad(6)
@@ -133,11 +130,10 @@ contains
     end do
   end subroutine large_stretch
 
-  !> Product of two symmetric matrices that commute, so that it is symmetric too.
+  !> Multiply two symmetric matrices that commute; the product is symmetric.
   pure subroutine product_of(a, b, c)
-    !> Factors: plain components 11 22 33 23 31 12.
+    !> Plain components 11 22 33 23 31 12.
     real(wp), intent(in) :: a(6), b(6)
-    !> Product.
     real(wp), intent(out) :: c(6)
 
     c(1) = a(1)*b(1) + a(6)*b(6) + a(5)*b(5)
@@ -148,13 +144,11 @@ contains
     c(6) = a(1)*b(6) + a(6)*b(2) + a(5)*b(4)
   end subroutine product_of
 
-  !> A matrix times a symmetric one.
+  !> Multiply a matrix by a symmetric one.
   pure subroutine multiply(f, s, r)
-    !> The matrix.
     real(wp), intent(in) :: f(3, 3)
-    !> The symmetric one: plain components.
+    !> Symmetric factor, plain components.
     real(wp), intent(in) :: s(6)
-    !> The product.
     real(wp), intent(out) :: r(3, 3)
 
     r(:, 1) = f(:, 1)*s(1) + f(:, 2)*s(6) + f(:, 3)*s(5)
@@ -162,13 +156,13 @@ contains
     r(:, 3) = f(:, 1)*s(5) + f(:, 2)*s(4) + f(:, 3)*s(3)
   end subroutine multiply
 
-  !> Q^T E Q as a Kelvin vector.
+  !> Return Q^T E Q as a Kelvin vector.
   pure subroutine to_material(q, plain, kelvin)
     !> Material axes as columns.
     real(wp), intent(in) :: q(3, 3)
-    !> Tensor in the global frame: plain components.
+    !> Tensor in the global frame, plain components.
     real(wp), intent(in) :: plain(6)
-    !> The same in the material frame, Kelvin.
+    !> Tensor in the material frame, Kelvin.
     real(wp), intent(out) :: kelvin(6)
 
     real(wp) :: eq(3, 3)
@@ -184,20 +178,21 @@ contains
     kelvin(6) = root2*(q(1, 1)*eq(1, 2) + q(2, 1)*eq(2, 2) + q(3, 1)*eq(3, 2))
   end subroutine to_material
 
-  !> R Q, brought back to a rotation: one step of Q (3 I - Q^T Q)/2 keeps round-off from piling up.
-  pure subroutine turn_axes(turn, old, new)
+  !> Return R Q, orthonormalised by one step of Q (3 I - Q^T Q)/2 so that round-off does not
+  !> accumulate.
+  pure subroutine rotate_axes(r, committed, trial)
     !> Rotation of the increment.
-    real(wp), intent(in) :: turn(3, 3)
-    !> Axes before.
-    real(wp), intent(in) :: old(3, 3)
-    !> Axes after.
-    real(wp), intent(out) :: new(3, 3)
+    real(wp), intent(in) :: r(3, 3)
+    !> Material axes Q, as columns.
+    real(wp), intent(in) :: committed(3, 3)
+    !> Material axes R Q.
+    real(wp), intent(out) :: trial(3, 3)
 
     real(wp) :: raw(3, 3), s(6)
     integer :: j
 
     do j = 1, 3
-      raw(:, j) = turn(:, 1)*old(1, j) + turn(:, 2)*old(2, j) + turn(:, 3)*old(3, j)
+      raw(:, j) = r(:, 1)*committed(1, j) + r(:, 2)*committed(2, j) + r(:, 3)*committed(3, j)
     end do
     s(1) = raw(1, 1)**2 + raw(2, 1)**2 + raw(3, 1)**2
     s(2) = raw(1, 2)**2 + raw(2, 2)**2 + raw(3, 2)**2
@@ -207,7 +202,7 @@ contains
     s(6) = raw(1, 1)*raw(1, 2) + raw(2, 1)*raw(2, 2) + raw(3, 1)*raw(3, 2)
     s = -0.5_wp*s
     s(1:3) = s(1:3) + 1.5_wp
-    call multiply(raw, s, new)
-  end subroutine turn_axes
+    call multiply(raw, s, trial)
+  end subroutine rotate_axes
 
-end module dd3_element_increment
+end module dd3_element_log_strain
