@@ -1,6 +1,6 @@
 !> The power law of P. Ludwik (1909): Y = Y0 + K p^n. Its slope is unbounded at p = 0, so up to a
 !> plastic strain that no one can see the curve is replaced by its chord.
-module dd3_material_hardening_ludwick
+module dd3_material_hardening_ludwik
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
@@ -8,13 +8,13 @@ module dd3_material_hardening_ludwick
   use dd3_material_hardening_law, only : hardening_t
   implicit none
   private
-  public :: ludwick_t
+  public :: ludwik_t
 
   !> Plastic strain below which the chord holds.
   real(wp), parameter :: shortest = 1.0e-8_wp
 
   !> The law.
-  type, extends(hardening_t) :: ludwick_t
+  type, extends(hardening_t) :: ludwik_t
     private
     !> Initial flow stress and factor, MPa.
     real(wp) :: y0 = 0.0_wp, k = 0.0_wp
@@ -24,7 +24,7 @@ module dd3_material_hardening_ludwick
     procedure, nopass :: describe
     procedure :: set
     procedure :: flow_stress
-  end type ludwick_t
+  end type ludwik_t
 
 contains
 
@@ -33,7 +33,7 @@ contains
     !> What the law says of itself.
     type(description_t), intent(out) :: description
 
-    description%name = "ludwick"
+    description%name = "ludwik"
     description%title = "Y = Y0 + K p^n"
     description%source = "P. Ludwik, Elemente der technologischen Mechanik, Springer (1909)"
     allocate (description%rows, source=[ &
@@ -47,7 +47,7 @@ contains
   !> Takes its parameters.
   subroutine set(self, values)
     !> The law.
-    class(ludwick_t), intent(inout) :: self
+    class(ludwik_t), intent(inout) :: self
     !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
@@ -59,7 +59,7 @@ contains
   !> The flow stress after a plastic increment.
   pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
     !> The law.
-    class(ludwick_t), intent(in) :: self
+    class(ludwik_t), intent(in) :: self
     !> Equivalent plastic strain at the start.
     real(wp), intent(in) :: plastic
     !> No other internal variables.
@@ -85,4 +85,4 @@ contains
     flow%gradient = 0.0_wp
   end subroutine flow_stress
 
-end module dd3_material_hardening_ludwick
+end module dd3_material_hardening_ludwik
