@@ -11,8 +11,8 @@ module dd3_process_points
   use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
       kelvin_from_tensor, symmetric_eigen
   use dd3_material_material, only : material_t
-  use dd3_material_point, only : point_state_t, global_stress, lead_point, new_point_state, &
-      strain_point
+  use dd3_material_point, only : material_point_t, apply_strain, drive_to_target, global_stress, &
+      new_material_point
   use dd3_model_model, only : model_t
   use dd3_model_point, only : point_t, point_stage_t
   use dd3_output_interrupt, only : interrupted
@@ -27,7 +27,7 @@ module dd3_process_points
   !> A point under way.
   type :: traveller_t
     !> Its state.
-    type(point_state_t) :: state
+    type(material_point_t) :: state
     !> Deformation gradient, where it is led by one.
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps taken.
@@ -88,7 +88,7 @@ contains
 
     strain = 0.0_wp
     associate (material => model%material(point%material))
-      call new_point_state(traveller%state, material, point%axes)
+      call new_material_point(traveller%state, material, point%axes)
       traveller%gradient = identity
       call write_row(traveller, material, point, record, error)
       do i = 1, size(point%stage)
@@ -136,8 +136,8 @@ contains
         call follow_gradient(traveller, material, gradient + part*(stage%gradient - gradient), &
                              verdict)
       else
-        call lead_point(traveller%state, material, point%by_stress, &
-                        start + part*(stage%goal - start), verdict)
+        call drive_to_target(traveller%state, material, point%by_stress, &
+            start + part*(stage%goal - start), verdict)
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//point%name//", step "// &
@@ -175,7 +175,7 @@ contains
     if (.not. regular) verdict%reason = "det F is not positive"
     if (.not. regular) return
     call polar_increment(matmul(gradient, back), strain, rotation)
-    call strain_point(traveller%state, material, kelvin_factor*strain, rotation, verdict)
+    call apply_strain(traveller%state, material, kelvin_factor*strain, rotation, verdict)
     if (verdict%outcome /= verdict_converged) return
     traveller%gradient = gradient
     traveller%state%strain = left_strain(gradient)
@@ -216,8 +216,8 @@ contains
     row%point = point%name
     row%strain = traveller%state%strain
     row%stress = global_stress(traveller%state)
-    row%plastic = traveller%state%internal(1)
-    row%flow_stress = material%flow_stress(traveller%state%internal)
+    row%plastic = traveller%state%internal_variables(1)
+    row%flow_stress = material%flow_stress(traveller%state%internal_variables)
     call record%write(row, error)
     traveller%waiting = .false.
   end subroutine write_row

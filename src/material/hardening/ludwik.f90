@@ -1,36 +1,26 @@
-!> The power law of P. Ludwik (1909): Y = Y0 + K p^n. Its slope is unbounded at p = 0, so up to a
-!> plastic strain that no one can see the curve is replaced by its chord.
+!> The power law of P. Ludwik (1909): Y = Y0 + K p^n, near p = 0 by its chord.
 module dd3_material_hardening_ludwik
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_flow, only : flow_direction_t, flow_response_t
-  use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_hardening_isotropic, only : isotropic_hardening_t, chord_strain
   implicit none
   private
   public :: ludwik_t
 
-  !> Plastic strain below which the chord holds.
-  real(wp), parameter :: shortest = 1.0e-8_wp
-
-  !> The law.
-  type, extends(hardening_t) :: ludwik_t
+  type, extends(isotropic_hardening_t) :: ludwik_t
     private
-    !> Initial flow stress and factor, MPa.
-    real(wp) :: y0 = 0.0_wp, k = 0.0_wp
-    !> Exponent.
-    real(wp) :: n = 0.0_wp
+    !> Initial flow stress and factor (MPa), exponent.
+    real(wp) :: y0 = 0.0_wp, k = 0.0_wp, n = 0.0_wp
   contains
     procedure, nopass :: describe
     procedure :: set
-    procedure :: flow_stress
+    procedure :: hardening_curve
   end type ludwik_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "ludwik"
@@ -44,11 +34,8 @@ contains
       law_value_t("Y0", 150.0_wp), law_value_t("K", 450.0_wp), law_value_t("n", 0.5_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(ludwik_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%y0 = value_of(values, "Y0")
@@ -56,33 +43,22 @@ contains
     self%n = value_of(values, "n")
   end subroutine set
 
-  !> The flow stress after a plastic increment.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
-    !> The law.
+  !> Evaluate the hardening curve.
+  pure subroutine hardening_curve(self, strain, stress, slope)
     class(ludwik_t), intent(in) :: self
-    !> Equivalent plastic strain at the start.
-    real(wp), intent(in) :: plastic
-    !> No other internal variables.
-    real(wp), intent(in) :: old(self%n_internal)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
-    type(flow_direction_t), intent(in) :: direction
-    !> Flow stress and its derivatives.
-    type(flow_response_t), intent(out) :: flow
-    real(wp) :: strain, power
+    real(wp), intent(in) :: strain
+    real(wp), intent(out) :: stress, slope
 
-    associate (unused => old, no_direction => direction)
-    end associate
-    strain = max(plastic + increment, shortest)
-    power = self%k*strain**self%n
-    flow%slope = self%n*power/strain
-    if (plastic + increment < shortest) then
-      flow%slope = power/shortest
-      power = flow%slope*(plastic + increment)
+    real(wp) :: x, power
+
+    x = max(strain, chord_strain)
+    power = self%k*x**self%n
+    slope = self%n*power/x
+    if (strain < chord_strain) then
+      slope = power/chord_strain
+      power = slope*strain
     end if
-    flow%value = self%y0 + power
-    flow%gradient = 0.0_wp
-  end subroutine flow_stress
+    stress = self%y0 + power
+  end subroutine hardening_curve
 
 end module dd3_material_hardening_ludwik
