@@ -67,7 +67,7 @@ CRITERIA = {
     "cpb06": ({"C12": (0, -3, 3), "C13": (0, -3, 3), "C22": (1, -4, 4), "C23": (0, -3, 3), "C33": (1, -4, 4),
                "C66": (1, 0.05, 5), "k": (0, -0.99, 0.99)}, {"C11": 1, "m": 2}, 3),
 }
-LAWS = ("linear", "swift", "voce", "swift_voce", "ludwick", "hockett_sherby", "table")
+LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table")
 BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
 
 
@@ -344,7 +344,7 @@ def law_start(name, plastic, stress):
     swift = {"K": last / (0.01 + end) ** 0.2, "e0": 0.01, "n": 0.2}
     voce = {"Y0": first, "Rsat": rise, "CR": 2 / end}
     return {"linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
-            "ludwick": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
+            "ludwik": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
             "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
             "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress)}[name]
 

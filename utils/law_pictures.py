@@ -203,7 +203,7 @@ PICTURES = {
     "yld91": (orthotropic, {"measured": STEEL}), "karafillis_boyce": (orthotropic, {}),
     "drucker": (orthotropic, {"measured": STEEL}), "cazacu_barlat2001": (orthotropic, {"measured": STEEL}),
     "yld2004": (orthotropic, {"measured": ALLOY}), "cpb06": (orthotropic, {"compression": True}),
-    **{law: (tension, {}) for law in ("perfect", "linear", "swift", "voce", "swift_voce", "ludwick",
+    **{law: (tension, {}) for law in ("perfect", "linear", "swift", "voce", "swift_voce", "ludwik",
                                       "hockett_sherby")},
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}), "prager": (prager, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),

@@ -1,5 +1,5 @@
-!> The three registries behind one door: which laws there are, what they say of themselves, what is
-!> wrong with the values given to one.
+!> Common access to the three registries: the descriptions of the laws and the check of the values
+!> given to one.
 module dd3_material_check
   use dd3_base_parameter, only : parameter_t, law_value_t
   use dd3_material_backstress_law, only : backstress_slot_t
@@ -20,11 +20,10 @@ module dd3_material_check
 
 contains
 
-  !> What each law of a kind says of itself.
+  !> Describe the laws of a kind, in the order of the registry.
   subroutine describe_laws(kind, descriptions)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
-    !> The descriptions, in the order of the registry.
     type(description_t), allocatable, intent(out) :: descriptions(:)
 
     select case (kind)
@@ -37,12 +36,12 @@ contains
     end select
   end subroutine describe_laws
 
-  !> Names of the laws of a kind.
+  !> List the names of the laws of a kind, in the order of the registry.
   subroutine known_laws(kind, names)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
-    !> The names, in the order of the registry.
     character(len=24), allocatable, intent(out) :: names(:)
+
     type(description_t), allocatable :: descriptions(:)
     integer :: i
 
@@ -53,14 +52,13 @@ contains
     end do
   end subroutine known_laws
 
-  !> The parameters of a law; none where the name is unknown.
+  !> List the parameters of a law; none if the name is unknown.
   subroutine law_rows(kind, name, rows)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
-    !> Name of the law.
     character(len=*), intent(in) :: name
-    !> Its parameters.
     type(parameter_t), allocatable, intent(out) :: rows(:)
+
     type(description_t), allocatable :: descriptions(:)
     integer :: i
 
@@ -74,19 +72,18 @@ contains
     allocate (rows(0))
   end subroutine law_rows
 
-  !> What a law finds wrong with its values taken together; each of them is known and within its
-  !> bounds, none is missing. Where one is not, only what rests on the names of those given.
+  !> Check relations between the parameters of a law, each of which has been checked by itself.
   subroutine check_together(kind, name, values, problems, refused)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
-    !> Name of the law.
     character(len=*), intent(in) :: name
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> What is wrong; of size zero where nothing is.
+    !> Problems found; of size zero if none.
     type(problem_t), allocatable, intent(out) :: problems(:)
-    !> Whether one of the values has been refused; without it none.
+    !> Whether a value is missing or has been refused, false by default; if so, check only which
+    !> names are given.
     logical, intent(in), optional :: refused
+
     type(yield_slot_t) :: criterion
     type(hardening_slot_t) :: hardening
     type(backstress_slot_t) :: backstress

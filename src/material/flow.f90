@@ -1,5 +1,5 @@
-!> What criterion, hardening law and back-stress laws tell the return mapping at one stress: plain
-!> values, all of them Kelvin vectors and matrices in the orthotropy axes.
+!> Results of criterion, hardening law and back-stress laws at one stress, for the return mapping.
+!> Tensors are Kelvin vectors and matrices in the orthotropy axes.
 module dd3_material_flow
   use dd3_base_kinds, only : wp
   implicit none
@@ -22,9 +22,9 @@ module dd3_material_flow
   type :: flow_response_t
     !> Flow stress Y, MPa.
     real(wp) :: value
-    !> Its derivative in the plastic increment, MPa.
+    !> Derivative in the plastic increment, MPa.
     real(wp) :: slope
-    !> Its derivative in xi: zero but for laws that follow the strain path.
+    !> Derivative in xi: zero except for laws that depend on the strain path.
     real(wp) :: gradient(6)
   end type flow_response_t
 
@@ -32,9 +32,9 @@ module dd3_material_flow
   type :: back_response_t
     !> Back-stress X, MPa.
     real(wp) :: value(6)
-    !> Its derivative in the plastic increment, MPa.
+    !> Derivative in the plastic increment, MPa.
     real(wp) :: slope(6)
-    !> Its derivative in xi.
+    !> Derivative in xi.
     real(wp) :: gradient(6, 6)
   end type back_response_t
 

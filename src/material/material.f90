@@ -1,17 +1,19 @@
-!> A material: elasticity, yield criterion, hardening law and back-stresses, and what the rest of
-!> the program asks of it at a point. All tensors are Kelvin vectors in the orthotropy axes.
+!> A material: elasticity, yield criterion, hardening law and back-stresses, evaluated at a point.
+!> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, verdict_impossible
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
-      flow_response_of
-  use dd3_material_description, only : law_choice_t
+      flow_response_of, describe_composition => describe_internal_variables
+  use dd3_material_description, only : internal_variable_t, law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : find_hardening
-  use dd3_material_update, only : update_point
+  use dd3_material_return_mapping, only : step_t
+  use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite, failure_text
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_registry, only : find_criterion
   implicit none
@@ -23,11 +25,10 @@ module dd3_material_material
     !> Young's modulus, MPa.
     real(wp) :: young = 0.0_wp
     !> Number of internal variables of a point: equivalent plastic strain first, then six for each
-    !> back-stress, then the hardening law's own. All are zero at the start.
+    !> back-stress, then the hardening law's own. All are initially zero.
     integer :: n_internal = 1
-    !> Parts a strain increment is cut into from the outset.
-    integer :: least_parts = 1
-    !> The laws.
+    !> Number of substeps of a strain increment before any failure.
+    integer :: least_substeps = 1
     type(composition_t) :: laws
   contains
     procedure :: update
@@ -36,20 +37,25 @@ module dd3_material_material
     procedure :: equivalent_stress
     procedure :: flow_stress
     procedure :: back_stress
+    procedure :: describe_internal_variables
   end type material_t
+
+  !> Largest number of substeps of a strain increment.
+  integer, parameter :: substep_limit = 64
+  !> Largest component of a strain increment that is integrated at all.
+  real(wp), parameter :: strain_limit = 10.0_wp
 
 contains
 
-  !> Makes a material of its laws, which have been checked.
+  !> Initialise a material with laws whose parameters have been checked.
   subroutine new_material(self, young, poisson, criterion, hardening, backstress)
-    !> The material.
     type(material_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
-    !> Yield criterion and hardening law.
     type(law_choice_t), intent(in) :: criterion, hardening
-    !> Back-stresses; may be of size zero.
+    !> May be of size zero.
     type(law_choice_t), intent(in) :: backstress(:)
+
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
     integer :: i
@@ -71,41 +77,74 @@ contains
     self%n_internal = self%laws%n_internal
   end subroutine new_material
 
-  !> Brings a point to the end of a strain increment. Where that fails the state of the start comes
-  !> back with the elastic tangent, and the verdict says why.
-  pure subroutine update(self, stress_old, internal_old, strain, stress, internal, tangent, &
-                         plastic, verdict)
-    !> The material.
+  !> Integrate stress and internal variables over a strain increment in one step or, if that fails,
+  !> in 2, 4 ... 64 substeps. If all fail, return the initial state with the elastic tangent.
+  pure subroutine update(self, stress_committed, internal_committed, strain, stress, &
+                         internal_variables, tangent, plastic, verdict)
     class(material_t), intent(in) :: self
-    !> Stress, MPa, and internal variables at the start.
-    real(wp), intent(in) :: stress_old(6), internal_old(self%n_internal)
+    !> Committed stress, MPa, and internal variables.
+    real(wp), intent(in) :: stress_committed(6), internal_committed(self%n_internal)
     !> Logarithmic strain increment.
     real(wp), intent(in) :: strain(6)
     !> Stress, MPa, and internal variables at the end.
-    real(wp), intent(out) :: stress(6), internal(self%n_internal)
+    real(wp), intent(out) :: stress(6), internal_variables(self%n_internal)
     !> Consistent tangent d stress/d strain, MPa.
     real(wp), intent(out) :: tangent(6, 6)
-    !> Whether plastic flow took place.
+    !> Whether plastic flow occurred, in the last substep.
     logical, intent(out) :: plastic
-    !> How it ended; iterations are those of the return mapping. Node, element and point are left
-    !> as they were.
+    !> Iterations are those of the return mapping. Node, element and point are not changed.
     type(verdict_t), intent(inout) :: verdict
 
-    call update_point(self%laws, self%least_parts, stress_old, internal_old, strain, &
-                      stress, internal, tangent, plastic, verdict)
+    type(substeps_t) :: substeps
+    type(step_t) :: step
+
+    plastic = .false.
+    verdict%outcome = verdict_impossible
+    verdict%iterations = 0
+    verdict%norm = 0.0_wp
+    ! Clearing a text that is blank already would cost more than an elastic update.
+    if (verdict%reason(1:1) /= " ") verdict%reason = ""
+    if (.not. all_finite(stress_committed, internal_committed, strain)) then
+      verdict%reason = "stress, strain or internal variables are not finite"
+    else if (any(abs(strain) > strain_limit)) then
+      verdict%outcome = verdict_retry
+      verdict%reason = "strain increment of "//to_text(maxval(abs(strain)), 4)//" is too large"
+    else
+      substeps%count = self%least_substeps
+      do while (substeps%count <= substep_limit)
+        call integrate(self%laws, substeps, stress_committed, internal_committed, strain, &
+                       internal_variables, step)
+        stress = step%stress
+        if (step%converged) call differentiate(self%laws, substeps, stress_committed, &
+            internal_committed, strain, step, tangent)
+        verdict%iterations = verdict%iterations + step%iterations
+        verdict%norm = step%norm
+        if (step%converged) then
+          verdict%outcome = verdict_converged
+          plastic = step%plastic
+          return
+        end if
+        substeps%count = 2*substeps%count
+      end do
+      verdict%outcome = verdict_retry
+      verdict%reason = failure_text(internal_committed, strain, step)
+    end if
+    stress = stress_committed
+    internal_variables = internal_committed
+    tangent = self%laws%elasticity%stiffness
   end subroutine update
 
-  !> Tangent of the rate equations, for the predictor: elastic, or that of plastic flow at the
-  !> state, C - CV (x) CV / (V.CV + Y' + V.dX/dp).
-  pure subroutine continuum_tangent(self, stress, internal, plastic, tangent)
-    !> The material.
+  !> Evaluate the tangent of the rate equations, for the predictor: elastic, or for plastic flow
+  !> C - CV (x) CV / (V.CV + Y' + V.dX/dp).
+  pure subroutine continuum_tangent(self, stress, internal_variables, plastic, tangent)
     class(material_t), intent(in) :: self
     !> Stress, MPa, and internal variables.
-    real(wp), intent(in) :: stress(6), internal(self%n_internal)
-    !> Whether the point flows.
+    real(wp), intent(in) :: stress(6), internal_variables(self%n_internal)
+    !> Whether the point is in plastic flow.
     logical, intent(in) :: plastic
     !> d stress/d strain, MPa.
     real(wp), intent(out) :: tangent(6, 6)
+
     type(flow_direction_t) :: direction
     type(flow_response_t) :: flow
     type(back_response_t) :: back
@@ -114,13 +153,14 @@ contains
 
     tangent = self%laws%elasticity%stiffness
     if (.not. plastic) return
-    call self%laws%criterion%second_derivative(stress - self%back_stress(internal), direction)
-    call self%laws%hardening%flow_stress(internal(1), internal(self%laws%first:self%laws%last), &
-                                         0.0_wp, direction, flow)
+    call self%laws%criterion%second_derivative(stress - self%back_stress(internal_variables), &
+                                               direction)
+    call self%laws%hardening%flow_stress(internal_variables(1), &
+        internal_variables(self%laws%first:self%laws%last), 0.0_wp, direction, flow)
     rate = elastic_stress(self%laws%elasticity, direction%gradient)
     modulus = dot_product(direction%gradient, rate) + flow%slope
     if (self%laws%kinematic) then
-      call add_back_stresses(self%laws, internal, 0.0_wp, direction, back)
+      call add_back_stresses(self%laws, internal_variables, 0.0_wp, direction, back)
       modulus = modulus + dot_product(direction%gradient, back%slope)
     end if
     if (.not. modulus > 0.0_wp) return
@@ -129,48 +169,54 @@ contains
     end do
   end subroutine continuum_tangent
 
-  !> Direction of plastic flow V = d sb/dT of a state.
-  pure function plastic_direction(self, stress, internal) result(direction)
-    !> The material.
+  !> Return the direction of plastic flow V = d sb/dT of a state.
+  pure function plastic_direction(self, stress, internal_variables) result(direction)
     class(material_t), intent(in) :: self
     !> Stress, MPa, and internal variables.
-    real(wp), intent(in) :: stress(6), internal(self%n_internal)
-    real(wp) :: direction(6), value
+    real(wp), intent(in) :: stress(6), internal_variables(self%n_internal)
+    real(wp) :: direction(6)
 
-    call self%laws%criterion%gradient(stress - self%back_stress(internal), value, direction)
+    real(wp) :: value
+
+    call self%laws%criterion%gradient(stress - self%back_stress(internal_variables), value, &
+                                      direction)
   end function plastic_direction
 
-  !> Equivalent stress sb(T - X) of a state, MPa.
-  pure real(wp) function equivalent_stress(self, stress, internal)
-    !> The material.
+  !> Return the equivalent stress sb(T - X) of a state, MPa.
+  pure real(wp) function equivalent_stress(self, stress, internal_variables)
     class(material_t), intent(in) :: self
     !> Stress, MPa, and internal variables.
-    real(wp), intent(in) :: stress(6), internal(self%n_internal)
+    real(wp), intent(in) :: stress(6), internal_variables(self%n_internal)
 
-    equivalent_stress = self%laws%criterion%value(stress - self%back_stress(internal))
+    equivalent_stress = self%laws%criterion%value(stress - self%back_stress(internal_variables))
   end function equivalent_stress
 
-  !> Flow stress Y of a state, MPa.
-  pure real(wp) function flow_stress(self, internal)
-    !> The material.
+  !> Return the flow stress Y of a state, MPa.
+  pure real(wp) function flow_stress(self, internal_variables)
     class(material_t), intent(in) :: self
-    !> Internal variables.
-    real(wp), intent(in) :: internal(self%n_internal)
+    real(wp), intent(in) :: internal_variables(self%n_internal)
+
     type(flow_response_t) :: flow
 
-    call flow_response_of(self%laws, internal, flow)
+    call flow_response_of(self%laws, internal_variables, flow)
     flow_stress = flow%value
   end function flow_stress
 
-  !> Sum X of the back-stresses of a state, MPa.
-  pure function back_stress(self, internal)
-    !> The material.
+  !> Return the sum X of the back-stresses of a state, MPa.
+  pure function back_stress(self, internal_variables)
     class(material_t), intent(in) :: self
-    !> Internal variables.
-    real(wp), intent(in) :: internal(self%n_internal)
+    real(wp), intent(in) :: internal_variables(self%n_internal)
     real(wp) :: back_stress(6)
 
-    back_stress = back_stress_of(self%laws, internal)
+    back_stress = back_stress_of(self%laws, internal_variables)
   end function back_stress
+
+  !> Describe the internal variables of a point in their order, the equivalent plastic strain first.
+  subroutine describe_internal_variables(self, rows)
+    class(material_t), intent(in) :: self
+    type(internal_variable_t), allocatable, intent(out) :: rows(:)
+
+    call describe_composition(self%laws, rows)
+  end subroutine describe_internal_variables
 
 end module dd3_material_material

@@ -1,6 +1,6 @@
-!> One step of the stress: elastic, or brought back to the yield surface by backward Euler, for any
-!> criterion, hardening law and back-stresses. Unknowns are the effective stress xi = T - X and the
-!> plastic increment dp:
+!> One step of the stress integration: elastic, or a return to the yield surface by backward Euler,
+!> for any criterion, hardening law and back-stresses. Unknowns are the effective stress xi = T - X
+!> and the plastic increment dp:
 !>
 !>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
 !>
@@ -17,48 +17,46 @@ module dd3_material_return_mapping
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
   private
-  public :: step_t, take_step
+  public :: step_t, integrate_step
 
-  !> Most Newton iterations in a step, and most halvings in one of them.
+  !> Limits of the Newton iterations of a step and of the halvings in an iteration.
   integer, parameter :: iteration_limit = 100, halving_limit = 20
-  !> Strain that weighs as much as a relative error of one in the yield condition.
+  !> Strain error equivalent to a relative error of one in the yield condition.
   real(wp), parameter :: strain_weight = 1.0e-3_wp
-  !> Norm below which one more correction ends the iteration.
+  !> Norm of the residual below which one last correction ends the iteration.
   real(wp), parameter :: tolerance = 1.0e-8_wp
   !> Relative excess of the trial stress over the flow stress that still counts as elastic.
   real(wp), parameter :: elastic_margin = 1.0e-12_wp
-  !> Smallest pivot of a matrix made of order one by the shear modulus.
+  !> Smallest pivot of the matrix scaled to order one by the shear modulus.
   real(wp), parameter :: smallest_pivot = 1.0e-6_wp
   !> Unit vectors.
-  real(wp), parameter :: unit(6, 6) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-                                               0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-                                               0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-                                               0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, &
-                                               0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
-                                               0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], &
-                                              [6, 6])
-  !> Relative excess below which the iteration starts by a step along the trial stress' normal.
+  real(wp), parameter :: unit(6, 6) = reshape([ &
+    1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+    0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+    0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+    0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, &
+    0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
+    0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [6, 6])
+  !> Relative excess below which the iteration starts with a step in the trial stress' normal.
   real(wp), parameter :: near_surface = 0.5_wp
 
-  !> A step, and what its derivatives need.
+  !> A step and the quantities its derivatives need.
   type :: step_t
-    !> Whether it converged; whether plastic flow took place.
+    !> Whether the step converged; whether plastic flow occurred.
     logical :: converged, plastic
     !> Newton iterations.
     integer :: iterations
-    !> Norm of the residual; equivalent trial stress over flow stress.
+    !> Norm of the residual; ratio of equivalent trial stress to flow stress.
     real(wp) :: norm, overstress
     !> Trial stress and stress at the end, MPa.
     real(wp) :: trial(6), stress(6)
     !> Plastic increment.
     real(wp) :: increment
-    !> Residual: strain, and relative excess of stress times the flow stress, MPa.
+    !> Residual of the strain; equivalent stress less flow stress, MPa.
     real(wp) :: residual(6), excess
     !> Criterion, flow stress and back-stress at the end.
     type(flow_direction_t) :: direction
-    !> See `direction`.
     type(flow_response_t) :: flow
-    !> See `direction`.
     type(back_response_t) :: back
     !> Blocks of the inverse matrix: d xi/d strain, d xi/d stress, dp/d strain, dp/d stress.
     real(wp) :: block(6, 6), column(6), row(6), corner
@@ -66,25 +64,22 @@ module dd3_material_return_mapping
 
 contains
 
-  !> Takes a step from a state with a strain increment.
-  pure subroutine take_step(laws, stress, internal, strain, step)
-    !> The laws.
+  !> Integrate a strain increment in one step.
+  pure subroutine integrate_step(laws, stress, start, strain, step)
     type(composition_t), intent(in) :: laws
-    !> Stress at the start, MPa.
-    real(wp), intent(in) :: stress(6)
-    !> Internal variables at the start.
-    real(wp), intent(in) :: internal(laws%n_internal)
+    !> Stress, MPa, and internal variables at the start.
+    real(wp), intent(in) :: stress(6), start(laws%n_internal)
     !> Strain increment.
     real(wp), intent(in) :: strain(6)
-    !> The step.
     type(step_t), intent(out) :: step
+
     real(wp) :: effective(6), value
 
     step%trial = stress + elastic_stress(laws%elasticity, strain)
     effective = step%trial
-    if (laws%kinematic) effective = effective - back_stress_of(laws, internal)
+    if (laws%kinematic) effective = effective - back_stress_of(laws, start)
     value = laws%criterion%value(effective)
-    call flow_response_of(laws, internal, step%flow)
+    call flow_response_of(laws, start, step%flow)
     step%overstress = value/step%flow%value
     step%iterations = 0
     step%norm = 0.0_wp
@@ -94,23 +89,22 @@ contains
     step%stress = step%trial
     if (.not. step%plastic) return
     if (step%overstress < 1 + near_surface) then
-      call start_along_normal(laws, effective, step)
-      call iterate(laws, internal, step)
+      call start_by_normal(laws, effective, step)
+      call iterate(laws, start, step)
       if (step%converged) return
-      call flow_response_of(laws, internal, step%flow)
+      call flow_response_of(laws, start, step%flow)
     end if
-    call start_along_radius(laws, effective, value, step)
-    call iterate(laws, internal, step)
-  end subroutine take_step
+    call start_radially(laws, effective, value, step)
+    call iterate(laws, start, step)
+  end subroutine integrate_step
 
-  !> Start near the surface: the first Newton iteration from the trial stress.
-  pure subroutine start_along_normal(laws, effective, step)
-    !> The laws.
+  !> Set the start near the surface: the first Newton iteration from the trial stress.
+  pure subroutine start_by_normal(laws, effective, step)
     type(composition_t), intent(in) :: laws
     !> Trial stress less back-stress, MPa.
     real(wp), intent(in) :: effective(6)
-    !> The step.
     type(step_t), intent(inout) :: step
+
     real(wp) :: value, normal(6), flow(6), modulus
 
     call laws%criterion%gradient(effective, value, normal)
@@ -118,18 +112,17 @@ contains
     modulus = dot_product(normal, flow) + max(step%flow%slope, 0.0_wp)
     step%increment = (value - step%flow%value)/modulus
     step%direction%stress = effective - step%increment*flow
-  end subroutine start_along_normal
+  end subroutine start_by_normal
 
-  !> Start far from the surface: on the line to the origin, as if the material were isotropic.
-  pure subroutine start_along_radius(laws, effective, value, step)
-    !> The laws.
+  !> Set the start far from the surface: a radial return, as for an isotropic material.
+  pure subroutine start_radially(laws, effective, value, step)
     type(composition_t), intent(in) :: laws
     !> Trial stress less back-stress, MPa.
     real(wp), intent(in) :: effective(6)
     !> Its equivalent stress, MPa.
     real(wp), intent(in) :: value
-    !> The step.
     type(step_t), intent(inout) :: step
+
     real(wp) :: modulus, mean
 
     modulus = 3*laws%elasticity%shear
@@ -137,25 +130,24 @@ contains
     mean = (effective(1) + effective(2) + effective(3))/3
     step%direction%stress = (1 - modulus*step%increment/value)*effective
     step%direction%stress(1:3) = step%direction%stress(1:3) + mean*modulus*step%increment/value
-  end subroutine start_along_radius
+  end subroutine start_radially
 
-  !> Newton's method from the start in `step%direction%stress` and `step%increment`.
-  pure subroutine iterate(laws, internal, step)
-    !> The laws.
+  !> Iterate by Newton's method from `step%direction%stress` and `step%increment`.
+  pure subroutine iterate(laws, start, step)
     type(composition_t), intent(in) :: laws
     !> Internal variables at the start.
-    real(wp), intent(in) :: internal(laws%n_internal)
-    !> The step.
+    real(wp), intent(in) :: start(laws%n_internal)
     type(step_t), intent(inout) :: step
+
     real(wp) :: change(6), change_of_increment
     logical :: regular, accepted
     integer :: iteration
 
     step%converged = .false.
-    ! A copy, as the evaluation rewrites the step.
+    ! A copy, as the evaluation overwrites the step.
     change = step%direction%stress
     change_of_increment = step%increment
-    call evaluate(laws, internal, change, change_of_increment, step)
+    call evaluate(laws, start, change, change_of_increment, step)
     do iteration = 1, iteration_limit
       step%iterations = step%iterations + 1
       call invert(laws, step, regular)
@@ -163,32 +155,30 @@ contains
       change = -matmul(step%block, step%residual) - step%excess*step%column
       change_of_increment = -dot_product(step%row, step%residual) - step%excess*step%corner
       if (step%norm < tolerance) then
-        call finish(laws, internal, change, change_of_increment, step)
+        call finish(laws, start, change, change_of_increment, step)
         return
       end if
-      call search_along(laws, internal, change, change_of_increment, step, accepted)
+      call line_search(laws, start, change, change_of_increment, step, accepted)
       if (.not. accepted) return
     end do
   end subroutine iterate
 
-  !> Criterion, laws and residual at an effective stress and a plastic increment.
-  pure subroutine evaluate(laws, internal, stress, increment, step)
-    !> The laws.
+  !> Evaluate criterion, laws and residual at an effective stress and a plastic increment.
+  pure subroutine evaluate(laws, start, stress, increment, step)
     type(composition_t), intent(in) :: laws
     !> Internal variables at the start.
-    real(wp), intent(in) :: internal(laws%n_internal)
+    real(wp), intent(in) :: start(laws%n_internal)
     !> Effective stress, MPa; plastic increment.
     real(wp), intent(in) :: stress(6), increment
-    !> The step.
     type(step_t), intent(inout) :: step
 
     call laws%criterion%second_derivative(stress, step%direction)
-    call laws%hardening%flow_stress(internal(1), internal(laws%first:laws%last), increment, &
+    call laws%hardening%flow_stress(start(1), start(laws%first:laws%last), increment, &
                                     step%direction, step%flow)
     step%increment = increment
     step%stress = stress
     if (laws%kinematic) then
-      call add_back_stresses(laws, internal, increment, step%direction, step%back)
+      call add_back_stresses(laws, start, increment, step%direction, step%back)
       step%stress = stress + step%back%value
     end if
     step%residual = elastic_strain(laws%elasticity, step%stress - step%trial) &
@@ -198,64 +188,60 @@ contains
                      + (step%excess/step%flow%value)**2)
   end subroutine evaluate
 
-  !> The longest of the halved changes that lowers the residual.
-  pure subroutine search_along(laws, internal, change, change_of_increment, step, accepted)
-    !> The laws.
+  !> Apply the longest of the repeatedly halved changes that reduces the residual.
+  pure subroutine line_search(laws, start, change, change_of_increment, step, accepted)
     type(composition_t), intent(in) :: laws
     !> Internal variables at the start.
-    real(wp), intent(in) :: internal(laws%n_internal)
+    real(wp), intent(in) :: start(laws%n_internal)
     !> Newton's change of the effective stress, MPa, and of the plastic increment.
     real(wp), intent(in) :: change(6), change_of_increment
-    !> The step.
     type(step_t), intent(inout) :: step
-    !> Whether one was found.
+    !> Whether there is one.
     logical, intent(out) :: accepted
-    real(wp) :: stress(6), increment, norm, part
+
+    real(wp) :: stress(6), increment, norm, fraction
     integer :: halving
 
     stress = step%direction%stress
     increment = step%increment
     norm = step%norm
-    part = 1.0_wp
+    fraction = 1.0_wp
     do halving = 0, halving_limit
-      call evaluate(laws, internal, stress + part*change, &
-                    max(0.0_wp, increment + part*change_of_increment), step)
+      call evaluate(laws, start, stress + fraction*change, &
+                    max(0.0_wp, increment + fraction*change_of_increment), step)
       accepted = step%norm < norm
       if (accepted) return
-      part = 0.5_wp*part
+      fraction = 0.5_wp*fraction
     end do
-  end subroutine search_along
+  end subroutine line_search
 
-  !> Applies the last correction.
-  pure subroutine finish(laws, internal, change, change_of_increment, step)
-    !> The laws.
+  !> Apply the last correction.
+  pure subroutine finish(laws, start, change, change_of_increment, step)
     type(composition_t), intent(in) :: laws
     !> Internal variables at the start.
-    real(wp), intent(in) :: internal(laws%n_internal)
+    real(wp), intent(in) :: start(laws%n_internal)
     !> Newton's change of the effective stress, MPa, and of the plastic increment.
     real(wp), intent(in) :: change(6), change_of_increment
-    !> The step.
     type(step_t), intent(inout) :: step
 
     if (laws%symmetric) then
       step%stress = step%stress + change
       step%increment = max(0.0_wp, step%increment + change_of_increment)
     else
-      call evaluate(laws, internal, step%direction%stress + change, &
+      call evaluate(laws, start, step%direction%stress + change, &
                     max(0.0_wp, step%increment + change_of_increment), step)
     end if
     step%converged = .true.
   end subroutine finish
 
-  !> Inverse of the matrix of the iteration [A, c; r, -Y'], A = C^-1 (I + dX/dxi) + dp H,
-  !> c = C^-1 dX/dp + V, r = V - dY/dxi: of A without pivoting, then the last unknown eliminated.
+  !> Invert the matrix of the iteration [A, c; r, -Y'], A = C^-1 (I + dX/dxi) + dp H,
+  !> c = C^-1 dX/dp + V, r = V - dY/dxi: A without pivoting, then elimination of the last unknown.
   pure subroutine invert(laws, step, regular)
-    !> The laws.
     type(composition_t), intent(in) :: laws
-    !> The step.
     type(step_t), intent(inout) :: step
-    !> Whether the matrix could be inverted.
+    !> Whether the matrix is regular.
     logical, intent(out) :: regular
+
     real(wp) :: row(6), modulus
     integer :: j
 
@@ -277,14 +263,13 @@ contains
     step%column = step%column/modulus
   end subroutine invert
 
-  !> The matrix of the iteration but for its last entry, -Y'.
+  !> Fill the matrix of the iteration except its last entry, -Y'.
   pure subroutine fill_matrix(laws, step, matrix, column, row)
-    !> The laws.
     type(composition_t), intent(in) :: laws
-    !> The step.
     type(step_t), intent(in) :: step
     !> A, c and r.
     real(wp), intent(out) :: matrix(6, 6), column(6), row(6)
+
     integer :: j
 
     matrix = laws%elasticity%compliance + step%increment*step%direction%second
@@ -299,16 +284,15 @@ contains
     column = column + elastic_strain(laws%elasticity, step%back%slope)
   end subroutine fill_matrix
 
-  !> Inverse of a 6x6 matrix by Gauss-Jordan sweeps without pivoting, as a positive definite one of
-  !> small numbers allows. The unit vectors spare single stores amid vectors, which cost more than
-  !> the arithmetic.
+  !> Invert a positive definite 6x6 matrix by Gauss-Jordan sweeps without pivoting. The unit vectors
+  !> avoid scalar stores between vector ones, which cost more than the arithmetic.
   pure subroutine invert_in_place(a, smallest, regular)
-    !> The matrix, then its inverse.
     real(wp), intent(inout) :: a(6, 6)
-    !> Pivots below it are refused.
+    !> Smallest acceptable pivot.
     real(wp), intent(in) :: smallest
-    !> Whether there were none.
+    !> Whether all pivots are acceptable.
     logical, intent(out) :: regular
+
     real(wp) :: pivot, factor, column(6)
     integer :: j, k
 
@@ -327,15 +311,14 @@ contains
     regular = .true.
   end subroutine invert_in_place
 
-  !> The same inverse with pivoting, for laws that leave A indefinite; the matrix is made of order
-  !> one by twice the shear modulus.
+  !> Invert the same matrix with pivoting, for laws that make A indefinite. Twice the shear modulus
+  !> scales the matrix to order one.
   pure subroutine invert_with_pivots(laws, step, regular)
-    !> The laws.
     type(composition_t), intent(in) :: laws
-    !> The step.
     type(step_t), intent(inout) :: step
-    !> Whether the matrix could be inverted.
+    !> Whether the matrix is regular.
     logical, intent(out) :: regular
+
     real(wp) :: matrix(7, 7), inverse(7, 7), scale
     integer :: j
 

@@ -7,10 +7,10 @@ program benchmark_robustness
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_material_check, only : describe_laws, law_hardening
-  use dd3_material_composition, only : advance_internal
+  use dd3_material_composition, only : evolve_internal_variables
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_material_material, only : material_t, new_material
-  use dd3_material_return_mapping, only : step_t, take_step
+  use dd3_material_return_mapping, only : step_t, integrate_step
   use parameter_sets, only : set_t, published_sets, law_of
   implicit none
 
@@ -210,11 +210,11 @@ contains
       after = internal
       do part = 1, parts
         before = after
-        call take_step(material%laws, start, before, strain/real(parts, wp), step)
+        call integrate_step(material%laws, start, before, strain/real(parts, wp), step)
         if (.not. step%converged) exit
         iterations = max(iterations, step%iterations)
         start = step%stress
-        if (step%plastic) call advance_internal(material%laws, before, step%increment, &
+        if (step%plastic) call evolve_internal_variables(material%laws, before, step%increment, &
                                                 step%direction, after)
       end do
       if (step%converged) return

@@ -57,7 +57,7 @@ TRUE_SETS = (
      "d12=0.981171 d13=0.476741 d21=0.575316 d23=0.866827 d31=1.145010 d32=-0.079294 d66=1.404620 m=8", [], False),
     ("cpb06", "C11=1 C12=0.05 C13=-0.04 C22=1.1 C23=0.06 C33=0.95 C66=1.05 k=0.1 m=2", [], True))
 LAWS = ("linear Y0=200 H=400", "swift K=565 e0=0.007 n=0.26", "voce Y0=150 Rsat=200 CR=12",
-        "ludwick Y0=150 K=450 n=0.5", "hockett_sherby Y0=150 Ysat=420 N=6 q=0.75",
+        "ludwik Y0=150 K=450 n=0.5", "hockett_sherby Y0=150 Ysat=420 N=6 q=0.75",
         "swift_voce alpha=0.4 K=600 e0=0.005 n=0.25 Y0=180 Rsat=170 CR=15")
 REVERSAL = "voce Y0=200 Rsat=100 CR=10\n  backstress = lemaitre_chaboche CX=50 Xsat=60"
 ALLOY = "\n".join(["# AA2090-T3", *(f"stress {15 * i} {value}" for i, value in enumerate(

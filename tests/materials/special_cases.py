@@ -75,7 +75,7 @@ HARDENING = (
      f"{(156.6 / 565) ** (1 / 0.259):.15g} n=0.259"), ("voce Y0=200 Rsat=0 CR=10", "perfect Y0=200"),
     ("swift_voce alpha=0 K=565 e0=0.007117 n=0.259 Y0=160 Rsat=200 CR=10", SWIFT),
     ("swift_voce alpha=1 K=565 e0=0.007117 n=0.259 Y0=160 Rsat=200 CR=10", "voce Y0=160 Rsat=200 CR=10"),
-    ("ludwick Y0=150 K=450 n=1", "linear Y0=150 H=450"),
+    ("ludwik Y0=150 K=450 n=1", "linear Y0=150 H=450"),
     ("hockett_sherby Y0=150 Ysat=420 N=6 q=1", "voce Y0=150 Rsat=270 CR=6"),
     ("table 0:150 1:600", "linear Y0=150 H=450"),
     (f"teodosiu_hu Y0=150 CR=10 Rsat=200 CX=0 X0=0 CSD=4 f=0 {STRUCTURES}", "voce Y0=150 Rsat=200 CR=10"),

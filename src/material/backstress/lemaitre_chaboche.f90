@@ -11,7 +11,6 @@ module dd3_material_backstress_lemaitre_chaboche
   private
   public :: lemaitre_chaboche_t
 
-  !> The law.
   type, extends(backstress_t) :: lemaitre_chaboche_t
     private
     !> Rate of saturation CX.
@@ -26,16 +25,13 @@ module dd3_material_backstress_lemaitre_chaboche
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "lemaitre_chaboche"
     description%title = "dX = CX (Xsat dev(T - X)/sb - X) dp"
-    description%source = "P. J. Armstrong, C. O. Frederick, CEGB report "// &
-                         "RD/B/N731 (1966); J. Lemaitre, J.-L. Chaboche, "// &
-                         "Mecanique des materiaux solides, Dunod (1985)"
+    description%source = "P. J. Armstrong, C. O. Frederick, CEGB report RD/B/N731 "// &
+        "(1966); J. Lemaitre, J.-L. Chaboche, Mecanique des materiaux solides, Dunod (1985)"
     allocate (description%rows, source=[ &
       row("CX", kind_real, "", "", "rate of saturation", 0.0_wp), &
       row("Xsat", kind_real, "MPa", "", "back-stress at saturation", 0.0_wp)])
@@ -43,31 +39,22 @@ contains
       law_value_t("CX", 50.0_wp), law_value_t("Xsat", 60.0_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(lemaitre_chaboche_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%rate = value_of(values, "CX")
     self%saturation = value_of(values, "Xsat")
   end subroutine set
 
-  !> The back-stress after a plastic increment.
-  pure subroutine back_stress(self, old, increment, direction, back)
-    !> The law.
+  !> Evaluate the back-stress at the end of a plastic increment.
+  pure subroutine back_stress(self, start, increment, direction, back)
     class(lemaitre_chaboche_t), intent(in) :: self
-    !> Back-stress at the start, MPa.
-    real(wp), intent(in) :: old(6)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
+    real(wp), intent(in) :: start(6), increment
     type(flow_direction_t), intent(in) :: direction
-    !> The back-stress and its derivatives.
     type(back_response_t), intent(out) :: back
 
-    call relax_back_stress(self%rate*self%saturation, self%rate, old, increment, direction, back)
+    call relax_back_stress(self%rate*self%saturation, self%rate, start, increment, direction, back)
   end subroutine back_stress
 
 end module dd3_material_backstress_lemaitre_chaboche

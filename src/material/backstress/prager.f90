@@ -11,7 +11,6 @@ module dd3_material_backstress_prager
   private
   public :: prager_t
 
-  !> The law.
   type, extends(backstress_t) :: prager_t
     private
     !> Modulus k, MPa.
@@ -24,9 +23,7 @@ module dd3_material_backstress_prager
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "prager"
@@ -38,30 +35,21 @@ contains
       law_value_t("k", 800.0_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(prager_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%modulus = value_of(values, "k")
   end subroutine set
 
-  !> The back-stress after a plastic increment.
-  pure subroutine back_stress(self, old, increment, direction, back)
-    !> The law.
+  !> Evaluate the back-stress at the end of a plastic increment.
+  pure subroutine back_stress(self, start, increment, direction, back)
     class(prager_t), intent(in) :: self
-    !> Back-stress at the start, MPa.
-    real(wp), intent(in) :: old(6)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
+    real(wp), intent(in) :: start(6), increment
     type(flow_direction_t), intent(in) :: direction
-    !> The back-stress and its derivatives.
     type(back_response_t), intent(out) :: back
 
-    call relax_back_stress(self%modulus, 0.0_wp, old, increment, direction, back)
+    call relax_back_stress(self%modulus, 0.0_wp, start, increment, direction, back)
   end subroutine back_stress
 
 end module dd3_material_backstress_prager

@@ -1,6 +1,6 @@
-!> A step of dX = (a N' - c X) dp, N' = dev(xi)/sb, to which the back-stress laws with one rate
-!> reduce. It is exact where a and N' stay those of the end: X = e X_n + w a N' with e = exp(-c dp)
-!> and w = (1 - e)/c.
+!> Integration of dX = (a N' - c X) dp, N' = dev(xi)/sb, the form of back-stress laws with one rate.
+!> It is exact for constant a and N', those of the end: X = e X_n + w a N' with e = exp(-c dp) and
+!> w = (1 - e)/c.
 module dd3_material_backstress_relaxation
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : kelvin_deviator, kelvin_deviator_projector
@@ -9,18 +9,19 @@ module dd3_material_backstress_relaxation
   private
   public :: longest_decay, relax, relax_back_stress
 
-  !> The function exp is given no exponent below minus this, where it would underflow.
+  !> Largest x for which exp(-x) is evaluated, to avoid underflow.
   real(wp), parameter :: longest_decay = 700.0_wp
 
 contains
 
-  !> e and w of a step.
+  !> Evaluate e and w.
   pure subroutine relax(rate, increment, kept, weight)
     !> c, not negative; dp.
     real(wp), intent(in) :: rate, increment
-    !> e; w, which is dp where c is zero.
+    !> e; w, equal to dp for c = 0.
     real(wp), intent(out) :: kept, weight
-    !> Largest c dp at which the series is taken.
+
+    !> Largest c dp for which w is evaluated by its series.
     real(wp), parameter :: small = 1.0e-3_wp
     real(wp) :: x
 
@@ -33,18 +34,16 @@ contains
     end if
   end subroutine relax
 
-  !> The back-stress at the end of an increment and its derivatives.
-  pure subroutine relax_back_stress(growth, rate, old, increment, direction, back)
+  !> Evaluate the back-stress at the end of an increment and its derivatives.
+  pure subroutine relax_back_stress(modulus, rate, start, increment, direction, back)
     !> a, MPa; c.
-    real(wp), intent(in) :: growth, rate
-    !> Back-stress at the start, MPa.
-    real(wp), intent(in) :: old(6)
-    !> Plastic increment dp.
-    real(wp), intent(in) :: increment
+    real(wp), intent(in) :: modulus, rate
+    !> Back-stress at the start, MPa; dp.
+    real(wp), intent(in) :: start(6), increment
     !> The criterion at the effective stress of the end.
     type(flow_direction_t), intent(in) :: direction
-    !> The back-stress and its derivatives.
     type(back_response_t), intent(out) :: back
+
     real(wp) :: normal(6), factor, inverse, kept, weight
     integer :: j
 
@@ -52,9 +51,9 @@ contains
     if (direction%equivalent > 0.0_wp) inverse = 1/direction%equivalent
     normal = inverse*kelvin_deviator(direction%stress)
     call relax(rate, increment, kept, weight)
-    back%value = kept*old + weight*growth*normal
-    back%slope = kept*(growth*normal - rate*old)
-    factor = weight*growth*inverse
+    back%value = kept*start + weight*modulus*normal
+    back%slope = kept*(modulus*normal - rate*start)
+    factor = weight*modulus*inverse
     do j = 1, 6
       back%gradient(:, j) = factor*(kelvin_deviator_projector(:, j) - direction%gradient(j)*normal)
     end do

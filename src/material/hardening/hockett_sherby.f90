@@ -1,39 +1,31 @@
 !> The saturating law of J. E. Hockett and O. D. Sherby (1975): Y = Ysat - (Ysat - Y0)
-!> exp(-(N p)^q). For q < 1 its slope is unbounded at p = 0, so up to a plastic strain that no one
-!> can see the curve is replaced by its chord.
+!> exp(-(N p)^q), near p = 0 by its chord, as the slope is unbounded there for q < 1.
 module dd3_material_hardening_hockett_sherby
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_backstress_relaxation, only : longest_decay
   use dd3_material_description, only : description_t, problem_t, add_problem, position_of, value_of
-  use dd3_material_flow, only : flow_direction_t, flow_response_t
-  use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_hardening_isotropic, only : isotropic_hardening_t, chord_strain
   implicit none
   private
   public :: hockett_sherby_t
 
-  !> Plastic strain below which the chord holds.
-  real(wp), parameter :: shortest = 1.0e-8_wp
-
-  !> The law.
-  type, extends(hardening_t) :: hockett_sherby_t
+  type, extends(isotropic_hardening_t) :: hockett_sherby_t
     private
-    !> Flow stress at saturation and its distance from the initial one, MPa.
+    !> Ysat and Ysat - Y0, MPa.
     real(wp) :: saturation = 0.0_wp, gain = 0.0_wp
-    !> Rate of saturation; exponent.
+    !> N and q.
     real(wp) :: rate = 0.0_wp, q = 0.0_wp
   contains
     procedure, nopass :: describe
     procedure, nopass :: check
     procedure :: set
-    procedure :: flow_stress
+    procedure :: hardening_curve
   end type hockett_sherby_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "hockett_sherby"
@@ -49,24 +41,19 @@ contains
       law_value_t("q", 0.7_wp)])
   end subroutine describe
 
-  !> Finds a flow stress that would fall.
+  !> Require a flow stress that does not decrease.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
     if (size(problems) > 0) return
     if (value_of(values, "Ysat") >= value_of(values, "Y0")) return
     call add_problem(problems, position_of(values, "Ysat"), "Ysat is smaller than Y0", &
-                     "at least Y0")
+        "at least Y0")
   end subroutine check
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(hockett_sherby_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%saturation = value_of(values, "Ysat")
@@ -75,34 +62,23 @@ contains
     self%q = value_of(values, "q")
   end subroutine set
 
-  !> The flow stress after a plastic increment.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
-    !> The law.
+  !> Evaluate the hardening curve.
+  pure subroutine hardening_curve(self, strain, stress, slope)
     class(hockett_sherby_t), intent(in) :: self
-    !> Equivalent plastic strain at the start.
-    real(wp), intent(in) :: plastic
-    !> No other internal variables.
-    real(wp), intent(in) :: old(self%n_internal)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
-    type(flow_direction_t), intent(in) :: direction
-    !> Flow stress and its derivatives.
-    type(flow_response_t), intent(out) :: flow
-    real(wp) :: strain, power, missing
+    real(wp), intent(in) :: strain
+    real(wp), intent(out) :: stress, slope
 
-    associate (unused => old, no_direction => direction)
-    end associate
-    strain = max(plastic + increment, shortest)
-    power = (self%rate*strain)**self%q
+    real(wp) :: x, power, missing
+
+    x = max(strain, chord_strain)
+    power = (self%rate*x)**self%q
     missing = self%gain*exp(-min(power, longest_decay))
-    flow%value = self%saturation - missing
-    flow%slope = missing*self%q*power/strain
-    if (plastic + increment < shortest) then
-      flow%slope = (self%gain - missing)/shortest
-      flow%value = self%saturation - self%gain + flow%slope*(plastic + increment)
+    stress = self%saturation - missing
+    slope = missing*self%q*power/x
+    if (strain < chord_strain) then
+      slope = (self%gain - missing)/chord_strain
+      stress = self%saturation - self%gain + slope*strain
     end if
-    flow%gradient = 0.0_wp
-  end subroutine flow_stress
+  end subroutine hardening_curve
 
 end module dd3_material_hardening_hockett_sherby

@@ -6,31 +6,25 @@ module dd3_material_hardening_swift
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given, &
       position_of, value_of
-  use dd3_material_flow, only : flow_direction_t, flow_response_t
-  use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_hardening_isotropic, only : isotropic_hardening_t
   implicit none
   private
   public :: swift_t
 
-  !> The law.
-  type, extends(hardening_t) :: swift_t
+  type, extends(isotropic_hardening_t) :: swift_t
     private
-    !> Factor K, MPa.
-    real(wp) :: k = 0.0_wp
-    !> Strain before the start; exponent.
-    real(wp) :: e0 = 0.0_wp, n = 0.0_wp
+    !> Factor K, MPa; exponent. The parent's prestrain is e0.
+    real(wp) :: k = 0.0_wp, n = 0.0_wp
   contains
     procedure, nopass :: describe
     procedure, nopass :: check
     procedure :: set
-    procedure :: flow_stress
+    procedure :: hardening_curve
   end type swift_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "swift"
@@ -46,64 +40,45 @@ contains
       law_value_t("K", 565.0_wp), law_value_t("e0", 0.007117_wp), law_value_t("n", 0.259_wp)])
   end subroutine describe
 
-  !> Finds e0 and Y0 together, or neither, and a Y0 that gives no sensible e0.
+  !> Require either e0 or Y0, and a Y0 that gives an e0 between 1e-12 and 10.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     real(wp) :: logarithm
 
     if (is_given(values, "e0") .and. is_given(values, "Y0")) then
-      call add_problem(problems, position_of(values, "Y0"), "Y0 stands beside e0", &
-                       "one of them")
+      call add_problem(problems, position_of(values, "Y0"), "both e0 and Y0 given", "one of them")
     else if (.not. (is_given(values, "e0") .or. is_given(values, "Y0"))) then
       call add_problem(problems, 0, "e0 is missing", "e0, or Y0 in its place")
     else if (is_given(values, "Y0") .and. size(problems) == 0) then
       logarithm = log10(value_of(values, "Y0")/value_of(values, "K"))/value_of(values, "n")
       if (logarithm < -12.0_wp .or. logarithm > 1.0_wp) then
         call add_problem(problems, position_of(values, "Y0"), &
-                         "Y0, K and n give e0 = (Y0/K)^(1/n) = 10^("//to_text(logarithm)//")", &
-                         "e0 from 1e-12 to 10")
+            "Y0, K and n give e0 = (Y0/K)^(1/n) = 10^("//to_text(logarithm)//")", &
+            "e0 from 1e-12 to 10")
       end if
     end if
   end subroutine check
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(swift_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%k = value_of(values, "K")
     self%n = value_of(values, "n")
-    self%e0 = value_of(values, "e0")
-    if (is_given(values, "Y0")) self%e0 = (value_of(values, "Y0")/self%k)**(1/self%n)
+    self%prestrain = value_of(values, "e0")
+    if (is_given(values, "Y0")) self%prestrain = (value_of(values, "Y0")/self%k)**(1/self%n)
   end subroutine set
 
-  !> The flow stress after a plastic increment.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
-    !> The law.
+  !> Evaluate the hardening curve.
+  pure subroutine hardening_curve(self, strain, stress, slope)
     class(swift_t), intent(in) :: self
-    !> Equivalent plastic strain at the start.
-    real(wp), intent(in) :: plastic
-    !> No other internal variables.
-    real(wp), intent(in) :: old(self%n_internal)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
-    type(flow_direction_t), intent(in) :: direction
-    !> Flow stress and its derivatives.
-    type(flow_response_t), intent(out) :: flow
-    real(wp) :: strain
+    real(wp), intent(in) :: strain
+    real(wp), intent(out) :: stress, slope
 
-    associate (unused => old, no_direction => direction)
-    end associate
-    strain = self%e0 + plastic + increment
-    flow%value = self%k*strain**self%n
-    flow%slope = self%n*flow%value/strain
-    flow%gradient = 0.0_wp
-  end subroutine flow_stress
+    stress = self%k*strain**self%n
+    slope = self%n*stress/strain
+  end subroutine hardening_curve
 
 end module dd3_material_hardening_swift

@@ -1,37 +1,33 @@
-!> A mixture of the laws of E. Voce (1948) and H. W. Swift (1952), as J. H. Sung, J. H. Kim and
-!> R. H. Wagoner (2010) mix Voce's with Hollomon's:
+!> Mixture of the laws of E. Voce (1948) and H. W. Swift (1952), after the mixture of Voce's with
+!> Hollomon's law by J. H. Sung, J. H. Kim and R. H. Wagoner (2010):
 !> Y = alpha (Y0 + Rsat (1 - exp(-CR p))) + (1 - alpha) K (e0 + p)^n.
 module dd3_material_hardening_swift_voce
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_backstress_relaxation, only : longest_decay
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_flow, only : flow_direction_t, flow_response_t
-  use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_hardening_isotropic, only : isotropic_hardening_t
   implicit none
   private
   public :: swift_voce_t
 
-  !> The law.
-  type, extends(hardening_t) :: swift_voce_t
+  type, extends(isotropic_hardening_t) :: swift_voce_t
     private
     !> Weight of Voce's law.
     real(wp) :: alpha = 0.0_wp
-    !> Swift's factor, MPa, strain before the start, exponent.
+    !> Swift's K (MPa), e0 and n.
     real(wp) :: k = 0.0_wp, e0 = 0.0_wp, n = 0.0_wp
-    !> Voce's initial flow stress and its largest gain, MPa, rate of saturation.
+    !> Voce's Y0 and Rsat (MPa), CR.
     real(wp) :: y0 = 0.0_wp, gain = 0.0_wp, rate = 0.0_wp
   contains
     procedure, nopass :: describe
     procedure :: set
-    procedure :: flow_stress
+    procedure :: hardening_curve
   end type swift_voce_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "swift_voce"
@@ -39,8 +35,8 @@ contains
     description%source = "J. H. Sung, J. H. Kim, R. H. Wagoner, Int. J. Plasticity 26 "// &
                          "(2010) 1746-1771"
     allocate (description%rows, source=[ &
-      row("alpha", kind_real, "", "", "weight of Voce's law, the rest is Swift's", 0.0_wp, &
-          1.0_wp), &
+      row("alpha", kind_real, "", "", "weight of Voce's law, the rest is Swift's", &
+          0.0_wp, 1.0_wp), &
       row("K", kind_real, "MPa", "", "Swift's factor", 0.0_wp, lower_open=.true.), &
       row("e0", kind_real, "", "", "Swift's strain before the start", 1.0e-12_wp), &
       row("n", kind_real, "", "", "Swift's exponent", 0.0_wp, 1.0_wp, lower_open=.true.), &
@@ -53,11 +49,8 @@ contains
       law_value_t("Y0", 160.0_wp), law_value_t("Rsat", 200.0_wp), law_value_t("CR", 10.0_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The law.
     class(swift_voce_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%alpha = value_of(values, "alpha")
@@ -69,30 +62,18 @@ contains
     self%rate = value_of(values, "CR")
   end subroutine set
 
-  !> The flow stress after a plastic increment.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
-    !> The law.
+  !> Evaluate the hardening curve.
+  pure subroutine hardening_curve(self, strain, stress, slope)
     class(swift_voce_t), intent(in) :: self
-    !> Equivalent plastic strain at the start.
-    real(wp), intent(in) :: plastic
-    !> No other internal variables.
-    real(wp), intent(in) :: old(self%n_internal)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
-    type(flow_direction_t), intent(in) :: direction
-    !> Flow stress and its derivatives.
-    type(flow_response_t), intent(out) :: flow
-    real(wp) :: strain, power, missing
+    real(wp), intent(in) :: strain
+    real(wp), intent(out) :: stress, slope
 
-    associate (unused => old, no_direction => direction)
-    end associate
-    strain = plastic + increment
+    real(wp) :: power, missing
+
     missing = self%alpha*self%gain*exp(-min(self%rate*strain, longest_decay))
     power = (1 - self%alpha)*self%k*(self%e0 + strain)**self%n
-    flow%value = self%alpha*(self%y0 + self%gain) - missing + power
-    flow%slope = self%rate*missing + self%n*power/(self%e0 + strain)
-    flow%gradient = 0.0_wp
-  end subroutine flow_stress
+    stress = self%alpha*(self%y0 + self%gain) - missing + power
+    slope = self%rate*missing + self%n*power/(self%e0 + strain)
+  end subroutine hardening_curve
 
 end module dd3_material_hardening_swift_voce

@@ -1,39 +1,35 @@
-!> The flow stress as a table over the equivalent plastic strain, between whose points runs a cubic
-!> that is monotone where they are (F. N. Fritsch, R. E. Carlson, 1980, region 3). Beyond the last
-!> point the curve is straight, with the slope given or that of the curve at its end.
+!> The flow stress as a table over the equivalent plastic strain, interpolated by a monotone cubic
+!> (F. N. Fritsch, R. E. Carlson, 1980, region 3). Beyond the last pair the curve is straight, with
+!> the slope given or that of the cubic at its end.
 module dd3_material_hardening_table
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, is_given, value_of
-  use dd3_material_flow, only : flow_direction_t, flow_response_t
-  use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_hardening_isotropic, only : isotropic_hardening_t
   implicit none
   private
   public :: table_t
 
-  !> Largest plastic strain of a point: a curve of strains per cent goes beyond.
+  !> Largest plastic strain of a pair, to detect strains given in per cent.
   real(wp), parameter :: largest_strain = 10.0_wp
 
-  !> The law.
-  type, extends(hardening_t) :: table_t
+  type, extends(isotropic_hardening_t) :: table_t
     private
-    !> Plastic strains, flow stresses (MPa) and slopes (MPa) of the points.
+    !> Plastic strains, flow stresses (MPa) and slopes (MPa) of the pairs.
     real(wp), allocatable :: strain(:), stress(:), slope(:)
-    !> Slope beyond the last point, MPa.
+    !> Slope beyond the last pair, MPa.
     real(wp) :: end_slope = 0.0_wp
   contains
     procedure, nopass :: describe
     procedure, nopass :: check
     procedure :: set
-    procedure :: flow_stress
+    procedure :: hardening_curve
   end type table_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "table"
@@ -53,13 +49,12 @@ contains
       law_value_t(pair_name, 430.0_wp, 0.4_wp), law_value_t(pair_name, 500.0_wp, 0.8_wp)])
   end subroutine describe
 
-  !> Finds too few points, strains that do not rise from zero or go too far, flow stresses that
-  !> fall.
+  !> Require two pairs or more, strains that increase from zero to at most `largest_strain`, flow
+  !> stresses that do not decrease.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     integer :: i, last
 
     if (size(problems) > 0) return
@@ -68,15 +63,15 @@ contains
       if (values(i)%name /= pair_name) cycle
       if (last == 0 .and. abs(values(i)%abscissa) > 0.0_wp) then
         call add_problem(problems, i, "the first point has a plastic strain of "// &
-                         to_text(values(i)%abscissa), "0:Y, the initial flow stress")
+            to_text(values(i)%abscissa), "0:Y, the initial flow stress")
       else if (last > 0) then
         if (.not. values(i)%abscissa > values(last)%abscissa) then
           call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
-                           " is not larger than the one before", "plastic strains that rise")
+              " is not larger than the one before", "plastic strains that rise")
         end if
         if (values(i)%value < values(last)%value) then
           call add_problem(problems, i, "the flow stress falls to "//to_text(values(i)%value), &
-                           "flow stresses that do not fall")
+              "flow stresses that do not fall")
         end if
       end if
       last = i
@@ -91,12 +86,10 @@ contains
     end if
   end subroutine check
 
-  !> Takes its points.
   subroutine set(self, values)
-    !> The law.
     class(table_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
+
     integer :: i
 
     self%strain = pack(values%abscissa, values%name == pair_name)
@@ -107,15 +100,13 @@ contains
     if (is_given(values, "slope")) self%end_slope = value_of(values, "slope")
   end subroutine set
 
-  !> Slopes at the points: the mean of the two secants, shortened where the cubic would not be
-  !> monotone.
+  !> Choose the slopes at the pairs: the mean of the two secants, reduced where the cubic would not
+  !> be monotone.
   pure subroutine choose_slopes(n, x, y, slope)
-    !> Number of points.
     integer, intent(in) :: n
-    !> The points.
     real(wp), intent(in) :: x(n), y(n)
-    !> The slopes.
     real(wp), intent(out) :: slope(n)
+
     real(wp) :: secant(n - 1), length
     integer :: i
 
@@ -135,44 +126,32 @@ contains
     end do
   end subroutine choose_slopes
 
-  !> The flow stress after a plastic increment.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
-    !> The law.
+  !> Evaluate the hardening curve.
+  pure subroutine hardening_curve(self, strain, stress, slope)
     class(table_t), intent(in) :: self
-    !> Equivalent plastic strain at the start.
-    real(wp), intent(in) :: plastic
-    !> No other internal variables.
-    real(wp), intent(in) :: old(self%n_internal)
-    !> Plastic increment.
-    real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
-    type(flow_direction_t), intent(in) :: direction
-    !> Flow stress and its derivatives.
-    type(flow_response_t), intent(out) :: flow
-    real(wp) :: strain
+    real(wp), intent(in) :: strain
+    real(wp), intent(out) :: stress, slope
+
     integer :: n
 
-    associate (unused => old, no_direction => direction)
-    end associate
-    strain = plastic + increment
     n = size(self%strain)
-    flow%gradient = 0.0_wp
     if (strain >= self%strain(n)) then
-      flow%value = self%stress(n) + self%end_slope*(strain - self%strain(n))
-      flow%slope = self%end_slope
+      stress = self%stress(n) + self%end_slope*(strain - self%strain(n))
+      slope = self%end_slope
     else
       n = interval(self%strain, strain)
       call cubic(strain, self%strain(n:n + 1), self%stress(n:n + 1), self%slope(n:n + 1), &
-                 flow%value, flow%slope)
+                 stress, slope)
     end if
-  end subroutine flow_stress
+  end subroutine hardening_curve
 
-  !> The interval of a strain, by bisection; the first for one before the table.
+  !> Return the interval that holds a strain, by bisection; the first if the strain is below x(1).
   pure integer function interval(x, strain)
-    !> Rising strains.
+    !> Increasing strains.
     real(wp), intent(in) :: x(:)
     !> The strain, below the last of them.
     real(wp), intent(in) :: strain
+
     integer :: above, middle
 
     interval = 1
@@ -187,14 +166,13 @@ contains
     end do
   end function interval
 
-  !> Hermite's cubic between two points.
+  !> Evaluate Hermite's cubic and its slope at x.
   pure subroutine cubic(x, x_end, y_end, slope_end, value, slope)
-    !> Where it is wanted.
     real(wp), intent(in) :: x
-    !> Abscissae, values and slopes of the two points.
+    !> Abscissae, values and slopes of the two ends.
     real(wp), intent(in) :: x_end(2), y_end(2), slope_end(2)
-    !> Its value and slope.
     real(wp), intent(out) :: value, slope
+
     real(wp) :: h, t, rise, bend
 
     h = x_end(2) - x_end(1)

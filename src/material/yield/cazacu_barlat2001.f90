@@ -10,8 +10,8 @@
 !>          - Txy^2/3 [2 b10 Tzz - b5 Tyy - (2 b10-b5) Txx]
 !>          - Tyz^2/3 [(b6+b7) Txx - b6 Tyy - b7 Tzz] + 2 b11 Txy Txz Tyz
 !>
-!> with k6 = ((a1+a3)/6)^3 - c ((b1+b2)/27)^2, so that sb = Txx in tension along rolling. Drucker's
-!> for a = b = 1. Not convex for all parameters, nor for all that have been published.
+!> with k6 = ((a1+a3)/6)^3 - c ((b1+b2)/27)^2: sb = Txx in tension along rolling. Drucker's for
+!> a = b = 1. Not convex for all parameters, nor for all published ones.
 module dd3_material_yield_cazacu_barlat2001
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
@@ -23,7 +23,6 @@ module dd3_material_yield_cazacu_barlat2001
   private
   public :: cazacu_barlat2001_t
 
-  !> The criterion.
   type, extends(invariant_criterion_t) :: cazacu_barlat2001_t
   contains
     procedure, nopass :: describe
@@ -31,20 +30,16 @@ module dd3_material_yield_cazacu_barlat2001
     procedure :: set
   end type cazacu_barlat2001_t
 
-  !> The coefficients.
+  !> Coefficients of the equations.
   type :: coefficients_t
-    !> a1 to a6 and b1 to b11.
-    real(wp) :: a(6), b(11)
-    !> c, and the sixth power that normalises.
-    real(wp) :: c, k6
+    real(wp) :: a(6), b(11), c, k6
   end type coefficients_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
+
     integer :: i
 
     description%name = "cazacu_barlat2001"
@@ -75,32 +70,31 @@ contains
       (law_value_t(description%rows(i)%name, 1.0_wp), i=1, 17), law_value_t("c", 0.0_wp)])
   end subroutine describe
 
-  !> Finds parameters that leave no strength along rolling.
+  !> Require a positive equivalent stress in tension along rolling.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     type(coefficients_t) :: of
     real(wp) :: waived
 
     if (size(problems) > 0) return
     waived = value_of(values, "nonconvex")
     if (waived > 0.0_wp .and. waived < 1.0_wp) then
-      call add_problem(problems, position_of(values, "nonconvex"), "nonconvex = "// &
-                       to_text(waived)//" is neither 0 nor 1", "0 or 1")
+      call add_problem(problems, position_of(values, "nonconvex"), &
+          "nonconvex = "//to_text(waived)//" is neither 0 nor 1", "0 or 1")
       return
     end if
     of = coefficients(values)
     if (of%k6 > 0.0_wp) return
     call add_problem(problems, 0, "no equivalent stress along rolling: ((a1+a3)/6)^3 - "// &
-                     "c ((b1+b2)/27)^2 = "//to_text(of%k6), "a positive number")
+        "c ((b1+b2)/27)^2 = "//to_text(of%k6), "a positive number")
   end subroutine check
 
-  !> The coefficients, given or isotropic.
+  !> Return the coefficients; isotropic values if not given.
   pure type(coefficients_t) function coefficients(values) result(of)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
+
     character(len=3) :: name
     integer :: i
 
@@ -116,12 +110,10 @@ contains
     of%k6 = ((of%a(1) + of%a(3))/6)**3 - of%c*((of%b(1) + of%b(2))/27)**2
   end function coefficients
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(cazacu_barlat2001_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
+
     type(coefficients_t) :: of
     type(transformation_t) :: deviator
     real(wp) :: normal(3, 3)
@@ -140,11 +132,9 @@ contains
     call transform_forms(deviator, self%quadratic, self%cubic)
   end subroutine set
 
-  !> The form J2.
+  !> Fill the form of J2.
   pure subroutine fill_quadratic(a, q)
-    !> a1 to a6.
     real(wp), intent(in) :: a(6)
-    !> The form.
     real(wp), intent(out) :: q(6, 6)
 
     q = 0.0_wp
@@ -156,11 +146,9 @@ contains
     q(6, 6) = a(4)
   end subroutine fill_quadratic
 
-  !> Terms of J3 in the normal components.
+  !> Add the terms of J3 in the normal components.
   pure subroutine add_normal_terms(b, j3)
-    !> b1 to b11.
     real(wp), intent(in) :: b(11)
-    !> The form.
     real(wp), intent(inout) :: j3(6, 6, 6)
 
     call add_cubic(j3, 1, 1, 1, (b(1) + b(2))/27)
@@ -175,11 +163,9 @@ contains
     call add_cubic(j3, 1, 2, 3, 2*(b(1) + b(4))/9)
   end subroutine add_normal_terms
 
-  !> Terms of J3 with shears: a Kelvin component is the square root of two times the tensor's.
+  !> Add the terms of J3 with shears; Kelvin components are sqrt(2) times the tensor's.
   pure subroutine add_shear_terms(b, j3)
-    !> b1 to b11.
     real(wp), intent(in) :: b(11)
-    !> The form.
     real(wp), intent(inout) :: j3(6, 6, 6)
 
     call add_cubic(j3, 1, 4, 4, -(b(6) + b(7))/6)

@@ -1,10 +1,10 @@
-!> Whether a criterion with its parameters gives a closed and convex surface. Closed: over the
-!> deviators without shears and in the pure shears the equivalent stress nowhere falls to a small
-!> part of its largest value without shears. Convex: over a fixed set of directions the second
-!> derivative must have no negative eigenvalue, which the pivots of its elimination show
-!> (Sylvester's law of inertia); half of the directions lie in the sheet's plane, half anywhere
-!> among the deviators. They are points of the additive sequence of M. Roberts (The unreasonable
-!> effectiveness of quasirandom sequences, extremelearning.com.au, 2018) inside the unit ball.
+!> Check that a criterion with its parameters has a closed and convex surface. Closed: the
+!> equivalent stress of sampled deviators without shears and of the pure shears exceeds a small
+!> fraction of its largest value without shears. Convex: the second derivative has no negative
+!> eigenvalue in sampled directions, by the pivots of its elimination (Sylvester's law of inertia).
+!> The directions, one family of plane stresses and one of deviators, are the points inside the unit
+!> ball of the additive sequence of M. Roberts (The unreasonable effectiveness of quasirandom
+!> sequences, extremelearning.com.au, 2018).
 module dd3_material_yield_convexity
   use dd3_base_kinds, only : wp, pi
   use dd3_linalg_tensor, only : half_root
@@ -16,82 +16,82 @@ module dd3_material_yield_convexity
   private
   public :: check_convexity
 
-  !> Points of the sequence in the plane, and among all deviators; those outside the ball count.
+  !> Directions: in the sheet's plane, or any deviator.
+  integer, parameter :: plane = 1, deviatoric = 2
+  !> Number of points of the sequence of each family, including those outside the ball.
   integer, parameter :: points(2) = [1500, 5000]
-  !> Deviators without shears that are tried, shears, each both ways, and the smallest part of the
-  !> largest equivalent stress without shears: less than the distance of neighbours, so that a zero
-  !> between them is seen.
+  !> Numbers of sampled deviators without shears, and of shears of either sign.
   integer, parameter :: angles = 720, shears = 6
-  !> See above.
-  real(wp), parameter :: smallest_part = 0.005_wp
+  !> Smallest equivalent stress, relative to the largest without shears: below the distance of
+  !> neighbouring samples, in order to detect a zero between them.
+  real(wp), parameter :: smallest_fraction = 0.005_wp
   !> Roots of x^4 = x + 1 and x^7 = x + 1, whose powers generate the sequences.
   real(wp), parameter :: generator(2) = [1.2207440846057596_wp, 1.1127756842787055_wp]
-  !> Negative eigenvalues up to this part of the largest diagonal entry are round-off.
+  !> Negative eigenvalues up to this fraction of the largest diagonal entry are round-off.
   real(wp), parameter :: margin = 1.0e-6_wp
 
 contains
 
-  !> Adds a problem where the surface is open or not convex, with a stress that shows it.
+  !> Add a problem, with an example stress, if the surface is open or not convex.
   subroutine check_convexity(criterion, problems)
-    !> The criterion, with its parameters.
     class(yield_criterion_t), intent(in) :: criterion
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     type(flow_direction_t) :: at
     real(wp) :: stress(6)
     integer :: family, n
 
     call check_closed(criterion, problems)
     if (size(problems) > 0 .or. criterion%always_convex .or. criterion%convexity_waived) return
-    do family = 1, 2
+    do family = plane, deviatoric
       do n = 1, points(family)
         stress = direction(family, n)
         if (dot_product(stress, stress) > 1.0_wp) cycle
         call criterion%second_derivative(stress, at)
         if (at%equivalent > 0.0_wp .and. semidefinite(at%second)) cycle
         call add_problem(problems, 0, "the yield surface is not convex at the stress "// &
-                         components(stress), "a convex surface"//waiver(criterion))
+            components(stress), "a convex surface"//waiver(criterion))
         return
       end do
     end do
   end subroutine check_convexity
 
-  !> How a surface that is not convex may be taken all the same; empty where the law takes none.
+  !> Return a hint how to accept a surface that is not convex; empty if the law has no such option.
   function waiver(criterion) result(text)
-    !> The criterion.
     class(yield_criterion_t), intent(in) :: criterion
     character(len=:), allocatable :: text
+
     type(description_t) :: description
 
     call criterion%describe(description)
     text = ""
     if (.not. any(description%rows%name == "nonconvex")) return
-    text = "; nonconvex=1 takes this one all the same, with a warning, and stress updates may fail"
+    text = "; nonconvex=1 accepts this one with a warning; stress updates may fail"
   end function waiver
 
-  !> Adds a problem where a stress has next to no equivalent stress.
+  !> Add a problem if a sampled stress has almost no equivalent stress.
   subroutine check_closed(criterion, problems)
-    !> The criterion, with its parameters.
     class(yield_criterion_t), intent(in) :: criterion
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     real(wp) :: value(angles + shears)
     integer :: n
 
     do n = 1, size(value)
-      value(n) = criterion%value(tried(n))
+      value(n) = criterion%value(sample(n))
     end do
     n = minloc(value, 1)
-    if (value(n) > smallest_part*maxval(value(:angles))) return
+    if (value(n) > smallest_fraction*maxval(value(:angles))) return
     call add_problem(problems, 0, "the yield surface is open near the stress "// &
-                     components(tried(n)), "a closed surface")
+        components(sample(n)), "a closed surface")
   end subroutine check_closed
 
-  !> A deviator without shears, or a shear; all of the same norm.
-  pure function tried(n) result(stress)
-    !> Its number.
+  !> Return sample n: a deviator without shears, or a shear; all of the same norm.
+  pure function sample(n) result(stress)
     integer, intent(in) :: n
-    real(wp) :: stress(6), angle
+    real(wp) :: stress(6)
+
+    real(wp) :: angle
     integer :: k
 
     stress = 0.0_wp
@@ -103,21 +103,22 @@ contains
       k = n - angles
       stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*half_root
     end if
-  end function tried
+  end function sample
 
-  !> A point of the sequence: a plane stress, or a deviator.
+  !> Return point n of the sequence as a stress of the family.
   pure function direction(family, n) result(stress)
-    !> Plane stress 1, or any deviator 2.
+    !> `plane` or `deviatoric`.
     integer, intent(in) :: family
-    !> Number of the point.
     integer, intent(in) :: n
-    real(wp) :: stress(6), point(6)
+    real(wp) :: stress(6)
+
+    real(wp) :: point(6)
     integer :: k
 
     do k = 1, 6
       point(k) = 2*modulo(0.5_wp + real(n, wp)*generator(family)**(-k), 1.0_wp) - 1
     end do
-    if (family == 1) then
+    if (family == plane) then
       stress = 0.0_wp
       stress([1, 2, 6]) = point(1:3)
     else
@@ -125,10 +126,10 @@ contains
     end if
   end function direction
 
-  !> Whether a symmetric matrix has no negative eigenvalue but for round-off.
+  !> Return whether a symmetric matrix has no negative eigenvalue beyond round-off.
   pure logical function semidefinite(matrix)
-    !> The matrix.
     real(wp), intent(in) :: matrix(6, 6)
+
     real(wp) :: a(6, 6), shift
     integer :: j, k
 
@@ -151,11 +152,11 @@ contains
     semidefinite = .true.
   end function semidefinite
 
-  !> Components of a stress, as the user knows them.
+  !> Format the tensor components of a stress in the order of the input.
   function components(stress) result(text)
-    !> The stress.
     real(wp), intent(in) :: stress(6)
     character(len=:), allocatable :: text
+
     character(len=5) :: number
     real(wp) :: component(6)
     integer :: k

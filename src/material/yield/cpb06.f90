@@ -13,22 +13,21 @@ module dd3_material_yield_cpb06
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, problem_t, add_problem, value_of
-  use dd3_material_yield_hosford, only : exponent_row
-  use dd3_material_yield_power, only : exponent_t, new_exponent, powers, take_root
+  use dd3_material_yield_power, only : exponent_t, new_exponent, exponent_row, function_t, powers, &
+      root_of
   use dd3_material_yield_principal, only : principal_criterion_t
   use dd3_material_yield_transformation, only : new_transformation
   implicit none
   private
   public :: cpb06_t
 
-  !> The criterion.
   type, extends(principal_criterion_t) :: cpb06_t
     private
     !> m.
     type(exponent_t) :: exponent
     !> k.
     real(wp) :: k = 0.0_wp
-    !> What the root is multiplied with.
+    !> Factor of the root.
     real(wp) :: normalisation = 1.0_wp
   contains
     procedure, nopass :: describe
@@ -39,9 +38,7 @@ module dd3_material_yield_cpb06
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "cpb06"
@@ -67,12 +64,11 @@ contains
       law_value_t("k", 0.0_wp), law_value_t("m", 4.0_wp)])
   end subroutine describe
 
-  !> Finds parameters that leave no strength along rolling.
+  !> Require a positive equivalent stress in tension along rolling.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     real(wp) :: p(3), k
 
     if (size(problems) > 0) return
@@ -80,12 +76,11 @@ contains
     k = value_of(values, "k")
     if (any(abs(p) - k*p > 0.0_wp)) return
     call add_problem(problems, 0, "no equivalent stress along rolling: |P_i| = k P_i", &
-                     "C11 other than the mean of C12 and C13, or |k| below 1")
+        "C11 other than the mean of C12 and C13, or |k| below 1")
   end subroutine check
 
-  !> Block of the normal components.
+  !> Return the block of the normal components.
   pure function normal_block(values) result(c)
-    !> The parameters.
     type(law_value_t), intent(in) :: values(:)
     real(wp) :: c(3, 3)
 
@@ -94,80 +89,72 @@ contains
     c(:, 3) = [value_of(values, "C13"), value_of(values, "C23"), value_of(values, "C33")]
   end function normal_block
 
-  !> Factor of the shear in a plane in which the sheet is isotropic.
+  !> Return the factor of the shear in a plane of isotropy with the axes i and j.
   pure real(wp) function isotropic_shear(c, i, j)
-    !> Block of the normal components.
+    !> Return the block of the normal components.
     real(wp), intent(in) :: c(3, 3)
-    !> The axes of the plane.
     integer, intent(in) :: i, j
 
     isotropic_shear = (c(i, i) + c(j, j))/2 - c(i, j)
   end function isotropic_shear
 
-  !> P of unit tension along rolling.
+  !> Return P of unit tension along rolling.
   pure function along_rolling(values) result(p)
-    !> The parameters.
     type(law_value_t), intent(in) :: values(:)
     real(wp) :: p(3)
 
     p = matmul(normal_block(values), [2.0_wp, -1.0_wp, -1.0_wp])/3
   end function along_rolling
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(cpb06_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
-    real(wp) :: c(3, 3), e(6), first(6), second(6, 6), value
+
+    type(function_t) :: q
+    real(wp) :: c(3, 3), shear(3), e(6)
 
     self%always_convex = .true.
     c = normal_block(values)
-    call new_transformation(self%transformation(1), c, &
-                            [value_of(values, "C44", isotropic_shear(c, 2, 3)), &
-                             value_of(values, "C55", isotropic_shear(c, 3, 1)), &
-                             value_of(values, "C66", isotropic_shear(c, 1, 2))])
+    shear = [value_of(values, "C44", isotropic_shear(c, 2, 3)), &
+        value_of(values, "C55", isotropic_shear(c, 3, 1)), &
+        value_of(values, "C66", isotropic_shear(c, 1, 2))]
+    call new_transformation(self%transformation(1), c, shear)
     call new_exponent(self%exponent, value_of(values, "m"))
     self%k = value_of(values, "k")
     self%normalisation = 1.0_wp
     e(1:3) = along_rolling(values)
     e(4:6) = 0.0_wp
-    call self%principal_function(e, value, first, second)
-    self%normalisation = 1/value
+    call self%principal_function(e, q)
+    self%normalisation = 1/q%value
   end subroutine set
 
-  !> The function of the principal values, with its derivatives; zero where no term is positive.
-  pure subroutine principal_function(self, e, q, first, second)
-    !> The criterion.
+  !> Evaluate the function of the principal values; zero where no term is positive.
+  pure subroutine principal_function(self, e, q)
     class(cpb06_t), intent(in) :: self
-    !> Principal values, MPa.
     real(wp), intent(in) :: e(6)
-    !> The function, MPa.
-    real(wp), intent(out) :: q
-    !> Its derivatives.
-    real(wp), intent(out) :: first(6), second(6, 6)
-    real(wp) :: f_first(6), f_second(6, 6), slope(3), x(3), scale, power(3), d(3), dd(3)
+    type(function_t), intent(out) :: q
+
+    type(function_t) :: f
+    real(wp) :: slope(3), x(3), scale, power(3), d(3), dd(3)
     integer :: i
 
-    q = 0.0_wp
-    first = 0.0_wp
-    second = 0.0_wp
+    q = function_t(0.0_wp, 0.0_wp, 0.0_wp)
     slope = sign(1.0_wp, e(1:3)) - self%k
     x = slope*e(1:3)
     scale = maxval(x)
     if (.not. scale > 0.0_wp) return
     x = x/scale
     call powers(3, self%exponent, x, power, d, dd)
-    f_second = 0.0_wp
+    f%value = sum(power)
+    f%second = 0.0_wp
     do i = 1, 3
-      f_first(i) = slope(i)*d(i)
-      f_second(i, i) = slope(i)**2*dd(i)
+      f%first(i) = slope(i)*d(i)
+      f%second(i, i) = slope(i)**2*dd(i)
     end do
-    call take_root(3, self%exponent%value, scale, 1.0_wp, sum(power), f_first, f_second, q, &
-                   first, second)
-    q = self%normalisation*q
-    first = self%normalisation*first
-    second = self%normalisation*second
+    call root_of(3, self%exponent%value, scale, 1.0_wp, f, q)
+    q%value = self%normalisation*q%value
+    q%first = self%normalisation*q%first
+    q%second = self%normalisation*q%second
   end subroutine principal_function
 
 end module dd3_material_yield_cpb06

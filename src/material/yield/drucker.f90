@@ -14,7 +14,6 @@ module dd3_material_yield_drucker
   private
   public :: drucker_t
 
-  !> The criterion.
   type, extends(invariant_criterion_t) :: drucker_t
   contains
     procedure, nopass :: describe
@@ -23,16 +22,15 @@ module dd3_material_yield_drucker
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
+
     integer :: i
 
     description%name = "drucker"
     description%title = "isotropic by the invariants J2 and J3; orthotropic with C1 to C6"
     description%source = "D. C. Drucker, J. Appl. Mech. 16 (1949) 349-357; "// &
-                         "O. Cazacu, F. Barlat, Math. Mech. Solids 6 (2001) 613-630"
+        "O. Cazacu, F. Barlat, Math. Mech. Solids 6 (2001) 613-630"
     allocate (description%rows, source=[ &
       row("c", kind_real, "", "", "weight of J3^2; 0: von Mises", -27/8.0_wp, 9/4.0_wp), &
       row("C1", kind_real, "", "1", "coefficient of T22-T33 in the transformed stress"), &
@@ -45,13 +43,12 @@ contains
       law_value_t("c", 0.0_wp), (law_value_t(description%rows(i)%name, 1.0_wp), i=2, 7)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(drucker_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
+
     type(transformation_t) :: transformation
+    real(wp) :: normal(3), shear(3)
     integer :: i
 
     self%always_convex = .true.
@@ -67,11 +64,11 @@ contains
     end do
     call add_cubic(self%cubic, 1, 2, 3, 1.0_wp)
     call add_cubic(self%cubic, 4, 5, 6, 1/sqrt(2.0_wp))
-    call barlat_transformation(transformation, &
-                               [value_of(values, "C1", 1.0_wp), value_of(values, "C2", 1.0_wp), &
-                                value_of(values, "C3", 1.0_wp)], &
-                               [value_of(values, "C4", 1.0_wp), value_of(values, "C5", 1.0_wp), &
-                                value_of(values, "C6", 1.0_wp)])
+    normal = [value_of(values, "C1", 1.0_wp), value_of(values, "C2", 1.0_wp), &
+        value_of(values, "C3", 1.0_wp)]
+    shear = [value_of(values, "C4", 1.0_wp), value_of(values, "C5", 1.0_wp), &
+        value_of(values, "C6", 1.0_wp)]
+    call barlat_transformation(transformation, normal, shear)
     call transform_forms(transformation, self%quadratic, self%cubic)
   end subroutine set
 

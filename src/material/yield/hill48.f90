@@ -3,7 +3,7 @@
 !>
 !>     sb^2 = F (T22-T33)^2 + G (T33-T11)^2 + H (T11-T22)^2 + 2 L T23^2 + 2 M T31^2 + 2 N T12^2
 !>
-!> so that sb = sqrt(v.P v) with a constant matrix P, V = P v / sb and H = (P - V V^T) / sb.
+!> that is, sb = sqrt(v.P v) with a constant matrix P, V = P v / sb and H = (P - V V^T) / sb.
 module dd3_material_yield_hill48
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
@@ -16,7 +16,6 @@ module dd3_material_yield_hill48
   private
   public :: hill48_t
 
-  !> The criterion.
   type, extends(yield_criterion_t) :: hill48_t
     private
     !> The matrix P.
@@ -32,19 +31,16 @@ module dd3_material_yield_hill48
 
   !> Coefficients of the equation.
   type :: coefficients_t
-    !> As in the equation.
     real(wp) :: f, g, h, l, m, n
   end type coefficients_t
 
-  !> Names of the first form's parameters and of the second's.
+  !> Names of the parameters of either form.
   character(len=3), parameter :: letters(6) = ["F  ", "G  ", "H  ", "L  ", "M  ", "N  "]
   character(len=3), parameter :: ratios(3) = ["r0 ", "r45", "r90"]
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "hill48"
@@ -70,12 +66,11 @@ contains
       law_value_t("L", 1.5_wp), law_value_t("M", 1.5_wp), law_value_t("N", 1.5_wp)])
   end subroutine describe
 
-  !> Finds mixed or incomplete forms, and coefficients that give no closed convex surface.
+  !> Require one complete form, and a closed convex surface.
   subroutine check(values, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     type(coefficients_t) :: c
     logical :: by_letters, by_ratios
     integer :: i
@@ -86,8 +81,8 @@ contains
       do i = 1, 3
         if (is_given(values, ratios(i))) then
           call add_problem(problems, position_of(values, ratios(i)), &
-                           trim(ratios(i))//" stands beside F G H L M N", &
-                           "either F G H [L M N] or r0 r45 r90")
+              trim(ratios(i))//" given together with F G H L M N", &
+              "either F G H [L M N] or r0 r45 r90")
         end if
       end do
     else if (by_ratios) then
@@ -99,33 +94,29 @@ contains
     c = coefficients(values)
     if (.not. (c%f + c%g > 0 .and. c%f*c%g + c%g*c%h + c%h*c%f > 0)) then
       call add_problem(problems, 0, "the surface is not closed: FG + GH + HF = "// &
-                       to_text(c%f*c%g + c%g*c%h + c%h*c%f)//", F + G = "//to_text(c%f + c%g), &
-                       "both positive")
+          to_text(c%f*c%g + c%g*c%h + c%h*c%f)//", F + G = "//to_text(c%f + c%g), "both positive")
     end if
   end subroutine check
 
-  !> Adds a problem for each name that is not among the values.
+  !> Add a problem for each of the names that is not given.
   subroutine check_all_given(values, names, problems)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
-    !> The names that must be there.
     character(len=*), intent(in) :: names(:)
-    !> Receives what is wrong.
     type(problem_t), allocatable, intent(inout) :: problems(:)
+
     integer :: i
 
     do i = 1, size(names)
       if (.not. is_given(values, names(i))) then
-        call add_problem(problems, 0, trim(names(i))//" is missing", &
-                         "F G H [L M N] or r0 r45 r90")
+        call add_problem(problems, 0, trim(names(i))//" is missing", "F G H [L M N] or r0 r45 r90")
       end if
     end do
   end subroutine check_all_given
 
-  !> The coefficients, given or from r-values with L = M = N and sb = T11 in tension along 1.
+  !> Return the coefficients, given or from r-values with L = M = N and sb = T11 in tension along 1.
   pure type(coefficients_t) function coefficients(values) result(c)
-    !> The values given.
     type(law_value_t), intent(in) :: values(:)
+
     real(wp) :: r0
 
     if (is_given(values, "r0")) then
@@ -146,12 +137,10 @@ contains
     end if
   end function coefficients
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(hill48_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
+
     type(coefficients_t) :: c
 
     self%always_convex = .true.
@@ -165,17 +154,15 @@ contains
     self%p(6, 6) = c%n
   end subroutine set
 
-  !> P times a stress, and the square of the equivalent stress, by differences of the normal
-  !> components so that a pressure drops out without error.
+  !> Evaluate P t and t.P t by differences of the normal components, which removes the pressure
+  !> without error.
   pure subroutine apply(p, t, w, square)
-    !> The matrix P.
-    real(wp), intent(in) :: p(6, 6)
-    !> Stress, MPa.
-    real(wp), intent(in) :: t(6)
+    real(wp), intent(in) :: p(6, 6), t(6)
     !> P t, MPa.
     real(wp), intent(out) :: w(6)
     !> t.P t, MPa2; not negative.
     real(wp), intent(out) :: square
+
     real(wp) :: d21, d31, d32
 
     d21 = t(2) - t(1)
@@ -192,28 +179,24 @@ contains
     square = max(0.0_wp, square)
   end subroutine apply
 
-  !> The equivalent stress.
+  !> Return the equivalent stress.
   pure real(wp) function value(self, stress)
-    !> The criterion.
     class(hill48_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
+
     real(wp) :: w(6), square
 
     call apply(self%p, stress, w, square)
     value = sqrt(square)
   end function value
 
-  !> The equivalent stress and its gradient.
+  !> Evaluate the equivalent stress and its gradient.
   pure subroutine gradient(self, stress, value, normal)
-    !> The criterion.
     class(hill48_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> Equivalent stress, MPa.
     real(wp), intent(out) :: value
-    !> Its gradient.
     real(wp), intent(out) :: normal(6)
+
     real(wp) :: w(6), square
 
     call apply(self%p, stress, w, square)
@@ -222,14 +205,12 @@ contains
     if (value > 0.0_wp) normal = (1/value)*w
   end subroutine gradient
 
-  !> The equivalent stress with both derivatives.
+  !> Evaluate the equivalent stress and both derivatives.
   pure subroutine second_derivative(self, stress, direction)
-    !> The criterion.
     class(hill48_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> The stress, its equivalent stress and the derivatives.
     type(flow_direction_t), intent(out) :: direction
+
     real(wp) :: w(6), value, factor
     integer :: j
 

@@ -9,7 +9,7 @@ module dd3_material_yield_invariant
   use dd3_base_kinds, only : wp
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
-  use dd3_material_yield_power, only : take_root
+  use dd3_material_yield_power, only : function_t, root_of
   use dd3_material_yield_transformation, only : transformation_t, deviator_of, pull_back
   implicit none
   private
@@ -27,19 +27,15 @@ module dd3_material_yield_invariant
     real(wp) :: factor = 1.0_wp
   contains
     procedure :: value
-    procedure :: gradient
     procedure :: second_derivative
   end type invariant_criterion_t
 
 contains
 
-  !> Adds a term factor s_i s_j s_k to a cubic form.
+  !> Add a term factor s_i s_j s_k to a cubic form.
   pure subroutine add_cubic(cubic, i, j, k, factor)
-    !> The form.
     real(wp), intent(inout) :: cubic(6, 6, 6)
-    !> Numbers of the components.
     integer, intent(in) :: i, j, k
-    !> The factor.
     real(wp), intent(in) :: factor
 
     cubic(i, j, k) = cubic(i, j, k) + factor
@@ -50,12 +46,12 @@ contains
     cubic(j, i, k) = cubic(j, i, k) + factor
   end subroutine add_cubic
 
-  !> Forms of a transformed stress as forms of the stress.
+  !> Convert forms of a transformed stress to forms of the stress.
   pure subroutine transform_forms(transformation, quadratic, cubic)
-    !> The transformation.
     type(transformation_t), intent(in) :: transformation
     !> Q and A.
     real(wp), intent(inout) :: quadratic(6, 6), cubic(6, 6, 6)
+
     integer :: i, j
 
     do j = 1, 6
@@ -77,12 +73,11 @@ contains
     end do
   end subroutine transform_forms
 
-  !> The equivalent stress.
+  !> Return the equivalent stress.
   pure real(wp) function value(self, stress)
-    !> The criterion.
     class(invariant_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
+
     real(wp) :: s(6), second(6, 6), first(6), scale, f
     integer :: k
 
@@ -101,51 +96,18 @@ contains
     value = scale*(self%factor*max(f, 0.0_wp))**(1/6.0_wp)
   end function value
 
-  !> The equivalent stress and its gradient.
-  pure subroutine gradient(self, stress, value, normal)
-    !> The criterion.
-    class(invariant_criterion_t), intent(in) :: self
-    !> Stress, MPa.
-    real(wp), intent(in) :: stress(6)
-    !> Equivalent stress, MPa.
-    real(wp), intent(out) :: value
-    !> Its gradient.
-    real(wp), intent(out) :: normal(6)
-    real(wp) :: second(6, 6)
-
-    call differentiate(self, stress, value, normal, second)
-  end subroutine gradient
-
-  !> The equivalent stress with both derivatives.
+  !> Evaluate the equivalent stress and both derivatives by the chain rule; all are zero if the base
+  !> of the root is not positive.
   pure subroutine second_derivative(self, stress, direction)
-    !> The criterion.
     class(invariant_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> The stress, its equivalent stress and the derivatives.
     type(flow_direction_t), intent(out) :: direction
 
-    direction%stress = stress
-    call differentiate(self, stress, direction%equivalent, direction%gradient, direction%second)
-  end subroutine second_derivative
-
-  !> The equivalent stress with both derivatives, by the chain rule; zero where the root's base is
-  !> not positive.
-  pure subroutine differentiate(self, stress, value, normal, second)
-    !> The criterion.
-    class(invariant_criterion_t), intent(in) :: self
-    !> Stress, MPa.
-    real(wp), intent(in) :: stress(6)
-    !> Equivalent stress, MPa.
-    real(wp), intent(out) :: value
-    !> Its derivatives.
-    real(wp), intent(out) :: normal(6), second(6, 6)
-    real(wp) :: s(6), j2, j3, d2(6), d3(6), dd3(6, 6), f, f_first(6), f_second(6, 6), scale
+    type(function_t) :: f, q
+    real(wp) :: s(6), j2, j3, d2(6), d3(6), dd3(6, 6), scale
     integer :: k
 
-    value = 0.0_wp
-    normal = 0.0_wp
-    second = 0.0_wp
+    direction = flow_direction_t(stress, 0.0_wp, 0.0_wp, 0.0_wp)
     s = deviator_of(stress)
     scale = maxval(abs(s))
     if (.not. scale > 0.0_wp) return
@@ -162,14 +124,17 @@ contains
     end do
     j2 = dot_product(d2, s)/2
     j3 = dot_product(d3, s)/3
-    f = j2**3 - self%c*j3**2
-    if (.not. f > 0.0_wp) return
-    f_first = (3*j2**2)*d2 - (2*self%c*j3)*d3
+    f%value = j2**3 - self%c*j3**2
+    if (.not. f%value > 0.0_wp) return
+    f%first = (3*j2**2)*d2 - (2*self%c*j3)*d3
     do k = 1, 6
-      f_second(:, k) = (6*j2*d2(k))*d2 + (3*j2**2)*self%quadratic(:, k) &
+      f%second(:, k) = (6*j2*d2(k))*d2 + (3*j2**2)*self%quadratic(:, k) &
                        - (2*self%c)*(d3(k)*d3 + j3*dd3(:, k))
     end do
-    call take_root(6, 6.0_wp, scale, self%factor, f, f_first, f_second, value, normal, second)
-  end subroutine differentiate
+    call root_of(6, 6.0_wp, scale, self%factor, f, q)
+    direction%equivalent = q%value
+    direction%gradient = q%first
+    direction%second = q%second
+  end subroutine second_derivative
 
 end module dd3_material_yield_invariant

@@ -1,5 +1,5 @@
-!> The orthotropic criterion of A. P. Karafillis and M. C. Boyce, a mixture of two functions of the
-!> principal values of the deviator S = L T:
+!> The orthotropic criterion of A. P. Karafillis and M. C. Boyce (1993), a mixture of two functions
+!> of the principal values of the deviator S = L T:
 !>
 !>     2 sb^2k = (1-c) (|S1-S2|^2k + |S2-S3|^2k + |S3-S1|^2k)
 !>               + c 3^2k/(2^(2k-1)+1) (|S1|^2k + |S2|^2k + |S3|^2k)
@@ -13,14 +13,13 @@ module dd3_material_yield_karafillis_boyce
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_yield_power, only : exponent_t, new_exponent, powers, take_root
+  use dd3_material_yield_power, only : exponent_t, new_exponent, function_t, powers, root_of
   use dd3_material_yield_principal, only : principal_criterion_t, add_differences
   use dd3_material_yield_transformation, only : new_transformation
   implicit none
   private
   public :: karafillis_boyce_t
 
-  !> The criterion.
   type, extends(principal_criterion_t) :: karafillis_boyce_t
     private
     !> 2k.
@@ -35,9 +34,7 @@ module dd3_material_yield_karafillis_boyce
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "karafillis_boyce"
@@ -60,12 +57,10 @@ contains
       law_value_t("gamma3", 1.5_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(karafillis_boyce_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
+
     real(wp) :: alpha(2), beta(3), shear(3), normal(3, 3), scale
 
     self%always_convex = .true.
@@ -82,35 +77,29 @@ contains
     self%mixture = value_of(values, "c")
   end subroutine set
 
-  !> The function of the principal values, with its derivatives. The largest difference is at least
-  !> 3/2 of any value, which bounds the second function too.
-  pure subroutine principal_function(self, e, q, first, second)
-    !> The criterion.
+  !> Evaluate the function of the principal values. The largest difference is at least 3/2 of any
+  !> value, which bounds the second function too.
+  pure subroutine principal_function(self, e, q)
     class(karafillis_boyce_t), intent(in) :: self
-    !> Principal values, MPa.
     real(wp), intent(in) :: e(6)
-    !> The function, MPa.
-    real(wp), intent(out) :: q
-    !> Its derivatives.
-    real(wp), intent(out) :: first(6), second(6, 6)
-    real(wp) :: f, f_first(6), f_second(6, 6), scale, m, weight, power(3), d(3), dd(3)
+    type(function_t), intent(out) :: q
+
+    type(function_t) :: f
+    real(wp) :: scale, m, weight, power(3), d(3), dd(3)
     integer :: i
 
-    f = 0.0_wp
-    f_first = 0.0_wp
-    f_second = 0.0_wp
+    f = function_t(0.0_wp, 0.0_wp, 0.0_wp)
     m = self%exponent%value
     scale = maxval(e(1:3)) - minval(e(1:3))
-    call add_differences(self%exponent, 0.5_wp*(1 - self%mixture), e(1:3)/scale, f, f_first, &
-                         f_second)
+    call add_differences(self%exponent, 0.5_wp*(1 - self%mixture), e(1:3)/scale, f)
     weight = self%mixture/(1 + 2.0_wp**(1 - m))
     call powers(3, self%exponent, 1.5_wp*e(1:3)/scale, power, d, dd)
-    f = f + weight*sum(power)
+    f%value = f%value + weight*sum(power)
     do i = 1, 3
-      f_first(i) = f_first(i) + 1.5_wp*weight*d(i)
-      f_second(i, i) = f_second(i, i) + 2.25_wp*weight*dd(i)
+      f%first(i) = f%first(i) + 1.5_wp*weight*d(i)
+      f%second(i, i) = f%second(i, i) + 2.25_wp*weight*dd(i)
     end do
-    call take_root(3, m, scale, 1.0_wp, f, f_first, f_second, q, first, second)
+    call root_of(3, m, scale, 1.0_wp, f, q)
   end subroutine principal_function
 
 end module dd3_material_yield_karafillis_boyce

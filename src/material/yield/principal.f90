@@ -1,5 +1,5 @@
 !> Criteria that are symmetric functions q of the principal values of one or two linearly
-!> transformed stresses, S = L T. With eigenvectors v_i, N_ij = sym(v_i x v_j) and M_ij = L^T N_ij,
+!> transformed stresses S = L T. With eigenvectors v_i, N_ij = sym(v_i x v_j) and M_ij = L^T N_ij,
 !>
 !>     V = sum q_i M_ii,   H = sum q_ij M_ii M_jj + sum_{i/=j} t_ij M_ij M_ij,
 !>     t_ij = (q_i - q_j)/(e_i - e_j), and its limit q_ii - q_ij at equal principal values
@@ -11,7 +11,7 @@ module dd3_material_yield_principal
   use dd3_linalg_tensor, only : half_root, root2, symmetric_eigen, tensor_from_kelvin
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
-  use dd3_material_yield_power, only : exponent_t, powers
+  use dd3_material_yield_power, only : exponent_t, function_t, powers
   use dd3_material_yield_transformation, only : transformation_t, deviator_of, transform, pull_back
   implicit none
   private
@@ -19,36 +19,30 @@ module dd3_material_yield_principal
 
   !> A criterion by principal values.
   type, abstract, extends(yield_criterion_t) :: principal_criterion_t
-    !> How many transformed stresses there are.
+    !> Number of transformed stresses, and their transformations.
     integer :: count = 1
-    !> Their transformations.
     type(transformation_t) :: transformation(2)
   contains
-    !> The function of the principal values.
-    procedure(function_i), deferred :: principal_function
+    procedure(principal_function_interface), deferred :: principal_function
     procedure :: value
     procedure :: gradient
     procedure :: second_derivative
   end type principal_criterion_t
 
   abstract interface
-    !> The function q, with its derivatives; the values are not all zero.
-    pure subroutine function_i(self, e, q, first, second)
-      import :: principal_criterion_t, wp
-      !> The criterion.
+    !> Evaluate the function q of principal values that are not all zero.
+    pure subroutine principal_function_interface(self, e, q)
+      import :: principal_criterion_t, function_t, wp
       class(principal_criterion_t), intent(in) :: self
       !> Principal values, three of each transformed stress, MPa.
       real(wp), intent(in) :: e(6)
-      !> The function, MPa.
-      real(wp), intent(out) :: q
-      !> Its first and second derivatives, those there are.
-      real(wp), intent(out) :: first(6), second(6, 6)
-    end subroutine function_i
+      !> Only the derivatives in the values of the transformed stresses in use are defined.
+      type(function_t), intent(out) :: q
+    end subroutine principal_function_interface
   end interface
 
-  !> Principal values of the transformed stresses, and what carries derivatives back.
+  !> Principal values of the transformed stresses and their derivatives in the stress.
   type :: spectrum_t
-    !> Principal values.
     real(wp) :: e(6)
     !> M_ii.
     real(wp) :: own(6, 6)
@@ -58,45 +52,44 @@ module dd3_material_yield_principal
 
   !> First and second index of the pairs.
   integer, parameter :: one(3) = [2, 3, 1], other(3) = [3, 1, 2]
-  !> Principal values closer than this part of the largest are equal.
+  !> Difference of principal values, relative to the largest, below which they count as equal.
   real(wp), parameter :: closeness = 1.0e-6_wp
 
 contains
 
-  !> Adds weight (|e1-e2|^m + |e2-e3|^m + |e3-e1|^m) to a function of scaled principal values.
-  pure subroutine add_differences(exponent, weight, e, f, first, second)
+  !> Add weight (|e1-e2|^m + |e2-e3|^m + |e3-e1|^m) to a function of scaled principal values.
+  pure subroutine add_differences(exponent, weight, e, f)
     !> m.
     type(exponent_t), intent(in) :: exponent
-    !> The weight.
     real(wp), intent(in) :: weight
     !> Principal values, scaled.
     real(wp), intent(in) :: e(3)
-    !> The function and its derivatives.
-    real(wp), intent(inout) :: f, first(6), second(6, 6)
+    type(function_t), intent(inout) :: f
+
     real(wp) :: power(3), d(3), dd(3)
     integer :: i
 
     call powers(3, exponent, e(one) - e(other), power, d, dd)
-    f = f + weight*sum(power)
+    f%value = f%value + weight*sum(power)
     do i = 1, 3
       associate (j => one(i), k => other(i))
-        first(j) = first(j) + weight*d(i)
-        first(k) = first(k) - weight*d(i)
-        second(j, j) = second(j, j) + weight*dd(i)
-        second(k, k) = second(k, k) + weight*dd(i)
-        second(j, k) = second(j, k) - weight*dd(i)
-        second(k, j) = second(k, j) - weight*dd(i)
+        f%first(j) = f%first(j) + weight*d(i)
+        f%first(k) = f%first(k) - weight*d(i)
+        f%second(j, j) = f%second(j, j) + weight*dd(i)
+        f%second(k, k) = f%second(k, k) + weight*dd(i)
+        f%second(j, k) = f%second(j, k) - weight*dd(i)
+        f%second(k, j) = f%second(k, j) - weight*dd(i)
       end associate
     end do
   end subroutine add_differences
 
-  !> The equivalent stress.
+  !> Return the equivalent stress.
   pure real(wp) function value(self, stress)
-    !> The criterion.
     class(principal_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    real(wp) :: s(6), e(6), vectors(3, 3), first(6), second(6, 6)
+
+    type(function_t) :: q
+    real(wp) :: s(6), e(6), vectors(3, 3)
     integer :: n
 
     s = deviator_of(stress)
@@ -107,43 +100,42 @@ contains
       call symmetric_eigen(tensor_from_kelvin(transform(self%transformation(n), s)), &
                            e(3*n - 2:3*n), vectors)
     end do
-    if (any(abs(e) > 0.0_wp)) call self%principal_function(e, value, first, second)
+    if (.not. any(abs(e) > 0.0_wp)) return
+    call self%principal_function(e, q)
+    value = q%value
   end function value
 
-  !> The equivalent stress and its gradient.
+  !> Evaluate the equivalent stress and its gradient.
   pure subroutine gradient(self, stress, value, normal)
-    !> The criterion.
     class(principal_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> Equivalent stress, MPa.
     real(wp), intent(out) :: value
-    !> Its gradient.
     real(wp), intent(out) :: normal(6)
+
     type(spectrum_t) :: at
-    real(wp) :: first(6), second(6, 6)
+    type(function_t) :: q
     integer :: i
 
     value = 0.0_wp
     normal = 0.0_wp
     call decompose(self, stress, at)
     if (.not. any(abs(at%e) > 0.0_wp)) return
-    call self%principal_function(at%e, value, first, second)
+    call self%principal_function(at%e, q)
+    value = q%value
     do i = 1, 3*self%count
-      normal = normal + first(i)*at%own(:, i)
+      normal = normal + q%first(i)*at%own(:, i)
     end do
   end subroutine gradient
 
-  !> The equivalent stress with both derivatives.
+  !> Evaluate the equivalent stress and both derivatives.
   pure subroutine second_derivative(self, stress, direction)
-    !> The criterion.
     class(principal_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> The stress, its equivalent stress and the derivatives.
     type(flow_direction_t), intent(out) :: direction
+
     type(spectrum_t) :: at
-    real(wp) :: first(6), second(6, 6), w(6)
+    type(function_t) :: q
+    real(wp) :: w(6)
     integer :: i, j
 
     direction%stress = stress
@@ -152,30 +144,28 @@ contains
     direction%second = 0.0_wp
     call decompose(self, stress, at)
     if (.not. any(abs(at%e) > 0.0_wp)) return
-    call self%principal_function(at%e, direction%equivalent, first, second)
+    call self%principal_function(at%e, q)
+    direction%equivalent = q%value
     do j = 1, 3*self%count
-      direction%gradient = direction%gradient + first(j)*at%own(:, j)
+      direction%gradient = direction%gradient + q%first(j)*at%own(:, j)
       w = 0.0_wp
       do i = 1, 3*self%count
-        w = w + second(i, j)*at%own(:, i)
+        w = w + q%second(i, j)*at%own(:, i)
       end do
       call add_product(w, at%own(:, j), direction%second)
     end do
     do j = 1, 3*self%count
-      call add_product(2*quotient(at%e, first, second, j)*at%mixed(:, j), at%mixed(:, j), &
-                       direction%second)
+      call add_product(2*quotient(at%e, q, j)*at%mixed(:, j), at%mixed(:, j), direction%second)
     end do
     direction%second = 0.5_wp*(direction%second + transpose(direction%second))
   end subroutine second_derivative
 
-  !> Principal values of the transformed stresses; zero at zero deviator.
+  !> Decompose the transformed stresses; the principal values are zero at zero deviator.
   pure subroutine decompose(self, stress, at)
-    !> The criterion.
     class(principal_criterion_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> Principal values and what goes with them.
     type(spectrum_t), intent(out) :: at
+
     real(wp) :: s(6), v(3, 3)
     integer :: n, i, m
 
@@ -193,9 +183,8 @@ contains
     end do
   end subroutine decompose
 
-  !> Kelvin vector of v x v.
+  !> Return the Kelvin vector of v x v.
   pure function square_of(v) result(n)
-    !> A vector.
     real(wp), intent(in) :: v(3)
     real(wp) :: n(6)
 
@@ -205,9 +194,8 @@ contains
     n(6) = root2*v(1)*v(2)
   end function square_of
 
-  !> Kelvin vector of sym(v x w).
+  !> Return the Kelvin vector of sym(v x w).
   pure function product_of(v, w) result(n)
-    !> Two vectors.
     real(wp), intent(in) :: v(3), w(3)
     real(wp) :: n(6)
 
@@ -217,32 +205,30 @@ contains
     n(6) = half_root*(v(1)*w(2) + v(2)*w(1))
   end function product_of
 
-  !> t_ij of a pair.
-  pure real(wp) function quotient(e, first, second, pair)
-    !> Principal values, MPa.
+  !> Return t_ij of a pair.
+  pure real(wp) function quotient(e, q, pair)
     real(wp), intent(in) :: e(6)
-    !> Derivatives of the function.
-    real(wp), intent(in) :: first(6), second(6, 6)
-    !> Number of the pair: that of the value left out.
+    type(function_t), intent(in) :: q
+    !> Number of the pair: that of the value not in it.
     integer, intent(in) :: pair
+
     integer :: start, i, j
 
     start = 3*((pair - 1)/3)
     i = start + one(pair - start)
     j = start + other(pair - start)
     if (abs(e(i) - e(j)) > closeness*maxval(abs(e))) then
-      quotient = (first(i) - first(j))/(e(i) - e(j))
+      quotient = (q%first(i) - q%first(j))/(e(i) - e(j))
     else
-      quotient = 0.5_wp*(second(i, i) + second(j, j)) - second(i, j)
+      quotient = 0.5_wp*(q%second(i, i) + q%second(j, j)) - q%second(i, j)
     end if
   end function quotient
 
-  !> Adds a b^T to a matrix.
+  !> Add a b^T to a matrix.
   pure subroutine add_product(a, b, matrix)
-    !> Two vectors.
     real(wp), intent(in) :: a(6), b(6)
-    !> The matrix.
     real(wp), intent(inout) :: matrix(6, 6)
+
     integer :: j
 
     do j = 1, 6

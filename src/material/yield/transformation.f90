@@ -1,6 +1,6 @@
-!> Linear transformations S = L T of the stress that leave orthotropy: a full block for the normal
-!> components and a factor for each shear component, both after the deviator has been taken, so
-!> that a pressure drops out. In Kelvin's components shear factors are those of the tensor's.
+!> Linear transformations S = L T of the stress that preserve orthotropy: a full block for the
+!> normal components and a factor for each shear component, applied to the deviator and therefore
+!> independent of pressure. Shear factors are the same for Kelvin and tensor components.
 module dd3_material_yield_transformation
   use dd3_base_kinds, only : wp
   implicit none
@@ -8,7 +8,6 @@ module dd3_material_yield_transformation
   public :: transformation_t, new_transformation, barlat_transformation
   public :: deviator_of, transform, pull_back
 
-  !> A transformation.
   type :: transformation_t
     !> Block of the normal components, times the deviator's projector.
     real(wp) :: normal(3, 3) = 0.0_wp
@@ -18,14 +17,14 @@ module dd3_material_yield_transformation
 
 contains
 
-  !> Makes a transformation from what it does to a deviator.
+  !> Initialise a transformation with its action on a deviator.
   pure subroutine new_transformation(self, normal, shear)
-    !> The transformation.
     type(transformation_t), intent(out) :: self
     !> Block of the normal components.
     real(wp), intent(in) :: normal(3, 3)
     !> Factors of the components 23, 31, 12.
     real(wp), intent(in) :: shear(3)
+
     integer :: i
 
     do i = 1, 3
@@ -34,16 +33,16 @@ contains
     self%shear = shear
   end subroutine new_transformation
 
-  !> The transformation of F. Barlat, D. J. Lege and J. C. Brem (1991), of coefficients one in the
-  !> isotropic case: S11 = [c (T11-T22) - b (T33-T11)]/3 and so on around, S23 = f T23, S31 = g T31,
-  !> S12 = h T12.
+  !> Initialise the transformation of F. Barlat, D. J. Lege and J. C. Brem (1991), isotropic if all
+  !> coefficients are one: S11 = [c (T11-T22) - b (T33-T11)]/3 and cyclically, S23 = f T23,
+  !> S31 = g T31, S12 = h T12.
   pure subroutine barlat_transformation(self, normal, shear)
-    !> The transformation.
     type(transformation_t), intent(out) :: self
     !> a, b, c.
     real(wp), intent(in) :: normal(3)
     !> f, g, h.
     real(wp), intent(in) :: shear(3)
+
     real(wp) :: block(3, 3)
 
     associate (a => normal(1)/3, b => normal(2)/3, c => normal(3)/3)
@@ -54,9 +53,8 @@ contains
     call new_transformation(self, block, shear)
   end subroutine barlat_transformation
 
-  !> Deviator of a stress, from differences of its normal components.
+  !> Return the deviator of a stress, from differences of its normal components.
   pure function deviator_of(t) result(s)
-    !> Stress, MPa.
     real(wp), intent(in) :: t(6)
     real(wp) :: s(6)
 
@@ -66,11 +64,9 @@ contains
     s(4:6) = t(4:6)
   end function deviator_of
 
-  !> S = L s.
+  !> Return S = L s of a deviator s.
   pure function transform(self, s) result(image)
-    !> The transformation.
     type(transformation_t), intent(in) :: self
-    !> A deviator.
     real(wp), intent(in) :: s(6)
     real(wp) :: image(6)
 
@@ -78,13 +74,12 @@ contains
     image(4:6) = self%shear*s(4:6)
   end function transform
 
-  !> L^T g: a gradient in S as a gradient in T.
+  !> Return L^T g, the gradient in T of a gradient g in S.
   pure function pull_back(self, g) result(image)
-    !> The transformation.
     type(transformation_t), intent(in) :: self
-    !> Gradient in S.
     real(wp), intent(in) :: g(6)
     real(wp) :: image(6)
+
     integer :: j
 
     do j = 1, 3

@@ -11,7 +11,6 @@ module dd3_material_yield_von_mises
   private
   public :: von_mises_t
 
-  !> The criterion; it has no parameters.
   type, extends(yield_criterion_t) :: von_mises_t
   contains
     procedure, nopass :: describe
@@ -23,9 +22,7 @@ module dd3_material_yield_von_mises
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "von_mises"
@@ -34,11 +31,8 @@ contains
     allocate (description%rows(0), description%example(0))
   end subroutine describe
 
-  !> Takes no parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(von_mises_t), intent(inout) :: self
-    !> No values.
     type(law_value_t), intent(in) :: values(:)
 
     associate (unused => values)
@@ -46,12 +40,11 @@ contains
     self%always_convex = .true.
   end subroutine set
 
-  !> The equivalent stress.
+  !> Return the equivalent stress.
   pure real(wp) function value(self, stress)
-    !> The criterion.
     class(von_mises_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
+
     real(wp) :: s(6)
 
     associate (unused => self)
@@ -60,15 +53,11 @@ contains
     value = sqrt(1.5_wp*dot_product(s, s))
   end function value
 
-  !> The equivalent stress and its gradient.
+  !> Evaluate the equivalent stress and its gradient.
   pure subroutine gradient(self, stress, value, normal)
-    !> The criterion.
     class(von_mises_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> Equivalent stress, MPa.
     real(wp), intent(out) :: value
-    !> Its gradient.
     real(wp), intent(out) :: normal(6)
 
     associate (unused => self)
@@ -78,14 +67,12 @@ contains
     if (value > 0.0_wp) normal = (1.5_wp/value)*normal
   end subroutine gradient
 
-  !> The equivalent stress with both derivatives.
+  !> Evaluate the equivalent stress and both derivatives.
   pure subroutine second_derivative(self, stress, direction)
-    !> The criterion.
     class(von_mises_t), intent(in) :: self
-    !> Stress, MPa.
     real(wp), intent(in) :: stress(6)
-    !> The stress, its equivalent stress and the derivatives.
     type(flow_direction_t), intent(out) :: direction
+
     real(wp) :: factor
     integer :: j
 

@@ -11,15 +11,14 @@ module dd3_material_yield_yld2004
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_yield_hosford, only : exponent_row
-  use dd3_material_yield_power, only : exponent_t, new_exponent, powers, take_root
+  use dd3_material_yield_power, only : exponent_t, new_exponent, exponent_row, function_t, powers, &
+      root_of
   use dd3_material_yield_principal, only : principal_criterion_t
   use dd3_material_yield_transformation, only : transformation_t, new_transformation
   implicit none
   private
   public :: yld2004_t
 
-  !> The criterion.
   type, extends(principal_criterion_t) :: yld2004_t
     private
     !> m.
@@ -35,17 +34,16 @@ module dd3_material_yield_yld2004
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
+
     character(len=24) :: name(18)
     integer :: i
 
     description%name = "yld2004"
     description%title = "orthotropic, of exponent m, two linear transformations (Yld2004-18p)"
     description%source = "F. Barlat, H. Aretz, J. W. Yoon and others, Int. J. Plasticity 21 "// &
-                         "(2005) 1009-1039"
+        "(2005) 1009-1039"
     name = [character(len=24) :: "c"//indices, "d"//indices]
     allocate (description%rows, source=[ &
       (row(name(i), kind_real, "", "", "first transformation: minus the entry "//name(i)(2:2)// &
@@ -61,9 +59,8 @@ contains
       (law_value_t(name(i), 1.0_wp), i=1, 18), law_value_t("m", 4.0_wp)])
   end subroutine describe
 
-  !> Name of the shear component that a coefficient multiplies.
+  !> Return the name of the shear component that a coefficient multiplies.
   pure character(len=3) function shear_of(name)
-    !> Name of the coefficient.
     character(len=*), intent(in) :: name
 
     select case (name(2:3))
@@ -76,11 +73,8 @@ contains
     end select
   end function shear_of
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(yld2004_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
     self%always_convex = .true.
@@ -90,14 +84,13 @@ contains
     call new_exponent(self%exponent, value_of(values, "m"))
   end subroutine set
 
-  !> Makes one of the transformations.
+  !> Set one of the transformations.
   subroutine set_transformation(letter, values, transformation)
-    !> First letter of its coefficients.
+    !> First letter of the names of its coefficients.
     character(len=1), intent(in) :: letter
-    !> The parameters.
     type(law_value_t), intent(in) :: values(:)
-    !> The transformation.
     type(transformation_t), intent(out) :: transformation
+
     real(wp) :: c(9), normal(3, 3)
     integer :: i
 
@@ -110,36 +103,31 @@ contains
     call new_transformation(transformation, normal, c(7:9))
   end subroutine set_transformation
 
-  !> The function of the principal values, with its derivatives.
-  pure subroutine principal_function(self, e, q, first, second)
-    !> The criterion.
+  !> Evaluate the function of the principal values.
+  pure subroutine principal_function(self, e, q)
     class(yld2004_t), intent(in) :: self
-    !> Principal values, MPa.
     real(wp), intent(in) :: e(6)
-    !> The function, MPa.
-    real(wp), intent(out) :: q
-    !> Its derivatives.
-    real(wp), intent(out) :: first(6), second(6, 6)
-    real(wp) :: f, f_first(6), f_second(6, 6), scale, power(3), d(3), dd(3)
+    type(function_t), intent(out) :: q
+
+    type(function_t) :: f
+    real(wp) :: scale, power(3), d(3), dd(3)
     integer :: i
 
-    f = 0.0_wp
-    f_first = 0.0_wp
-    f_second = 0.0_wp
+    f = function_t(0.0_wp, 0.0_wp, 0.0_wp)
     scale = max(maxval(e(1:3)) - minval(e(4:6)), maxval(e(4:6)) - minval(e(1:3)))
     do i = 1, 3
       call powers(3, self%exponent, (e(i) - e(4:6))/scale, power, d, dd)
-      f = f + 0.25_wp*sum(power)
-      f_first(i) = 0.25_wp*sum(d)
-      f_first(4:6) = f_first(4:6) - 0.25_wp*d
-      f_second(i, i) = 0.25_wp*sum(dd)
-      f_second(i, 4:6) = -0.25_wp*dd
-      f_second(4:6, i) = -0.25_wp*dd
-      f_second(4, 4) = f_second(4, 4) + 0.25_wp*dd(1)
-      f_second(5, 5) = f_second(5, 5) + 0.25_wp*dd(2)
-      f_second(6, 6) = f_second(6, 6) + 0.25_wp*dd(3)
+      f%value = f%value + 0.25_wp*sum(power)
+      f%first(i) = 0.25_wp*sum(d)
+      f%first(4:6) = f%first(4:6) - 0.25_wp*d
+      f%second(i, i) = 0.25_wp*sum(dd)
+      f%second(i, 4:6) = -0.25_wp*dd
+      f%second(4:6, i) = -0.25_wp*dd
+      f%second(4, 4) = f%second(4, 4) + 0.25_wp*dd(1)
+      f%second(5, 5) = f%second(5, 5) + 0.25_wp*dd(2)
+      f%second(6, 6) = f%second(6, 6) + 0.25_wp*dd(3)
     end do
-    call take_root(6, self%exponent%value, scale, 1.0_wp, f, f_first, f_second, q, first, second)
+    call root_of(6, self%exponent%value, scale, 1.0_wp, f, q)
   end subroutine principal_function
 
 end module dd3_material_yield_yld2004

@@ -9,29 +9,23 @@ module dd3_material_yield_yld91
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
-  use dd3_material_yield_hosford, only : exponent_row, hosford_function
-  use dd3_material_yield_power, only : exponent_t, new_exponent
-  use dd3_material_yield_principal, only : principal_criterion_t
+  use dd3_material_yield_hosford, only : hosford_t
+  use dd3_material_yield_power, only : new_exponent, exponent_row
   use dd3_material_yield_transformation, only : barlat_transformation
   implicit none
   private
   public :: yld91_t
 
-  !> The criterion.
-  type, extends(principal_criterion_t) :: yld91_t
-    !> m.
-    type(exponent_t) :: exponent
+  !> Hosford's criterion with another transformation.
+  type, extends(hosford_t) :: yld91_t
   contains
     procedure, nopass :: describe
     procedure :: set
-    procedure :: principal_function
   end type yld91_t
 
 contains
 
-  !> Says its name, source and parameters.
   subroutine describe(description)
-    !> What the law says of itself.
     type(description_t), intent(out) :: description
 
     description%name = "yld91"
@@ -51,34 +45,18 @@ contains
       law_value_t("m", 4.0_wp)])
   end subroutine describe
 
-  !> Takes its parameters.
   subroutine set(self, values)
-    !> The criterion.
     class(yld91_t), intent(inout) :: self
-    !> Its parameters.
     type(law_value_t), intent(in) :: values(:)
 
+    real(wp) :: normal(3), shear(3)
+
     self%always_convex = .true.
-    call barlat_transformation(self%transformation(1), &
-                               [value_of(values, "a"), value_of(values, "b"), &
-                                value_of(values, "c")], &
-                               [value_of(values, "f", 1.0_wp), value_of(values, "g", 1.0_wp), &
-                                value_of(values, "h", 1.0_wp)])
+    normal = [value_of(values, "a"), value_of(values, "b"), value_of(values, "c")]
+    shear = [value_of(values, "f", 1.0_wp), value_of(values, "g", 1.0_wp), &
+        value_of(values, "h", 1.0_wp)]
+    call barlat_transformation(self%transformation(1), normal, shear)
     call new_exponent(self%exponent, value_of(values, "m"))
   end subroutine set
-
-  !> The function of the principal values, with its derivatives.
-  pure subroutine principal_function(self, e, q, first, second)
-    !> The criterion.
-    class(yld91_t), intent(in) :: self
-    !> Principal values, MPa.
-    real(wp), intent(in) :: e(6)
-    !> The function, MPa.
-    real(wp), intent(out) :: q
-    !> Its derivatives.
-    real(wp), intent(out) :: first(6), second(6, 6)
-
-    call hosford_function(self%exponent, e, q, first, second)
-  end subroutine principal_function
 
 end module dd3_material_yield_yld91

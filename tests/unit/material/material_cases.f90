@@ -8,7 +8,8 @@ module material_cases
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_backstress_registry, only : fill_backstresses
   use dd3_material_backstress_law, only : backstress_slot_t
-  use dd3_material_check, only : check_together, describe_laws, law_backstress, law_hardening, law_yield
+  use dd3_material_check, only : check_together, describe_laws, law_backstress, law_hardening, &
+      law_yield
   use dd3_material_description, only : description_t, law_choice_t, problem_t
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : fill_hardenings

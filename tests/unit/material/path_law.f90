@@ -1,11 +1,11 @@
-!> A made-up hardening law that follows the strain path and owns a back-stress, in the manner of
-!> Teodosiu and Hu: the flow direction N = V/|V| draws a polarity P after it, both the flow stress
-!> and the saturation of the back-stress depend on |P|^2. It shows that such a law fits.
+!> An artificial hardening law that depends on the strain path and has a back-stress, similar to
+!> Teodosiu and Hu's: a polarity P evolves to the flow direction N = V/|V|; the flow stress and the
+!> saturation of the back-stress depend on |P|^2.
 module path_law
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
   use dd3_material_backstress_relaxation, only : relax, relax_back_stress
-  use dd3_material_description, only : description_t
+  use dd3_material_description, only : description_t, internal_variable_t
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
   use dd3_linalg_tensor, only : kelvin_deviator
@@ -22,15 +22,15 @@ module path_law
   type, extends(hardening_t) :: path_law_t
   contains
     procedure, nopass :: describe
+    procedure, nopass :: describe_internal_variables
     procedure :: set
     procedure :: flow_stress
     procedure :: back_stress
-    procedure :: advance
+    procedure :: evolve
   end type path_law_t
 
 contains
 
-  !> Says its name.
   subroutine describe(description)
     type(description_t), intent(out) :: description
 
@@ -38,7 +38,14 @@ contains
     allocate (description%rows(0), description%example(0))
   end subroutine describe
 
-  !> Sets what the law has.
+  pure subroutine describe_internal_variables(rows)
+    type(internal_variable_t), allocatable, intent(out) :: rows(:)
+
+    allocate (rows(2))
+    rows(1) = internal_variable_t("polarity", "", "polarity P", 6)
+    rows(2) = internal_variable_t("back_stress", "MPa", "back-stress X", 6)
+  end subroutine describe_internal_variables
+
   subroutine set(self, values)
     class(path_law_t), intent(inout) :: self
     type(law_value_t), intent(in) :: values(:)
@@ -48,74 +55,73 @@ contains
     self%follows_path = .true.
   end subroutine set
 
-  !> The polarity at the end, |P|^2 and its derivatives.
-  pure subroutine polarity(old, increment, direction, p, slope, gradient)
-    real(wp), intent(in) :: old(6), increment
+  !> Evaluate the polarity at the end and the derivatives of |P|^2.
+  pure subroutine polarity(start, increment, direction, p, slope, gradient)
+    real(wp), intent(in) :: start(6), increment
     type(flow_direction_t), intent(in) :: direction
     real(wp), intent(out) :: p(6), slope, gradient(6)
-    real(wp) :: n(6), length, decay, along(6)
+    real(wp) :: n(6), length, decay, tangential(6)
 
     length = norm2(direction%gradient)
-    p = old
+    p = start
     slope = 0.0_wp
     gradient = 0.0_wp
     if (.not. length > 0.0_wp) return
     n = direction%gradient/length
     decay = exp(-c_p*increment)
-    p = n - (n - old)*decay
-    slope = 2*dot_product(p, c_p*decay*(n - old))
-    along = (p - dot_product(p, n)*n)/length
-    gradient = 2*(1 - decay)*matmul(direction%second, along)
+    p = n - (n - start)*decay
+    slope = 2*dot_product(p, c_p*decay*(n - start))
+    tangential = (p - dot_product(p, n)*n)/length
+    gradient = 2*(1 - decay)*matmul(direction%second, tangential)
   end subroutine polarity
 
-  !> The flow stress.
-  pure subroutine flow_stress(self, plastic, old, increment, direction, flow)
+  !> Evaluate the flow stress.
+  pure subroutine flow_stress(self, plastic_strain, start, increment, direction, flow)
     class(path_law_t), intent(in) :: self
-    real(wp), intent(in) :: plastic, old(self%n_internal), increment
+    real(wp), intent(in) :: plastic_strain, start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(flow_response_t), intent(out) :: flow
     real(wp) :: p(6), slope, gradient(6)
 
-    call polarity(old(1:6), increment, direction, p, slope, gradient)
-    flow%value = y0 + h*(plastic + increment) + f*dot_product(p, p)
+    call polarity(start(1:6), increment, direction, p, slope, gradient)
+    flow%value = y0 + h*(plastic_strain + increment) + f*dot_product(p, p)
     flow%slope = h + f*slope
     flow%gradient = f*gradient
   end subroutine flow_stress
 
-  !> Its own back-stress.
-  pure subroutine back_stress(self, old, increment, direction, back)
+  !> Evaluate the law's own back-stress.
+  pure subroutine back_stress(self, start, increment, direction, back)
     class(path_law_t), intent(in) :: self
-    real(wp), intent(in) :: old(self%n_internal), increment
+    real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(back_response_t), intent(out) :: back
     real(wp) :: p(6), slope, gradient(6), normal(6), kept, weight
     integer :: j
 
-    call polarity(old(1:6), increment, direction, p, slope, gradient)
-    call relax_back_stress(c_x*(x0 + g*dot_product(p, p)), c_x, old(7:12), increment, direction, &
-                           back)
+    call polarity(start(1:6), increment, direction, p, slope, gradient)
+    call relax_back_stress(c_x*(x0 + g*dot_product(p, p)), c_x, start(7:12), increment, &
+        direction, back)
     if (.not. direction%equivalent > 0.0_wp) return
     call relax(c_x, increment, kept, weight)
-    normal = weight*c_x*g*kelvin_deviator(direction%stress) &
-             /direction%equivalent
+    normal = weight*c_x*g*kelvin_deviator(direction%stress)/direction%equivalent
     back%slope = back%slope + slope*normal
     do j = 1, 6
       back%gradient(:, j) = back%gradient(:, j) + gradient(j)*normal
     end do
   end subroutine back_stress
 
-  !> Its internal variables at the end.
-  pure subroutine advance(self, old, increment, direction, new)
+  !> Evolve the law's internal variables.
+  pure subroutine evolve(self, start, increment, direction, evolved)
     class(path_law_t), intent(in) :: self
-    real(wp), intent(in) :: old(self%n_internal), increment
+    real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
-    real(wp), intent(out) :: new(self%n_internal)
+    real(wp), intent(out) :: evolved(self%n_internal)
     type(back_response_t) :: back
     real(wp) :: slope, gradient(6)
 
-    call polarity(old(1:6), increment, direction, new(1:6), slope, gradient)
-    call self%back_stress(old, increment, direction, back)
-    new(7:12) = back%value
-  end subroutine advance
+    call polarity(start(1:6), increment, direction, evolved(1:6), slope, gradient)
+    call self%back_stress(start, increment, direction, back)
+    evolved(7:12) = back%value
+  end subroutine evolve
 
 end module path_law
