@@ -6,7 +6,7 @@ module dd3_model_build
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_element_kinematics, only : element_gradients
-  use dd3_element_registry, only : element_count, element_name, new_element
+  use dd3_element_registry, only : element_names, new_element
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
@@ -59,14 +59,12 @@ contains
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
 
-    character(len=len(element_name(1))) :: known(element_count)
-    integer :: b, i, position
+    integer :: b, position
 
-    known = [(element_name(i), i=1, element_count)]
     do b = 1, size(case%blank)
       if (.not. case%blank(b)%source%has("element")) cycle
       call check_known_name(case%blank(b)%element, case%blank(b)%source%at("element"), &
-          "element type", known, position, errors)
+          "element type", element_names(), position, errors)
     end do
   end subroutine check_element
 

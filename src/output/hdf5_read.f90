@@ -5,13 +5,16 @@ module dd3_output_hdf5_read
   use hdf5, only : hid_t, hsize_t, size_t, h5aclose_f, h5aget_type_f, h5aopen_f, h5aread_f, &
                    h5dclose_f, h5dget_space_f, h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, &
                    h5screate_simple_f, h5sclose_f, h5sget_simple_extent_dims_f, &
-                   h5sget_simple_extent_ndims_f, h5sget_simple_extent_npoints_f, &
+                   h5sget_simple_extent_ndims_f, &
                    h5sselect_hyperslab_f, h5tclose_f, h5tget_size_f, H5F_ACC_RDONLY_F, &
                    H5S_SELECT_SET_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER
   implicit none
   private
   public :: open_hdf5, close_hdf5, dataset_size, read_reals, read_integers, read_rows
   public :: read_text_attribute, read_integer_attribute
+
+  !> Largest rank of a dataset that is read.
+  integer, parameter :: max_rank = 2
 
 contains
 
@@ -48,15 +51,18 @@ contains
     integer, intent(out) :: n
 
     integer(hid_t) :: dataset, space
-    integer(hsize_t) :: count
-    integer :: status, ignored
+    integer(hsize_t) :: extent(max_rank), largest(max_rank)
+    integer :: status, rank, ignored
 
     n = -1
     call h5dopen_f(parent, name, dataset, status)
     if (status < 0) return
     call h5dget_space_f(dataset, space, status)
-    if (status >= 0) call h5sget_simple_extent_npoints_f(space, count, status)
-    if (status >= 0) n = int(count)
+    if (status >= 0) call h5sget_simple_extent_ndims_f(space, rank, status)
+    if (status >= 0 .and. rank <= max_rank) then
+      call h5sget_simple_extent_dims_f(space, extent(:rank), largest(:rank), status)
+      if (status >= 0) n = int(product(extent(:rank)))
+    end if
     call h5sclose_f(space, ignored)
     call h5dclose_f(dataset, ignored)
   end subroutine dataset_size
@@ -114,7 +120,7 @@ contains
     logical, intent(inout) :: ok
 
     integer(hid_t) :: dataset, space, memory
-    integer(hsize_t) :: extent(2), largest(2), start(2), number(2)
+    integer(hsize_t) :: extent(max_rank), largest(max_rank), start(max_rank), number(max_rank)
     integer :: status, rank, ignored
 
     allocate (values(0))
@@ -124,7 +130,7 @@ contains
     if (.not. ok) return
     call h5dget_space_f(dataset, space, status)
     call h5sget_simple_extent_ndims_f(space, rank, status)
-    ok = status >= 0 .and. (rank == 1 .or. rank == 2)
+    ok = status >= 0 .and. rank >= 1 .and. rank <= max_rank
     extent = 1
     if (ok) call h5sget_simple_extent_dims_f(space, extent(:rank), largest(:rank), status)
     start = 0

@@ -14,7 +14,7 @@ module dd3_point_path
   !> Segment of a path.
   type :: segment_t
     !> Stress (MPa) or logarithmic strain at its end, Kelvin.
-    real(wp) :: goal(6) = 0.0_wp
+    real(wp) :: target(6) = 0.0_wp
     !> Deformation gradient at its end.
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Number of equal steps.
@@ -64,7 +64,7 @@ contains
     if (by_gradient) then
       segment%gradient = transpose(reshape(goal%value, [3, 3]))
     else
-      segment%goal = kelvin_factor*goal%value(place)
+      segment%target = kelvin_factor*goal%value(place)
     end if
   end function new_segment
 

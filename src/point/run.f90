@@ -13,8 +13,8 @@ module dd3_point_run
   use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
       kelvin_from_tensor, symmetric_eigen
   use dd3_material_material, only : material_t
-  use dd3_material_point, only : global_stress, lead_point, new_point_state, point_state_t, &
-      strain_point
+  use dd3_material_point, only : apply_strain, drive_to_target, global_stress, material_point_t, &
+      new_material_point
   use dd3_point_history, only : point_record_t, point_row_t
   use dd3_point_path, only : new_path, path_t, segment_t
   implicit none
@@ -26,7 +26,7 @@ module dd3_point_run
 
   !> A material point during its run.
   type :: walker_t
-    type(point_state_t) :: state
+    type(material_point_t) :: state
     !> Deformation gradient, if it is prescribed.
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps made.
@@ -88,7 +88,7 @@ contains
     integer :: i
 
     strain = 0.0_wp
-    call new_point_state(walker%state, material, path%axes)
+    call new_material_point(walker%state, material, path%axes)
     walker%gradient = identity
     walker%every = max(1, every)
     call write_row(walker, material, path, record, error)
@@ -127,8 +127,8 @@ contains
         call apply_gradient(walker, material, &
             gradient + fraction*(segment%gradient - gradient), verdict)
       else
-        call lead_point(walker%state, material, path%by_stress, &
-            start + fraction*(segment%goal - start), verdict)
+        call drive_to_target(walker%state, material, path%by_stress, &
+            start + fraction*(segment%target - start), verdict)
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//path%name//", step "// &
@@ -163,7 +163,7 @@ contains
     if (.not. regular) verdict%reason = "det F is not positive"
     if (.not. regular) return
     call polar_increment(matmul(gradient, inverse_before), strain, rotation)
-    call strain_point(walker%state, material, kelvin_factor*strain, rotation, verdict)
+    call apply_strain(walker%state, material, kelvin_factor*strain, rotation, verdict)
     if (verdict%outcome /= verdict_converged) return
     walker%gradient = gradient
     walker%state%strain = left_strain(gradient)
@@ -201,8 +201,8 @@ contains
     row%point = path%name
     row%strain = walker%state%strain
     row%stress = global_stress(walker%state)
-    row%plastic = walker%state%internal(1)
-    row%flow_stress = material%flow_stress(walker%state%internal)
+    row%plastic = walker%state%internal_variables(1)
+    row%flow_stress = material%flow_stress(walker%state%internal_variables)
     call record%write(row, error)
     walker%waiting = .false.
   end subroutine write_row
