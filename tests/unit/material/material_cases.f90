@@ -257,13 +257,13 @@ contains
 
   !> Drive a point over an increment in axes rotated by `r` (material = r times these), each
   !> component to a stress or by a strain. The state is updated on success.
-  subroutine drive(material, r, by_stress, goal, stress, internal, strain, success)
+  subroutine drive(material, r, by_stress, goal, stress, internal_variables, strain, success)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: r(6, 6), goal(6)
     logical, intent(in) :: by_stress(6)
-    real(wp), intent(inout) :: stress(6), internal(material%n_internal), strain(6)
+    real(wp), intent(inout) :: stress(6), internal_variables(material%n_internal), strain(6)
     logical, intent(out) :: success
-    real(wp) :: increment(6), new_stress(6), new_internal(material%n_internal), tangent(6, 6)
+    real(wp) :: increment(6), stress_trial(6), internal_trial(material%n_internal), tangent(6, 6)
     real(wp) :: residual(6), matrix(6, 6)
     type(verdict_t) :: verdict
     logical :: plastic, regular
@@ -272,14 +272,14 @@ contains
     success = .false.
     increment = merge(0.0_wp, goal, by_stress)
     do iteration = 1, 50
-      call material%update(stress, internal, matmul(r, increment), new_stress, new_internal, &
-                           tangent, plastic, verdict)
+      call material%update(stress, internal_variables, matmul(r, increment), stress_trial, &
+          internal_trial, tangent, plastic, verdict)
       if (verdict%outcome /= verdict_converged) return
-      residual = merge(matmul(new_stress, r) - goal, 0.0_wp, by_stress)
+      residual = merge(matmul(stress_trial, r) - goal, 0.0_wp, by_stress)
       if (maxval(abs(residual)) < 1.0e-8_wp) then
         success = .true.
-        stress = new_stress
-        internal = new_internal
+        stress = stress_trial
+        internal_variables = internal_trial
         strain = strain + increment
         return
       end if
