@@ -87,7 +87,7 @@ contains
     end do
   end subroutine drive_to_target
 
-  !> Drive a point to a target in one step; see `drive_to_target`. On failure the state is unchanged.
+  !> Drive a point to a target in one step; on failure the state is unchanged.
   pure subroutine drive_in_one_step(self, material, by_stress, target, verdict)
     type(material_point_t), intent(inout) :: self
     type(material_t), intent(in) :: material

@@ -6,7 +6,7 @@
 !>
 !> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and
 !> its consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
-!> inverted without pivoting (with, where that fails), and the last unknown eliminated. The inverse
+!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse
 !> of the last iteration gives the last correction and the tangent.
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Checks utils/identify.py. Ends with 77 where there is no .venv and its packages are missing.
+"""Check utils/identify.py. The exit code is 77 if there is no .venv and packages are missing.
 
     identification.py --program build/release/dd3imp
 
-- Values that the program computes from known parameters are met again, and the parameters where they are determined.
-- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by those that can follow it.
-- Scattered and missing values; a curve with a reversal; what is said of input that cannot be used.
+- Values computed by the program from known parameters are reproduced, and so are the parameters if determined.
+- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by those that can fit it.
+- Scattered and missing values; a curve with a reversal; messages for unusable input.
 - Each file written is read by the program.
 """
 import argparse
@@ -123,18 +123,18 @@ FILES = {
 
 
 class Trial:
-    """Runs of identify.py in a folder, and what went wrong."""
+    """Runs of identify.py in a folder, and their failures."""
 
     def __init__(self, program):
         self.program, self.points, self.wrong = program, identify.Points(program, 2.1e5, 0.3), []
 
     def expect(self, true, what):
-        """Notes what is not as it should be."""
+        """Record a failure unless the condition holds."""
         if not true:
             self.wrong.append(what)
 
     def call(self, *words):
-        """Exit code, what was said and the file written."""
+        """Return exit code, messages and the file written."""
         before, sys.argv = sys.argv, ["identify.py", "found", "--program", self.program, *words]
         Path("found.dat").unlink(missing_ok=True)
         code, out, err = 0, io.StringIO(), io.StringIO()
@@ -149,7 +149,7 @@ class Trial:
         return code, out.getvalue() + err.getvalue(), text
 
     def fit(self, *words):
-        """Parameters and rows of the table (measured, identified) of a fit that must succeed."""
+        """Return parameters and rows of the table (measured, identified) of a fit that must succeed."""
         code, said, text = self.call("--starts", "2", *words)
         self.expect(code == 0, f"{words}: exit code {code}\n{said}")
         back, told, _ = self.points.run(text + "*POINT p\n  material = found\n  control = " + TENSION
@@ -160,24 +160,24 @@ class Trial:
         return {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", text)}, rows, text
 
     def near(self, name, found, wanted, tolerance):
-        """Compares parameters."""
+        """Compare parameters."""
         for key, value in wanted.items():
             self.expect(abs(found.get(key, 1e9) - value) <= tolerance * max(abs(value), 1),
                         f"{name}: {key} is {found.get(key)}, expected {value:.6g}")
 
 
 def largest(rows):
-    """The largest difference of measured and identified."""
+    """Return the largest difference of measured and identified."""
     return max((abs(one - two) for one, two in rows.values() if one is not None), default=float("inf"))
 
 
 def of_law(law):
-    """The parameters of a text."""
+    """Return the parameters of a text."""
     return {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", law)}
 
 
 def check_steel(trial):
-    """Every criterion has exactly the r-values of mild steel."""
+    """Check that every criterion has exactly the r-values of mild steel."""
     for name, given, wanted in STEEL_SETS:
         found, rows, text = trial.fit("--criterion", name, *STEEL, *(["--fix", *given] if given else []))
         trial.expect(largest(rows) < 2e-4, f"{name}: {text}")
@@ -193,7 +193,7 @@ def check_steel(trial):
 
 
 def measure(trial, name, law):
-    """Lines with the values that the program gives for a law."""
+    """Return lines with the values that the program computes for a law."""
     data = [Datum(key, angle) for key in ("stress", "r") for angle in ANGLES]
     data += [Datum("biaxial_stress"), Datum("biaxial_r"), Datum("plane_strain", 0), Datum("plane_strain", 90)]
     keys = ["stress"] * 7 + ["r"] * 7 + ["biaxial_stress", "biaxial_r", "plane_strain", "plane_strain"]
@@ -207,13 +207,13 @@ def measure(trial, name, law):
 
 
 def write(values, path="values.txt"):
-    """Writes values as a file for --data."""
+    """Write values as a file for --data."""
     Path(path).write_text("".join(f"{key} {'' if angle is None else f'{angle} '}{value:.10g}\n"
                                   for key, angle, value in values), encoding="utf-8")
 
 
 def check_true(trial):
-    """Values of known parameters are met again."""
+    """Check that values of known parameters are reproduced."""
     for name, law, given, whole in TRUE_SETS:
         write(measure(trial, name, law))
         found, rows, text = trial.fit("--criterion", name, "--data", "values.txt",
@@ -231,7 +231,7 @@ def check_true(trial):
 
 
 def check_alloy(trial):
-    """Titanium by cpb06; AA2090-T3 by criteria that can follow it: root of the sum of squares, equibiaxial r."""
+    """Check titanium by cpb06, AA2090-T3 by criteria that can fit it: root of the sum of squares, equibiaxial r."""
     found, rows, text = trial.fit("--criterion", "cpb06", *TITANIUM)
     trial.expect(largest(rows) < 2e-3, f"titanium: {text}")
     trial.expect("C66" not in found and "nothing about C66" in text, f"titanium: {text}")
@@ -243,19 +243,19 @@ def check_alloy(trial):
 
 
 def curve(trial, law, targets):
-    """Strains and stresses of a law along rolling."""
+    """Return strains and stresses of a law along rolling."""
     path = (TENSION, 0, [([value, 0, 0, 0, 0, 0], steps) for value, steps in targets])
     rows = trial.points.rows([("yield = von_mises", f"hardening = {law}")], [path])[0][0]
     return np.array([(row["e11"], row["s11"]) for row in rows[1:]])
 
 
 def write_curve(rows, header="strain,stress (N/mm²)\n"):
-    """Writes a curve, as testing machines do."""
+    """Write a curve in the format of testing machines."""
     Path("curve.csv").write_text(header + "".join(f"{a:.10g},{b:.10g}\n" for a, b in rows), encoding="latin-1")
 
 
 def check_hardening(trial):
-    """Each law is found again from its curve."""
+    """Check that each law is identified from its curve."""
     for law in LAWS:
         name = law.split()[0]
         write_curve(curve(trial, law, [(0.25, 40)]))
@@ -277,7 +277,7 @@ def check_hardening(trial):
 
 
 def check_reversal(trial):
-    """A back-stress from tension and then compression, and the picture."""
+    """Check a back-stress from tension and then compression, and the picture."""
     write_curve(curve(trial, REVERSAL, [(0.08, 160), (-0.04, 240)])[4::5])
     found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
                                   "--criterion", "hill48", *STEEL, "--plot", "found.png")
@@ -287,7 +287,7 @@ def check_reversal(trial):
 
 
 def check_few_rows(trial):
-    """Notes where a curve has fewer rows than there are parameters, and where it is missed."""
+    """Check the notes if a curve has fewer rows than there are parameters, and if the fit is poor."""
     write_curve([(0.01, 200), (0.05, 250), (0.1, 280), (0.09, -100), (0.05, -250), (0, -290)])
     _, _, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "lemaitre_chaboche", "--curve",
                            "curve.csv")
@@ -296,7 +296,7 @@ def check_few_rows(trial):
 
 
 def check_mistakes(trial):
-    """What is said of input that cannot be used."""
+    """Check the messages for unusable input."""
     Path("bytes.txt").write_bytes(b"\xff\xfe\x00r")
     for words, wanted in MISTAKES:
         code, said, _ = trial.call(*words.split())
@@ -304,7 +304,7 @@ def check_mistakes(trial):
 
 
 def main():
-    """Runs all checks."""
+    """Run all checks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="the program dd3imp")
     trial = Trial(str(Path(parser.parse_args().program).resolve()))

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the material files of input_files/materials.
+"""Check the material files of input_files/materials.
 
     library.py --program build/release/dd3imp
 
-- Each holds a header with reference, measurements and certainty, and one *MATERIAL named after the file.
+- Each has a header with reference, measurements and certainty, and one *MATERIAL named after the file.
 - Each passes `dd3imp --check` when a file with a *POINT includes it.
 - Tension, compression and equibiaxial tension at a point give the stresses (over the flow stress) and r-values that
   its header states, to the digits printed there (0.6 of a unit of the last).
@@ -26,7 +26,7 @@ CHECK = re.compile(rf"^#\s+({'|'.join(KINDS)})\s+(?:(\d+)\s+)?([-\d.]+)\s+([-\d.
 
 
 def deck(path, checks):
-    """Input that takes the material of a file along the paths of its check values."""
+    """Return input that drives the material of a file on the paths of its check values."""
     lines = [f'*INCLUDE "{path}"']
     for i, (kind, angle, _, _) in enumerate(checks):
         control, sign = KINDS[kind]
@@ -39,7 +39,7 @@ def deck(path, checks):
 
 
 def measure(kind, rows):
-    """Stress over flow stress and r-value of a path."""
+    """Return stress over flow stress and r-value of a path."""
     _, elastic, first, last = rows
     leading = "s11" if KINDS[kind][0] == ALONG else "s33"
     pair = ("e22", "e33") if leading == "s11" else ("e22", "e11")
@@ -49,7 +49,7 @@ def measure(kind, rows):
 
 
 def run(program, text, *options):
-    """Exit code, messages and rows by point."""
+    """Return exit code, messages and rows by point."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "points.dat"
         file.write_text(text, encoding="utf-8")
@@ -65,14 +65,14 @@ def run(program, text, *options):
 
 
 def off(wanted, value):
-    """Whether a value differs from the printed one by more than its digits allow."""
+    """Return whether a value differs from the printed one by more than its digits allow."""
     if wanted == "-":
         return False
     return abs(float(wanted) - value) > 0.6 * 10.0 ** -len(wanted.partition(".")[2])
 
 
 def check(program, path):
-    """What is wrong with a file."""
+    """Return the errors of a file."""
     text = path.read_text(encoding="utf-8")
     wrong = [f"no line '# {word}: ...'" for word in ("Reference", "Measured", "Certainty") if f"\n# {word}: " not in text]
     if re.findall(r"^\*MATERIAL (\S+)", text, re.MULTILINE) != [path.stem] or text.count("\n*") != 1:
@@ -94,7 +94,7 @@ def check(program, path):
 
 
 def main():
-    """Checks all files."""
+    """Check all files."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="the program dd3imp")
     program = parser.parse_args().program

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the special cases that docs/laws states: two laws that are said to be the same give the same stresses.
+"""Check the special cases stated in docs/laws: both laws of a pair give the same stresses.
 
     special_cases.py --program build/release/dd3imp
 
-Both materials of a pair go along the same random paths of strain, all six components, with a change of direction.
+Both materials undergo the same random strain paths, in all six components, with a change of direction.
 """
 import argparse
 import csv
@@ -22,7 +22,7 @@ BARLAT = " ".join(f"{name}={value}" for name, value in ABC.items())
 
 
 def hill_of_barlat():
-    """Hill's coefficients of the transformed stress of yld91 with a quadratic function."""
+    """Return Hill's coefficients of the transformed stress of yld91 with a quadratic function."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     f, g, h = ((x * x + (x * y + x * z - y * z) / 2) / 3 for x, y, z in ((a, b, c), (b, a, c), (c, a, b)))
     shears = (1.5 * ABC[name] ** 2 for name in "fgh")
@@ -30,7 +30,7 @@ def hill_of_barlat():
 
 
 def mixture_of_barlat(k, c):
-    """karafillis_boyce with the transformed stress of yld91."""
+    """Return karafillis_boyce with the transformed stress of yld91."""
     x, y, z = ABC["a"], ABC["b"], ABC["c"]
     scale = (y + z) / 3
     values = (k, c, scale, (x + z) / (y + z), (x + y) / (y + z), *(ABC[name] / scale for name in "fgh"))
@@ -39,7 +39,7 @@ def mixture_of_barlat(k, c):
 
 
 def two_of_barlat(m):
-    """yld2004 with the transformed stress of yld91, twice."""
+    """Return yld2004 with the transformed stress of yld91, twice."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     values = {"12": (b + 2 * c) / 3, "13": (2 * b + c) / 3, "21": (a + 2 * c) / 3, "23": (2 * a + c) / 3,
               "31": (a + 2 * b) / 3, "32": (2 * a + b) / 3, "44": ABC["f"], "55": ABC["g"], "66": ABC["h"]}
@@ -47,7 +47,7 @@ def two_of_barlat(m):
 
 
 def ones(law, names, rest):
-    """A criterion with all these parameters 1."""
+    """Return a criterion with all these parameters 1."""
     return f"{law} {' '.join(f'{name}=1' for name in names)} {rest}"
 
 
@@ -91,7 +91,7 @@ HARDENING = (
 
 
 def deck(number, laws):
-    """Both materials of a pair along its paths."""
+    """Return both materials of a pair with its paths."""
     lines = []
     for i, law in enumerate(laws):
         lines += [f"*MATERIAL m{i}", "  young = 2.1e5", "  poisson = 0.3", *law]
@@ -106,7 +106,7 @@ def deck(number, laws):
 
 
 def stresses(program, text):
-    """Stresses of both materials of a pair, and what the program says where it fails."""
+    """Return the stresses of both materials of a pair, and messages if the program fails."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "pair.dat"
         file.write_text(text, encoding="utf-8")
@@ -123,7 +123,7 @@ def stresses(program, text):
 
 
 def main():
-    """Compares all pairs."""
+    """Compare all pairs."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="the program dd3imp")
     program = parser.parse_args().program

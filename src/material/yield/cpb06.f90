@@ -6,9 +6,9 @@
 !>     S22 = C12 s11 + C22 s22 + C23 s33    S31 = C55 s31
 !>     S33 = C13 s11 + C23 s22 + C33 s33    S12 = C66 s12
 !>
-!> and P_i = (2 Ci1 - Ci2 - Ci3)/3, so that sb = T11 in tension along rolling. Shears left out are
-!> those of a plane in which the sheet is isotropic, as C66 = (C11 + C22)/2 - C12. With m = 2 the
-!> second derivative jumps where a principal value is zero.
+!> and P_i = (2 Ci1 - Ci2 - Ci3)/3: sb = T11 in tension along rolling. Shear factors default to
+!> isotropy in their plane, as C66 = (C11 + C22)/2 - C12. With m = 2 the second derivative is
+!> discontinuous at a principal value of zero.
 module dd3_material_yield_cpb06
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
@@ -128,7 +128,7 @@ contains
     self%normalisation = 1/q%value
   end subroutine set
 
-  !> Evaluate the function of the principal values; zero where no term is positive.
+  !> Evaluate the function of the principal values; zero if no term is positive.
   pure subroutine principal_function(self, e, q)
     class(cpb06_t), intent(in) :: self
     real(wp), intent(in) :: e(6)
@@ -153,8 +153,8 @@ contains
     end do
     call root_of(3, self%exponent%value, scale, 1.0_wp, f, q)
     q%value = self%normalisation*q%value
-    q%first = self%normalisation*q%first
-    q%second = self%normalisation*q%second
+    q%first(1:3) = self%normalisation*q%first(1:3)
+    q%second(1:3, 1:3) = self%normalisation*q%second(1:3, 1:3)
   end subroutine principal_function
 
 end module dd3_material_yield_cpb06

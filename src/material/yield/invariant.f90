@@ -1,10 +1,10 @@
-!> Criteria by generalised second and third invariants of the deviator s, a quadratic and a cubic
-!> form that leave orthotropy (O. Cazacu and F. Barlat, 2001, 2003):
+!> Criteria by generalised second and third invariants of the deviator s, an orthotropic quadratic
+!> and an orthotropic cubic form (O. Cazacu and F. Barlat, 2001, 2003):
 !>
 !>     sb = factor (J2^3 - c J3^2)^(1/6),   J2 = Q_ij s_i s_j / 2,   J3 = A_ijk s_i s_j s_k / 6
 !>
-!> with Kelvin components s_i and symmetric Q and A whose contraction with the unit tensor is zero,
-!> so that derivatives need no projection.
+!> with Kelvin components s_i and symmetric Q and A. Their contraction with the unit tensor is zero:
+!> derivatives need no projection.
 module dd3_material_yield_invariant
   use dd3_base_kinds, only : wp
   use dd3_material_flow, only : flow_direction_t

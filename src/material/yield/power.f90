@@ -79,7 +79,7 @@ contains
     real(wp), intent(in) :: m, scale, factor
     !> The function, positive, with derivatives in x/scale.
     type(function_t), intent(in) :: f
-    !> The root.
+    !> The root; only derivatives in the first n variables are defined.
     type(function_t), intent(out) :: q
 
     real(wp) :: root, c, weight

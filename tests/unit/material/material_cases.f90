@@ -1,4 +1,4 @@
-!> What the material tests share: laws with ordinary and with perturbed parameters, all their
+!> Shared parts of the material tests: laws with typical and with perturbed parameters, all their
 !> combinations, random and degenerate stresses, and a point driven by stress or strain.
 module material_cases
   use dd3_base_kinds, only : wp
@@ -24,12 +24,12 @@ module material_cases
 
   !> Elastic constants of the tests.
   real(wp), parameter :: young = 2.1e5_wp, poisson = 0.3_wp
-  !> Stresses each criterion is tried at: the first ones degenerate, the others random.
+  !> Number of stresses at which each criterion is tested: the first degenerate, the others random.
   integer, parameter :: stress_cases = 40
 
 contains
 
-  !> Makes the random numbers the same in every run.
+  !> Make the random numbers reproducible.
   subroutine seed()
     integer :: n, i
 
@@ -37,7 +37,7 @@ contains
     call random_seed(put=[(1234 + 77*i, i=1, n)])
   end subroutine seed
 
-  !> Six random numbers between -1 and 1.
+  !> Return six random numbers between -1 and 1.
   function random_vector() result(v)
     real(wp) :: v(6)
 
@@ -45,8 +45,8 @@ contains
     v = 2*v - 1
   end function random_vector
 
-  !> A stress of some 300 MPa: uniaxial, equibiaxial, shears, two equal principal values, nearly
-  !> equal ones, with a large pressure; then random.
+  !> Return a stress of about 300 MPa: uniaxial, equibiaxial, shears, two equal principal values,
+  !> nearly equal ones, with a large pressure; then random.
   function stress_of_case(number) result(stress)
     integer, intent(in) :: number
     real(wp) :: stress(6)
@@ -74,7 +74,7 @@ contains
     end select
   end function stress_of_case
 
-  !> A law with its values.
+  !> Return a law with its values.
   function choice(name, keys, values) result(law)
     character(len=*), intent(in) :: name, keys(:)
     real(wp), intent(in) :: values(:)
@@ -88,7 +88,7 @@ contains
     end do
   end function choice
 
-  !> Hill's criterion of the bending test's steel.
+  !> Return Hill's criterion of the steel of the bending test.
   function mild_steel() result(law)
     type(law_choice_t) :: law
 
@@ -96,10 +96,10 @@ contains
                  [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
   end function mild_steel
 
-  !> The values, each changed at random by up to a fifth (of one, where it is zero) and still
-  !> without problems. A parameter that may not be below 1 is an exponent, or half of one: it becomes
-  !> the given multiple of its lowest value, 2 or 1; without one, twice, three or four times it, as
-  !> a law is smooth for even exponents only.
+  !> Return valid values, each changed at random by up to a fifth (of one, if it is zero). A
+  !> parameter with a lower bound of 1 or more is an exponent or half of one: it becomes the given
+  !> multiple of the bound; by default two, three or four times, as a law is smooth for even
+  !> exponents only.
   function perturbed(kind, description, multiple) result(values)
     integer, intent(in) :: kind
     type(description_t), intent(in) :: description
@@ -133,7 +133,7 @@ contains
     end do
   end function perturbed
 
-  !> A parameter of a law.
+  !> Return the row of a parameter.
   type(parameter_t) function row_of(description, name)
     type(description_t), intent(in) :: description
     character(len=*), intent(in) :: name
@@ -145,8 +145,8 @@ contains
     row_of = description%rows(i)
   end function row_of
 
-  !> Every criterion of the registry, with its example, with perturbed values, and with others whose
-  !> exponent is no whole number.
+  !> Make every criterion of the registry: with its example, with perturbed values, and with others
+  !> whose exponent is not an integer.
   subroutine make_criteria(criteria, isotropic)
     type(yield_slot_t), allocatable, intent(out) :: criteria(:)
     logical, allocatable, intent(out) :: isotropic(:)
@@ -169,7 +169,7 @@ contains
     end do
   end subroutine make_criteria
 
-  !> Every hardening law of the registry.
+  !> Make every hardening law of the registry.
   subroutine make_hardenings(laws)
     type(hardening_slot_t), allocatable, intent(out) :: laws(:)
     type(description_t) :: description
@@ -182,7 +182,7 @@ contains
     end do
   end subroutine make_hardenings
 
-  !> Every back-stress law of the registry.
+  !> Make every back-stress law of the registry.
   subroutine make_backstresses(laws)
     type(backstress_slot_t), allocatable, intent(out) :: laws(:)
     type(description_t) :: description
@@ -195,7 +195,7 @@ contains
     end do
   end subroutine make_backstresses
 
-  !> Number of combinations criterion x hardening x back-stress; none, each, and all together.
+  !> Return the number of combinations criterion x hardening x back-stress (none, each, all).
   integer function combination_count()
     type(description_t), allocatable :: criteria(:), hardenings(:), backstresses(:)
 
@@ -205,7 +205,7 @@ contains
     combination_count = size(criteria)*size(hardenings)*(size(backstresses) + 2)
   end function combination_count
 
-  !> Makes one of them, the criterion with perturbed values.
+  !> Make one of the combinations, the criterion with perturbed values.
   subroutine make_combination(number, material, name)
     integer, intent(in) :: number
     type(material_t), intent(out) :: material
@@ -240,7 +240,7 @@ contains
                        law_choice_t(hardenings(j)%name, hardenings(j)%example), back)
   end subroutine make_combination
 
-  !> A material that must be right.
+  !> Make a material with valid parameters.
   subroutine make_material(material, criterion, hardening, back)
     type(material_t), intent(out) :: material
     type(law_choice_t), intent(in) :: criterion, hardening
@@ -255,15 +255,15 @@ contains
     end if
   end subroutine make_material
 
-  !> Takes a point over an increment in axes turned by `r` (material = r times these): each
-  !> component either to a stress or by a strain. The state is renewed where all went well.
-  subroutine drive(material, r, by_stress, goal, stress, internal, strain, success)
+  !> Drive a point over an increment in axes rotated by `r` (material = r times these), each
+  !> component to a stress or by a strain. The state is updated on success.
+  subroutine drive(material, r, by_stress, goal, stress, internal_variables, strain, success)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: r(6, 6), goal(6)
     logical, intent(in) :: by_stress(6)
-    real(wp), intent(inout) :: stress(6), internal(material%n_internal), strain(6)
+    real(wp), intent(inout) :: stress(6), internal_variables(material%n_internal), strain(6)
     logical, intent(out) :: success
-    real(wp) :: increment(6), new_stress(6), new_internal(material%n_internal), tangent(6, 6)
+    real(wp) :: increment(6), stress_trial(6), internal_trial(material%n_internal), tangent(6, 6)
     real(wp) :: residual(6), matrix(6, 6)
     type(verdict_t) :: verdict
     logical :: plastic, regular
@@ -272,14 +272,14 @@ contains
     success = .false.
     increment = merge(0.0_wp, goal, by_stress)
     do iteration = 1, 50
-      call material%update(stress, internal, matmul(r, increment), new_stress, new_internal, &
-                           tangent, plastic, verdict)
+      call material%update(stress, internal_variables, matmul(r, increment), stress_trial, &
+          internal_trial, tangent, plastic, verdict)
       if (verdict%outcome /= verdict_converged) return
-      residual = merge(matmul(new_stress, r) - goal, 0.0_wp, by_stress)
+      residual = merge(matmul(stress_trial, r) - goal, 0.0_wp, by_stress)
       if (maxval(abs(residual)) < 1.0e-8_wp) then
         success = .true.
-        stress = new_stress
-        internal = new_internal
+        stress = stress_trial
+        internal_variables = internal_trial
         strain = strain + increment
         return
       end if

@@ -18,7 +18,7 @@ module path_law
   real(wp), parameter :: y0 = 200.0_wp, h = 300.0_wp, f = 80.0_wp, c_p = 12.0_wp, &
                          c_x = 30.0_wp, x0 = 40.0_wp, g = 30.0_wp
 
-  !> The law; its internal variables are P, then X.
+  !> The law; its internal_variables variables are P, then X.
   type, extends(hardening_t) :: path_law_t
   contains
     procedure, nopass :: describe
@@ -110,7 +110,7 @@ contains
     end do
   end subroutine back_stress
 
-  !> Evolve the law's internal variables.
+  !> Evolve the law's internal_variables variables.
   pure subroutine evolve(self, start, increment, direction, evolved)
     class(path_law_t), intent(in) :: self
     real(wp), intent(in) :: start(self%n_internal), increment
