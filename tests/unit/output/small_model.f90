@@ -6,6 +6,7 @@ module small_model
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
   use dd3_element_registry, only : new_element
+  use dd3_linalg_tensor, only : identity
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : new_material
   use dd3_model_model, only : model_t
@@ -81,11 +82,9 @@ contains
     model%phase(1)%name = "clamp"
     model%phase(2)%name = "draw"
     model%phase(2)%control = 1
-    call new_state(state, 12, 8, 2, 1, 2, 2, 0)
-    state%x = model%x0
-    do i = 1, 3
-      state%orientation(i, i, :, :) = 1.0_wp
-    end do
+    allocate (model%load_set(0))
+    model%axes = reshape(identity, [3, 3, 1])
+    call new_state(state, model)
   end subroutine make_small_model
 
   !> Number of a node.
@@ -126,7 +125,8 @@ contains
     character(len=2000) :: buffer
     integer :: unit, status, n, pass
 
-    ! Counted first, then kept: gfortran 12 at -O3 loses lengths where such an array grows by constructors.
+    ! Counted first, then kept: gfortran 12 at -O3 loses lengths where such an array grows by
+    ! constructors.
     do pass = 1, 2
       n = 0
       open (newunit=unit, file=path, status="old", action="read", iostat=status)

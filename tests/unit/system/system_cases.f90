@@ -1,5 +1,5 @@
-!> What the tests of the system share: a model from an input file, states far from equilibrium with
-!> every kind of contact, and the residual of the mixed equations.
+!> Fixtures of the tests of the system: a model from an input file, states far from equilibrium with
+!> every contact status, and the residual of the mixed equations.
 module system_cases
   use, intrinsic :: iso_fortran_env, only : error_unit
   use dd3_base_kinds, only : wp
@@ -10,10 +10,8 @@ module system_cases
   use dd3_input_reader, only : read_case
   use dd3_linalg_solver, only : solver_options_t
   use dd3_model_build, only : new_model
-  use dd3_model_initial, only : new_initial_state
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
-  use dd3_model_state, only : state_copy, state_t
+  use dd3_model_state, only : new_state, state_t
   use dd3_system_contact, only : evaluate_contact
   use dd3_system_internal, only : update_material
   use dd3_system_system, only : new_system, system_t
@@ -23,11 +21,9 @@ module system_cases
 
 contains
 
-  !> Reads a model that is known to be in order.
+  !> Read a model whose input has no errors.
   subroutine load_model(model, file)
-    !> The model.
     type(model_t), intent(out) :: model
-    !> The input file.
     character(len=*), intent(in) :: file
 
     type(case_t) :: case
@@ -43,11 +39,9 @@ contains
     if (errors%count > 0) error stop "the input file of the test is not in order"
   end subroutine load_model
 
-  !> Sets up a system with the direct solver.
+  !> Make a system with the direct solver.
   subroutine load_system(system, model)
-    !> The system.
     type(system_t), intent(out) :: system
-    !> The model.
     type(model_t), intent(in) :: model
 
     type(solver_options_t) :: options
@@ -62,11 +56,10 @@ contains
     if (allocated(error)) error stop "the solver of the test is not known"
   end subroutine load_system
 
-  !> Numbers between -1 and 1, the same in every run.
+  !> Return reproducible numbers between -1 and 1.
   subroutine random_values(seed, values)
-    !> Start of the sequence; gets its end.
+    !> State of the sequence.
     integer, intent(inout) :: seed
-    !> The numbers.
     real(wp), intent(out) :: values(:, :)
 
     integer :: i, j
@@ -79,102 +72,91 @@ contains
     end do
   end subroutine random_values
 
-  !> A committed state with plastic history, and a trial state that goes on from it: pulled, bent,
-  !> twisted.
-  subroutine deform(system, model, old, new)
-    !> The system.
+  !> Make a committed state with plastic history and a trial state that continues it: stretched,
+  !> bent and twisted.
+  subroutine deform(system, model, committed, trial)
     type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The committed state.
-    type(state_t), intent(out) :: old
-    !> The trial state.
-    type(state_t), intent(out) :: new
+    type(state_t), intent(out) :: committed
+    type(state_t), intent(out) :: trial
 
     type(verdict_t) :: verdict
     real(wp) :: noise(3, model%n_node)
     integer :: step, seed
 
-    call new_initial_state(old, model)
-    call new_initial_state(new, model)
+    call new_state(committed, model)
+    call new_state(trial, model)
     seed = 7
     do step = 1, 3
-      if (step > 1) call state_copy(new, old)
+      if (step > 1) committed = trial
       call random_values(seed, noise)
-      new%x = old%x + 0.004_wp*noise
-      new%x(1, :) = new%x(1, :)*(1.0_wp + 0.004_wp*step)
-      new%x(3, :) = new%x(3, :) - 0.0005_wp*model%x0(1, :)**2
-      call update_material(system, model, old, new, .false., verdict)
+      trial%x = committed%x + 0.004_wp*noise
+      trial%x(1, :) = trial%x(1, :)*(1.0_wp + 0.004_wp*step)
+      trial%x(3, :) = trial%x(3, :) - 0.0005_wp*model%x0(1, :)**2
+      call update_material(system, model, committed, trial, .false., verdict)
       if (verdict%outcome /= verdict_converged) error stop "the strip cannot be deformed"
     end do
   end subroutine deform
 
-  !> Gives the candidates contact forces so that some stick, some slip and some leave their tools.
-  subroutine touch_all(system, model, phase, old, new)
-    !> The system.
+  !> Set contact forces with which some candidates stick, some slip and some leave their tools.
+  subroutine touch_all(system, model, committed, trial)
     type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
 
-    real(wp) :: along(3), pressure
+    real(wp) :: tangent(3), pressure, penalty
     integer :: c
 
-    new%hint%due = .true.
-    call evaluate_contact(system%contact, model, phase, old, new)
+    penalty = model%phase(trial%phase)%penalty
+    trial%hint%due = .true.
+    call evaluate_contact(system%contact, model, committed, trial)
     do c = 1, model%n_contact
-      along = [1.0_wp, 0.4_wp, 0.2_wp]
-      along = along - dot_product(along, system%contact%normal(:, c))*system%contact%normal(:, c)
-      pressure = merge(6000.0_wp + 3.0_wp*phase%penalty, 1000.0_wp, modulo(c/2, 2) == 0)
+      tangent = [1.0_wp, 0.4_wp, 0.2_wp]
+      tangent = tangent - dot_product(tangent, system%contact%normal(:, &
+          c))*system%contact%normal(:, c)
+      pressure = merge(6000.0_wp + 3.0_wp*penalty, 1000.0_wp, modulo(c/2, 2) == 0)
       if (modulo(c, 5) == 0) pressure = -60.0_wp
-      pressure = pressure + phase%penalty*system%contact%distance(c)
-      new%lambda(:, c) = 300.0_wp*along - pressure*system%contact%normal(:, c)
+      pressure = pressure + penalty*system%contact%distance(c)
+      trial%lambda(:, c) = 300.0_wp*tangent - pressure*system%contact%normal(:, c)
     end do
-    call evaluate_contact(system%contact, model, phase, old, new)
+    call evaluate_contact(system%contact, model, committed, trial)
   end subroutine touch_all
 
-  !> Residuals of the mixed equations as the sheet, its contact forces and the tools are moved.
-  subroutine mixed_residual(system, model, phase, old, new, residual, excess, tool_residual)
-    !> The system.
+  !> Evaluate the residuals of the mixed equations.
+  subroutine mixed_residual(system, model, committed, trial, residual, contact_residual, &
+      tool_residual)
     type(system_t), intent(inout) :: system
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The phase.
-    type(phase_t), intent(in) :: phase
-    !> The committed state.
-    type(state_t), intent(in) :: old
-    !> The trial state.
-    type(state_t), intent(inout) :: new
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
     !> F_int - F_ext + lambda, `(3, n_node)`.
     real(wp), intent(out) :: residual(:, :)
     !> F_equ - lambda, `(3, n_contact)`.
-    real(wp), intent(out) :: excess(:, :)
-    !> Out-of-balance forces of the tools along their lines, `(n_tool)`.
+    real(wp), intent(out) :: contact_residual(:, :)
+    !> Out-of-balance forces of the tools tangent their lines, `(n_tool)`.
     real(wp), intent(out) :: tool_residual(:)
 
     type(verdict_t) :: verdict
     integer :: c, t
 
-    call update_material(system, model, old, new, .false., verdict)
+    call update_material(system, model, committed, trial, .false., verdict)
     if (verdict%outcome /= verdict_converged) error stop "no stress for the state of the test"
-    call evaluate_contact(system%contact, model, phase, old, new)
-    residual = new%internal_force - new%external_force
-    excess = system%contact%force - new%lambda
+    call evaluate_contact(system%contact, model, committed, trial)
+    residual = trial%internal_force - trial%external_force
+    contact_residual = system%contact%force - trial%lambda
     tool_residual = 0.0_wp
     do t = 1, model%n_tool
-      tool_residual(t) = dot_product(phase%direction(:, t), new%tool_load(:, t))
+      tool_residual(t) = dot_product(model%phase(trial%phase)%direction(:, t), &
+          trial%tool_load(:, t))
     end do
     do c = 1, model%n_contact
-      residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + new%lambda(:, c)
+      residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + trial%lambda(:, c)
       t = system%contact%tool(c)
       if (t == 0) cycle
       tool_residual(t) = tool_residual(t) &
-                         + dot_product(phase%direction(:, t), system%contact%force(:, c))
+                         + dot_product(model%phase(trial%phase)%direction(:, t), &
+                         system%contact%force(:, c))
     end do
   end subroutine mixed_residual
 
