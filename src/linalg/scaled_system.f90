@@ -101,7 +101,7 @@ contains
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
     verdict%node = self%order(bad_row)
-    verdict%reason = "zero row or value that is not finite in block row " &
+    verdict%reason = "row of zeros or value that is not finite in block row " &
         //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 
