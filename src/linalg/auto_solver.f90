@@ -89,7 +89,7 @@ contains
     else
       self%memory(memory_rest) = self%memory(memory_rest) - 1
       self%reason = "CGS skipped after "//to_text(self%memory(memory_failures)) &
-        //" failures in a row"
+          //" failures in a row"
     end if
     if (.not. self%cgs_ready) call factor_directly(self, matrix, verdict)
     self%method = merge("cgs    ", "umfpack", self%cgs_ready)
@@ -116,7 +116,7 @@ contains
     if (self%failure_recorded) return
     self%failure_recorded = .true.
     associate (failures => self%memory(memory_failures), rest => self%memory(memory_rest), &
-      next_rest => self%memory(memory_next_rest))
+        next_rest => self%memory(memory_next_rest))
       failures = failures + 1
       if (failures < failures_allowed) return
       rest = next_rest

@@ -3,7 +3,7 @@
 !> by name in the running program; no-op with any other BLAS.
 module dd3_linalg_blas_threads
   use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, &
-    c_associated, c_f_procpointer
+      c_associated, c_f_procpointer
   implicit none
   private
   public :: use_one_blas_thread

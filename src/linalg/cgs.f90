@@ -26,11 +26,11 @@ module dd3_linalg_cgs
   integer, parameter :: restart_limit = 5
   !> How a cycle ended.
   integer, parameter :: ended_converged = 0, ended_rho = 1, ended_sigma = 2, ended_diverged = 3, &
-    ended_stalled = 4, ended_drifted = 5, ended_spent = 6
+      ended_stalled = 4, ended_drifted = 5, ended_spent = 6
   !> Text for each way of ending but convergence.
   character(len=48), parameter :: ended_text(6) = [character(len=48) :: &
-    "CGS broke down (rho)", "CGS broke down (sigma)", "CGS diverged", "CGS stalled", &
-    "CGS residual not confirmed by the solution", "CGS used up its iterations"]
+      "CGS broke down (rho)", "CGS broke down (sigma)", "CGS diverged", "CGS stalled", &
+      "CGS residual not confirmed by the solution", "CGS used up its iterations"]
 
   !> Settings, work vectors and outcome of the iteration.
   type :: cgs_t
@@ -73,7 +73,7 @@ contains
       deallocate (self%r, self%shadow, self%p, self%q, self%u, self%v, self%hat, self%x, self%best)
     end if
     allocate (self%r(n), self%shadow(n), self%p(n), self%q(n), self%u(n), self%v(n), self%hat(n), &
-      self%x(n), self%best(n))
+        self%x(n), self%best(n))
   end subroutine cgs_setup
 
   !> Solve A x = b for a right-hand side of unit length.

@@ -21,6 +21,14 @@ module dd3_linalg_fill_pattern
     integer, allocatable :: diagonal(:)
   end type fill_pattern_t
 
+  !> Row being built: a linked list of columns in ascending order.
+  type :: row_t
+    !> Column after each one, from 0 (start) to n + 1 (end), `(0:n)`.
+    integer, allocatable :: next(:)
+    !> Level of each column in the list, `(n)`.
+    integer, allocatable :: level(:)
+  end type row_t
+
 contains
 
   !> Build the pattern of the factors.
@@ -33,25 +41,24 @@ contains
     !> Maximum number of blocks; beyond it the lists are not allocated on return.
     integer, intent(in), optional :: most
 
-    ! The row being built: a linked list of columns in ascending order from 0 to n + 1.
-    integer, allocatable :: chain(:), chain_level(:)
-    ! Levels of the finished rows.
-    integer, allocatable :: level_of(:)
+    type(row_t) :: row
+    ! Level of each block in `column`.
+    integer, allocatable :: block_level(:)
     integer :: i, k
 
     self%n = matrix%n
     allocate (self%row_start(self%n + 1), self%diagonal(self%n))
-    allocate (self%column(2*size(matrix%column)), level_of(2*size(matrix%column)))
-    allocate (chain(0:self%n + 1), chain_level(self%n))
+    allocate (self%column(2*size(matrix%column)), block_level(2*size(matrix%column)))
+    allocate (row%next(0:self%n), row%level(self%n))
     self%row_start(1) = 1
     do i = 1, self%n
-      call start_row(i)
-      k = chain(0)
+      call load_row(row, matrix, i)
+      k = row%next(0)
       do while (k < i)
-        call merge_row(k)
-        k = chain(k)
+        call merge_row(row, self, block_level, k, level)
+        k = row%next(k)
       end do
-      call store_row(i)
+      call store_row(row, self, block_level, i)
       if (present(most)) then
         if (self%row_start(i + 1) > most) then
           deallocate (self%row_start, self%column, self%diagonal)
@@ -60,72 +67,81 @@ contains
       end if
     end do
     self%column = self%column(:self%row_start(self%n + 1) - 1)
-
-  contains
-
-    !> Start the list with row i of the matrix.
-    subroutine start_row(i)
-      integer, intent(in) :: i
-
-      integer :: position, previous
-
-      previous = 0
-      do position = matrix%row_start(i), matrix%row_start(i + 1) - 1
-        chain(previous) = matrix%column(position)
-        previous = matrix%column(position)
-        chain_level(previous) = 0
-      end do
-      chain(previous) = self%n + 1
-    end subroutine start_row
-
-    !> Add the fill-in that comes through row k of U.
-    subroutine merge_row(k)
-      integer, intent(in) :: k
-
-      integer :: position, j, new_level, previous
-
-      previous = k
-      do position = self%diagonal(k) + 1, self%row_start(k + 1) - 1
-        new_level = chain_level(k) + level_of(position) + 1
-        if (new_level > level) cycle
-        j = self%column(position)
-        do while (chain(previous) < j)
-          previous = chain(previous)
-        end do
-        if (chain(previous) == j) then
-          chain_level(j) = min(chain_level(j), new_level)
-        else
-          chain(j) = chain(previous)
-          chain(previous) = j
-          chain_level(j) = new_level
-        end if
-        previous = j
-      end do
-    end subroutine merge_row
-
-    !> Append the list to the pattern as row i.
-    subroutine store_row(i)
-      integer, intent(in) :: i
-
-      integer :: position, j
-
-      position = self%row_start(i)
-      j = chain(0)
-      do while (j <= self%n)
-        if (position > size(self%column)) then
-          call double_size(self%column)
-          call double_size(level_of)
-        end if
-        self%column(position) = j
-        level_of(position) = chain_level(j)
-        if (j == i) self%diagonal(i) = position
-        position = position + 1
-        j = chain(j)
-      end do
-      self%row_start(i + 1) = position
-    end subroutine store_row
-
   end subroutine new_fill_pattern
+
+  !> Start the list with row i of the matrix.
+  subroutine load_row(row, matrix, i)
+    type(row_t), intent(inout) :: row
+    type(block_matrix_t), intent(in) :: matrix
+    integer, intent(in) :: i
+
+    integer :: position, previous
+
+    previous = 0
+    do position = matrix%row_start(i), matrix%row_start(i + 1) - 1
+      row%next(previous) = matrix%column(position)
+      previous = matrix%column(position)
+      row%level(previous) = 0
+    end do
+    row%next(previous) = matrix%n + 1
+  end subroutine load_row
+
+  !> Add the fill-in that comes through row k of U to the list.
+  subroutine merge_row(row, self, block_level, k, level)
+    type(row_t), intent(inout) :: row
+    type(fill_pattern_t), intent(in) :: self
+    !> Level of each block of the pattern.
+    integer, intent(in) :: block_level(:)
+    integer, intent(in) :: k
+    !> Highest level kept.
+    integer, intent(in) :: level
+
+    integer :: position, j, new_level, previous
+
+    previous = k
+    do position = self%diagonal(k) + 1, self%row_start(k + 1) - 1
+      new_level = row%level(k) + block_level(position) + 1
+      if (new_level > level) cycle
+      j = self%column(position)
+      do while (row%next(previous) < j)
+        previous = row%next(previous)
+      end do
+      if (row%next(previous) == j) then
+        row%level(j) = min(row%level(j), new_level)
+      else
+        row%next(j) = row%next(previous)
+        row%next(previous) = j
+        row%level(j) = new_level
+      end if
+      previous = j
+    end do
+  end subroutine merge_row
+
+  !> Append the list to the pattern as row i.
+  subroutine store_row(row, self, block_level, i)
+    type(row_t), intent(in) :: row
+    type(fill_pattern_t), intent(inout) :: self
+    !> Level of each block of the pattern.
+    integer, allocatable, intent(inout) :: block_level(:)
+    integer, intent(in) :: i
+
+    integer :: position, j
+
+    position = self%row_start(i)
+    j = row%next(0)
+    do while (j <= self%n)
+      if (position > size(self%column)) then
+        call double_size(self%column)
+        call double_size(block_level)
+      end if
+      self%column(position) = j
+      block_level(position) = row%level(j)
+      if (j == i) self%diagonal(i) = position
+      position = position + 1
+      j = row%next(j)
+    end do
+    self%row_start(i + 1) = position
+  end subroutine store_row
 
   !> Double the size of a list.
   subroutine double_size(list)

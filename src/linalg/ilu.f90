@@ -1,8 +1,7 @@
 !> Incomplete LU factorisation by level of fill, ILU(k), on 3x3 blocks.
 !>
-!> The numeric factorisation goes row by row (IKJ; Saad, Iterative Methods for Sparse Linear Systems,
-!> 2nd ed. 2003, section 10.3), with inverted diagonal blocks. Nearly singular diagonal blocks are
-!> shifted.
+!> The numeric factorisation goes row by row (IKJ; Saad, Iterative Methods for Sparse Linear
+!> Systems, 2nd ed. 2003, section 10.3). Diagonal blocks are inverted, nearly singular ones shifted.
 !>
 !> On a narrow strip numbered section by section the complete factorisation has little more fill
 !> than an incomplete one. If allowed to, the set-up compares their costs and raises the level.
@@ -99,7 +98,7 @@ contains
     call new_fill_pattern(complete, matrix, matrix%n, fill_limit*size(matrix%column))
     if (.not. allocated(complete%column)) return
     limit = elimination_cost(self%pattern) &
-      + 2_i8*assumed_iterations*int(size(self%pattern%column) + size(matrix%column), i8)
+        + 2_i8*assumed_iterations*int(size(self%pattern%column) + size(matrix%column), i8)
     if (elimination_cost(complete) > limit) return
     self%pattern = complete
     self%description = "complete LU in place of "//trim(self%description)
@@ -199,15 +198,15 @@ contains
         from = matrix%row_start(i)
         to = matrix%row_start(i + 1) - 1
         call load_row(first, last, to - from + 1, self%target(from:to), &
-          matrix%value(:, :, from:to), self%row(9*first - 8:9*last))
+            matrix%value(:, :, from:to), self%row(9*first - 8:9*last))
         call eliminate_row(pattern%n, i, pattern%row_start, pattern%column, pattern%diagonal, &
-          size(self%stretch, 2), self%stretch_start, self%stretch, self%row, self%block, good)
+            size(self%stretch, 2), self%stretch_start, self%stretch, self%row, self%block, good)
         if (good) call finish_row(last - first + 1, pattern%diagonal(i) - first + 1, &
-          self%row(9*first - 8:9*last), self%block(:, :, first:last), self%shifted, good)
+            self%row(9*first - 8:9*last), self%block(:, :, first:last), self%shifted, good)
         if (.not. good) then
           verdict%outcome = verdict_retry
           verdict%reason = "the incomplete factorisation grows without bound in block row " &
-            //to_text(i)
+              //to_text(i)
           return
         end if
       end do
@@ -223,7 +222,7 @@ contains
 
     associate (pattern => self%pattern)
       call solve_triangles(pattern%n, size(pattern%column), pattern%row_start, pattern%column, &
-        pattern%diagonal, self%block, r, z)
+          pattern%diagonal, self%block, r, z)
     end associate
   end subroutine ilu_apply
 

@@ -73,7 +73,7 @@ contains
         from = at_k + 3*stretch(1, s) + 1
         to = at_i + 3*stretch(2, s) + 1
         call subtract(3*stretch(3, s), l, row(from), row(from + width_k), row(from + 2*width_k), &
-          row(to), row(to + width_i), row(to + 2*width_i))
+            row(to), row(to + width_i), row(to + 2*width_i))
       end do
     end do
   end subroutine eliminate_row

@@ -4,7 +4,7 @@ module dd3_linalg_matrix
   implicit none
   private
   public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-    multiply, clear, copy_blocks, add_element
+      multiply, clear, copy_blocks, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -28,8 +28,8 @@ module dd3_linalg_matrix
 contains
 
   !> Create a zero matrix with the pattern of a mesh, in which the nodes of an element are coupled.
-  !> Extra block rows and columns, each coupled with a list of nodes and with itself, follow those of
-  !> the nodes.
+  !> The nodes' block rows and columns are followed by extra ones, each coupled with a list of nodes
+  !> and with itself.
   subroutine new_pattern(self, n_node, connectivity, extra_start, extra_node)
     type(block_matrix_t), intent(out) :: self
     integer, intent(in) :: n_node

@@ -54,7 +54,7 @@ contains
       call reverse_cuthill_mckee(matrix, order)
     case default
       call fatal_error(error, "unknown ordering "//trim(name)//"; known: " &
-        //join(ordering_names, ", "))
+          //join(ordering_names, ", "))
     end select
   end subroutine find_ordering
 
@@ -69,7 +69,7 @@ contains
 
     allocate (permutation(matrix%n))
     status = amd_order(int(matrix%n, c_int), int(matrix%row_start - 1, c_int), &
-      int(matrix%column - 1, c_int), permutation, c_null_ptr, c_null_ptr)
+        int(matrix%column - 1, c_int), permutation, c_null_ptr, c_null_ptr)
     if (status < 0) then
       call fatal_error(error, "AMD could not order the matrix")
       return

@@ -95,14 +95,14 @@ contains
 
     associate (copy => self%matrix)
       call scale_rows(copy%n, size(copy%column), copy%row_start, self%source, matrix%value, &
-        copy%value, self%scale, bad_row)
+          copy%value, self%scale, bad_row)
     end associate
     verdict%outcome = verdict_converged
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
     verdict%node = self%order(bad_row)
-    verdict%reason = "zero row or value that is not finite in block row " &
-      //to_text(verdict%node)//" of the matrix"
+    verdict%reason = "row of zeros or value that is not finite in block row " &
+        //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 
   !> Kernel: copy and scale blocks up to the first bad row; see `scaled_system_t` for the arrays.

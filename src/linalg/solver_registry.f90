@@ -67,13 +67,14 @@ contains
     i = findloc(entries%name, options%method, 1)
     if (i == 0) then
       call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &
-        //join(solver_names(), ", "))
+          //join(solver_names(), ", "))
     else if (all(ordering_names /= options%ordering)) then
       call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: " &
-        //join(ordering_names, ", "))
-    else if (options%ilu_level < 0 .or. options%iterations < 1 .or. .not. options%tolerance > 0) then
+          //join(ordering_names, ", "))
+    else if (options%ilu_level < 0 .or. options%iterations < 1 &
+        .or. .not. options%tolerance > 0) then
       call fatal_error(error, "linear solver: expected a level of fill of at least 0, positive " &
-        //"iterations and a positive tolerance")
+          //"iterations and a positive tolerance")
     else
       call entries(i)%make(solver, options)
     end if

@@ -104,8 +104,8 @@ contains
     real(wp), intent(in) :: a(3, 3)
 
     determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) &
-      - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
-      + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+        - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+        + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
   end function determinant
 
   !> Invert a 3x3 matrix by its cofactors.
@@ -163,11 +163,11 @@ contains
     do sweep = 1, max_sweeps
       if (abs(x) + abs(y) + abs(z) <= small) exit
       if (abs(z) > 0.1_wp*small) &
-        call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
+          call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
       if (abs(y) > 0.1_wp*small) &
-        call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
+          call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
       if (abs(x) > 0.1_wp*small) &
-        call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
+          call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
     end do
   end subroutine symmetric_eigen
 

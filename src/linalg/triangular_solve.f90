@@ -7,8 +7,8 @@ module dd3_linalg_triangular_solve
 
 contains
 
-  !> Kernel: solve L U z = r; L has unit diagonal, the diagonal blocks of U are inverted. See `ilu_t`
-  !> and `fill_pattern_t` for the arrays.
+  !> Kernel: solve L U z = r; L has unit diagonal, the diagonal blocks of U are inverted. See
+  !> `ilu_t` and `fill_pattern_t` for the arrays.
   pure subroutine solve_triangles(n, n_block, row_start, column, diagonal, block, r, z)
     integer, intent(in) :: n, n_block, row_start(n + 1), column(n_block), diagonal(n)
     real(wp), intent(in) :: block(3, 3, n_block), r(3, n)

@@ -16,6 +16,11 @@ module dd3_linalg_umfpack
   integer, parameter :: control_size = 20, info_size = 90
   !> UMFPACK_A: solve A x = b.
   integer(c_int), parameter :: system_plain = 0
+  !> UMFPACK_STRATEGY: position of the pivoting strategy in the control parameters.
+  integer, parameter :: control_strategy = 6
+  !> UMFPACK_STRATEGY_SYMMETRIC: the pattern is nearly symmetric, with few zeros on the diagonal.
+  !> Without values UMFPACK does not choose it by itself.
+  real(c_double), parameter :: strategy_symmetric = 3.0_c_double
   !> UMFPACK_RCOND: position of the estimated reciprocal condition number in the statistics.
   integer, parameter :: info_rcond = 68
   !> Reciprocal condition number below which a matrix counts as singular.
@@ -120,6 +125,7 @@ contains
     call self%release()
     call use_one_blas_thread()
     call umfpack_di_defaults(self%control)
+    self%control(control_strategy) = strategy_symmetric
     self%n = 3*matrix%n
     allocate (blocks(matrix%n), rank(size(matrix%column)))
     blocks = 0
@@ -129,7 +135,7 @@ contains
     end do
     if (allocated(self%start)) deallocate (self%start, self%row, self%value, self%position)
     allocate (self%start(self%n + 1), self%row(9*size(rank)), self%value(9*size(rank)), &
-      self%position(3, size(rank)))
+        self%position(3, size(rank)))
     self%value = 0.0_wp
     self%start(1) = 0
     do j = 1, self%n
@@ -162,11 +168,11 @@ contains
     status = status_ok
     if (.not. c_associated(self%symbolic)) then
       status = umfpack_di_symbolic(int(self%n, c_int), int(self%n, c_int), self%start, self%row, &
-        c_null_ptr, self%symbolic, self%control, info)
+          c_null_ptr, self%symbolic, self%control, info)
     end if
     if (status == status_ok) then
       status = umfpack_di_numeric(self%start, self%row, self%value, self%symbolic, self%numeric, &
-        self%control, info)
+          self%control, info)
     end if
     if (status == status_ok) then
       if (.not. info(info_rcond) > rcond_limit) status = status_singular
@@ -215,7 +221,7 @@ contains
     x = 0.0_wp
     if (.not. c_associated(self%numeric)) return
     good = status_ok == umfpack_di_solve(system_plain, self%start, self%row, self%value, x, b, &
-      self%numeric, self%control, info)
+        self%numeric, self%control, info)
   end subroutine direct_solve
 
   !> Free the factors.

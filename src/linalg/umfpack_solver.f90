@@ -95,7 +95,7 @@ contains
     end if
     report%converged = report%residual <= max(residual_limit, self%options%tolerance)
     if (.not. report%converged) &
-      report%reason = "the direct solution does not satisfy the system: nearly singular"
+        report%reason = "the direct solution does not satisfy the system: nearly singular"
   end subroutine umfpack_solver_solve
 
   !> Free UMFPACK's factors.

@@ -1,5 +1,6 @@
-!> Times of closest-point queries and contact operators, in nanoseconds, on the tools of the bending
-!> test. The first argument names the folder of their files.
+!> Time closest-point queries and the contact operator on the tools of the bending test, in ns.
+!>
+!>     benchmark_contact [folder of the tool files]
 program benchmark_contact
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : wall_time
@@ -10,7 +11,7 @@ program benchmark_contact
   use dd3_contact_operator, only : contact_operator
   implicit none
 
-  !> Queries timed together, and nodes they are spread over.
+  !> Number of queries per measurement, and of the nodes that make them.
   integer, parameter :: n_query = 1000000, n_node = 64
   type(surface_t) :: punch
   type(error_list_t) :: errors
@@ -24,9 +25,9 @@ program benchmark_contact
     print '(a)', errors%item(1)%message
     stop 1
   end if
-  call time_queries("followed on the flat", 5.0_wp, 15.0_wp, 0.0_wp, 0.0_wp, .false.)
-  call time_queries("followed on the fillet", 0.0_wp, 0.0_wp, 0.2_wp, 1.3_wp, .false.)
-  call time_queries("followed over both", 15.0_wp, 20.0_wp, 0.0_wp, 1.3_wp, .false.)
+  call time_queries("tracked on the flat", 5.0_wp, 15.0_wp, 0.0_wp, 0.0_wp, .false.)
+  call time_queries("tracked on the fillet", 0.0_wp, 0.0_wp, 0.2_wp, 1.3_wp, .false.)
+  call time_queries("tracked over both", 15.0_wp, 20.0_wp, 0.0_wp, 1.3_wp, .false.)
   call time_queries("searched on the flat", 5.0_wp, 15.0_wp, 0.0_wp, 0.0_wp, .true.)
   call time_queries("searched on the fillet", 0.0_wp, 0.0_wp, 0.2_wp, 1.3_wp, .true.)
   call time_far()
@@ -34,13 +35,12 @@ program benchmark_contact
 
 contains
 
-  !> Times queries of nodes on the punch that move by some micrometres between two of them.
+  !> Time queries of nodes on the punch that move by a micrometre from query to query.
   subroutine time_queries(name, x_first, x_last, angle_first, angle_last, due)
-    !> What is printed.
     character(len=*), intent(in) :: name
-    !> Range of the places on the flat, mm, and on the fillet, rad.
+    !> Range of positions on the flat, mm, and on the fillet, rad.
     real(wp), intent(in) :: x_first, x_last, angle_first, angle_last
-    !> Whether the whole surface is searched every time.
+    !> Whether each query searches the whole surface.
     logical, intent(in) :: due
 
     type(hint_t) :: hint(n_node)
@@ -70,23 +70,24 @@ contains
     call report(name, wall_time() - start, n, total)
   end subroutine time_queries
 
-  !> Times queries of nodes that are far from the punch.
+  !> Time queries of nodes far from the punch.
   subroutine time_far()
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: start, total
+    real(wp) :: x(3), start, total
     integer :: i
 
     total = 0.0_wp
     start = wall_time()
     do i = 1, n_query
-      call find_contact(punch, [10.0_wp, 5.0_wp, -9.0_wp + 1.0e-6_wp*i], hint, 0.78_wp, 0.39_wp, hit)
+      x = [10.0_wp, 5.0_wp, -9.0_wp + 1.0e-6_wp*i]
+      call find_contact(punch, x, hint, 0.78_wp, 0.39_wp, hit)
       if (hit%found) total = total + 1.0_wp
     end do
     call report("far from the tool", wall_time() - start, n_query, total)
   end subroutine time_far
 
-  !> Times the operator of a slipping node on a curved tool.
+  !> Time the operator of a slipping node on a curved tool.
   subroutine time_operator()
     type(hint_t) :: hint
     type(hit_t) :: hit
@@ -100,21 +101,20 @@ contains
     do i = 1, n_query
       lambda = -100.0_wp*hit%normal + [0.0_wp, 1.0_wp, 1.0e-5_wp*i]
       call contact_operator(hit%normal, hit%distance, hit%dnormal, lambda, slip, 1.0e3_wp, &
-                            0.144_wp, force, d, e, status)
+          0.144_wp, force, d, e, status)
       total = total + force(1) + d(1, 2) + e(2, 3)
     end do
     call report("operator", wall_time() - start, n_query, total)
   end subroutine time_operator
 
-  !> Prints a time.
+  !> Print the time per call.
   subroutine report(name, seconds, n, total)
-    !> What was timed.
     character(len=*), intent(in) :: name
-    !> The time, s.
+    !> Time of all calls, s.
     real(wp), intent(in) :: seconds
     !> Number of calls.
     integer, intent(in) :: n
-    !> A sum of the results, so that none is left out.
+    !> Sum of the results, so that the compiler cannot drop any.
     real(wp), intent(in) :: total
 
     print '(a24, f10.1, a, es12.4, a)', name, 1.0e9_wp*seconds/n, " ns   (", total, ")"

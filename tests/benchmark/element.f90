@@ -1,4 +1,4 @@
-!> Microseconds per element of the element kernels, for every element of the registry.
+!> Time the element kernels for every element of the registry, in microseconds per element.
 program benchmark_element
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t
@@ -14,7 +14,7 @@ program benchmark_element
   use dd3_element_work, only : element_work_t, new_element_work
   implicit none
 
-  !> Best of so many rounds of so many calls.
+  !> The best of several rounds of many calls counts.
   integer, parameter :: rounds = 5, calls = 20000
   character(len=16), allocatable :: name(:)
   integer :: i
@@ -26,9 +26,8 @@ program benchmark_element
 
 contains
 
-  !> Times the kernels of one element and prints them.
+  !> Time the kernels of one element and print a line.
   subroutine measure(name)
-    !> Its name.
     character(len=*), intent(in) :: name
 
     type(element_t) :: element
@@ -69,18 +68,17 @@ contains
       end do
     end do
     print '(a, 6(2x, a, f7.2))', name//", us:", "kinematics", best(1), "strain", best(2), &
-      "force", best(3), "stiffness", best(4), "gradients", best(5), "rate", best(6)
+        "force", best(3), "stiffness", best(4), "gradients", best(5), "rate", best(6)
   end subroutine measure
 
-  !> A distorted element, a small strain, stresses and moduli.
+  !> Return a distorted element with a small strain, stresses and moduli.
   subroutine prepare(element, x, moved, axes, work)
-    !> The element.
     type(element_t), intent(in) :: element
-    !> Positions before and after, mm.
+    !> Committed and trial positions, mm.
     real(wp), intent(out) :: x(:, :), moved(:, :)
     !> Material axes.
     real(wp), intent(out) :: axes(:, :, :)
-    !> Stress and tangent are set.
+    !> Gets stress and tangent.
     type(element_work_t), intent(inout) :: work
 
     integer :: i

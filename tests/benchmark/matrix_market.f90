@@ -1,5 +1,5 @@
-!> Linear systems as text files, in the coordinate and array forms of Matrix Market (Boisvert, Pozo
-!> and Remington 1996): the solvers' benchmark reads them, other programs know them.
+!> Linear systems as text files in the coordinate and array formats of Matrix Market (Boisvert, Pozo
+!> and Remington 1996).
 module matrix_market
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error
@@ -9,21 +9,19 @@ module matrix_market
   public :: write_matrix_market, read_matrix_market
 
   !> First lines of the two files.
-  character(len=*), &
-    parameter :: coordinate_header = "%%MatrixMarket matrix coordinate real general", &
-                                 array_header = "%%MatrixMarket matrix array real general"
+  character(len=*), parameter :: &
+      coordinate_header = "%%MatrixMarket matrix coordinate real general", &
+      array_header = "%%MatrixMarket matrix array real general"
 
 contains
 
-  !> Writes a matrix to `file` and a right-hand side to `file` with `.rhs` added.
+  !> Write a matrix to `file` and a right-hand side to `file` with `.rhs` appended.
   subroutine write_matrix_market(matrix, b, file, error)
-    !> The matrix.
     type(block_matrix_t), intent(in) :: matrix
-    !> The right-hand side, `(3n)`.
+    !> Right-hand side, `(3n)`.
     real(wp), intent(in) :: b(:)
-    !> Path of the matrix's file.
     character(len=*), intent(in) :: file
-    !> What went wrong.
+    !> Set if a file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     integer :: unit, status, i, k, r, c
@@ -31,22 +29,21 @@ contains
     open (newunit=unit, file=file, status="replace", action="write", iostat=status)
     if (status == 0) write (unit, '(a)', iostat=status) coordinate_header
     if (status == 0) write (unit, '(i0,2(1x,i0))', iostat=status) 3*matrix%n, 3*matrix%n, &
-      size(matrix%value)
+        size(matrix%value)
     rows: do i = 1, matrix%n
       do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
         do r = 1, 3
           do c = 1, 3
             if (status /= 0) exit rows
             write (unit, '(i0,1x,i0,es25.16e3)', iostat=status) 3*(i - 1) + r, &
-              3*(matrix%column(k) - 1) + c, &
-              matrix%value(r, c, k)
+                3*(matrix%column(k) - 1) + c, matrix%value(r, c, k)
           end do
         end do
       end do
     end do rows
     if (status == 0) close (unit, iostat=status)
     if (status == 0) open (newunit=unit, file=file//".rhs", status="replace", action="write", &
-      iostat=status)
+        iostat=status)
     if (status == 0) write (unit, '(a)', iostat=status) array_header
     if (status == 0) write (unit, '(i0,a)', iostat=status) size(b), " 1"
     if (status == 0) write (unit, '(es24.16e3)', iostat=status) b
@@ -54,16 +51,14 @@ contains
     if (status /= 0) call fatal_error(error, "cannot write the linear system to "//file)
   end subroutine write_matrix_market
 
-  !> Reads what `write_matrix_market` wrote, or any square matrix of this form whose size is a
-  !> multiple of three.
+  !> Read a square matrix, whose size must be a multiple of three, and its right-hand side.
   subroutine read_matrix_market(matrix, b, file, error)
-    !> The matrix made.
     type(block_matrix_t), intent(out) :: matrix
-    !> The right-hand side, `(3n)`.
+    !> Right-hand side, `(3n)`.
     real(wp), allocatable, intent(out) :: b(:)
-    !> Path of the matrix's file; the right-hand side is in `file` with `.rhs` added.
+    !> File of the matrix; the right-hand side is in `file` with `.rhs` appended.
     character(len=*), intent(in) :: file
-    !> What went wrong.
+    !> Set if a file cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
     integer, allocatable :: row(:), column(:)
@@ -80,17 +75,14 @@ contains
     call read_vector(file//".rhs", n, b, error)
   end subroutine read_matrix_market
 
-  !> Reads the members of a matrix in coordinate form.
+  !> Read the entries of a matrix in coordinate format.
   subroutine read_entries(file, n, row, column, entry, error)
-    !> Path of the file.
     character(len=*), intent(in) :: file
     !> Number of rows and columns.
     integer, intent(out) :: n
-    !> Place of each member.
+    !> Row and column of each entry.
     integer, allocatable, intent(out) :: row(:), column(:)
-    !> The members.
     real(wp), allocatable, intent(out) :: entry(:)
-    !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
 
     character(len=80) :: line
@@ -117,19 +109,17 @@ contains
       end do
     end if
     close (unit)
-    if (status /= 0) call fatal_error(error, file &
-      //" does not hold a square matrix of 3x3 blocks in coordinate form")
+    if (status /= 0) then
+      call fatal_error(error, file//": expected a square matrix of 3x3 blocks in coordinate format")
+    end if
   end subroutine read_entries
 
-  !> Reads a vector in array form.
+  !> Read a vector in array format.
   subroutine read_vector(file, n, b, error)
-    !> Path of the file.
     character(len=*), intent(in) :: file
-    !> Size wanted.
+    !> Expected size.
     integer, intent(in) :: n
-    !> The vector.
     real(wp), allocatable, intent(out) :: b(:)
-    !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
 
     character(len=80) :: line
@@ -146,17 +136,16 @@ contains
     if (status == 0 .and. rows /= n) status = 1
     if (status == 0) read (unit, *, iostat=status) b
     close (unit)
-    if (status /= 0) call fatal_error(error, file &
-      //" does not hold a vector of the matrix's size in array form")
+    if (status /= 0) then
+      call fatal_error(error, file//": expected a vector of the matrix's size in array format")
+    end if
   end subroutine read_vector
 
-  !> First line after the comments, the one with the sizes.
+  !> Read the first line after the comments, which holds the sizes.
   subroutine first_line(unit, line, status)
-    !> The open file.
     integer, intent(in) :: unit
-    !> The line.
     character(len=*), intent(out) :: line
-    !> Zero if there is one.
+    !> Zero on success.
     integer, intent(out) :: status
 
     do
@@ -166,20 +155,18 @@ contains
     end do
   end subroutine first_line
 
-  !> Pattern of the blocks that hold at least one member.
+  !> Create a zero matrix with the pattern of the blocks that hold at least one entry.
   subroutine pattern_of_entries(matrix, n, row, column)
-    !> The matrix made.
     type(block_matrix_t), intent(out) :: matrix
     !> Number of block rows.
     integer, intent(in) :: n
-    !> Block row and column of each member.
+    !> Block row and column of each entry.
     integer, intent(in) :: row(:), column(:)
 
     integer, allocatable :: start(:), order(:), marker(:), row_start(:), packed(:)
     integer :: k, i, count
 
-    ! Sorted by column first, then stably by row: the columns of each row come out in ascending
-    ! order.
+    ! Sorted by column, then stably by row: the columns of each row are in ascending order.
     call stable_order(n, column, [(k, k=1, size(row))], order, start)
     call stable_order(n, row, order, packed, start)
     deallocate (order)
@@ -199,15 +186,11 @@ contains
     call new_pattern_from_rows(matrix, row_start, order(:count))
   end subroutine pattern_of_entries
 
-  !> Sorts items by a key from 1 to n; items of equal key keep their order (counting sort).
+  !> Sort items by a key from 1 to n; items of equal key keep their order (counting sort).
   subroutine stable_order(n, key, items, sorted, start)
     !> Largest key.
     integer, intent(in) :: n
-    !> Key of each item.
-    integer, intent(in) :: key(:)
-    !> The items.
-    integer, intent(in) :: items(:)
-    !> The items in the order of their keys.
+    integer, intent(in) :: key(:), items(:)
     integer, allocatable, intent(out) :: sorted(:)
     !> Where the items of each key begin, `(n + 1)`.
     integer, allocatable, intent(out) :: start(:)

@@ -1,5 +1,5 @@
-!> Criteria with published and with extreme parameters, for the benchmarks. Of each criterion the
-!> first set is the one its speed is measured with.
+!> Yield criteria with published and with extreme parameters, for the benchmarks. The speed of a
+!> criterion is measured with its first set.
 module parameter_sets
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t
@@ -8,17 +8,16 @@ module parameter_sets
   private
   public :: set_t, published_sets, law_of
 
-  !> A criterion with its parameters.
+  !> Criterion with its parameters.
   type :: set_t
-    !> What it describes.
+    !> Material or special values.
     character(len=40) :: title
-    !> The criterion and its values.
     type(law_choice_t) :: law
   end type set_t
 
 contains
 
-  !> The sets.
+  !> Return all sets.
   function published_sets() result(sets)
     type(set_t), allocatable :: sets(:)
 
@@ -64,9 +63,8 @@ contains
       set_t("k = -1, m = 100", law_of("cpb06 C11=1 C12=0 C13=0 C22=1 C23=0 C33=1 k=-1 m=100"))]
   end function published_sets
 
-  !> A law of its name and values in the manner of the input: "swift K=565 e0=0.007117 n=0.259".
+  !> Return the law of a text such as "swift K=565 e0=0.007117 n=0.259".
   function law_of(text) result(law)
-    !> The words.
     character(len=*), intent(in) :: text
     type(law_choice_t) :: law
 

@@ -1,8 +1,12 @@
-!> Tries the stress update with random strain increments up to 10 % from random admissible states:
+!> Test the stress update with random strain increments up to 10 % from random admissible states:
 !> every criterion with published and with extreme parameters, the hardening laws, the
-!> back-stresses and their combinations. Prints for each how many failed, how many had to be cut,
-!> into how many parts at most, the most Newton iterations in one step, and how far the stresses
-!> lie off the yield surface at most. With an argument only those whose names hold it.
+!> back-stresses and their combinations.
+!>
+!>     benchmark_robustness [part of a combination's name]
+!>
+!> Prints for each combination the number of increments that failed and that were cut, the largest
+!> number of parts and of Newton iterations in a part, and the largest distance of a stress from the
+!> yield surface.
 program benchmark_robustness
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
@@ -14,21 +18,24 @@ program benchmark_robustness
   use parameter_sets, only : set_t, published_sets, law_of
   implicit none
 
-  !> Increments for a criterion, and for any other combination; increments after which a point is
-  !> begun afresh; most parts that the update cuts an increment into.
-  integer, parameter :: many = 1000000, some = 100000, walk = 20, part_limit = 64
+  !> Increments for a criterion, and for any other combination.
+  integer, parameter :: many = 1000000, some = 100000
+  !> Increments between two restarts from the unstrained state.
+  integer, parameter :: walk = 20
+  !> Largest number of parts that the update cuts an increment into.
+  integer, parameter :: part_limit = 64
   !> Largest norm of a strain increment.
   real(wp), parameter :: largest = 0.1_wp
 
-  !> What was found with one material.
+  !> Results for one material.
   type :: tally_t
-    !> Increments that failed, and that were cut.
+    !> Number of increments that failed, and that were cut.
     integer :: failed = 0, cut = 0
-    !> Most parts, and most Newton iterations of a step.
+    !> Largest number of parts, and of Newton iterations in a part.
     integer :: parts = 1, iterations = 0
-    !> Largest relative distance from the yield surface; of an elastic state, beyond it.
+    !> Largest relative distance from the yield surface; of elastic states, outside it.
     real(wp) :: distance = 0.0_wp
-    !> The first failure in words.
+    !> Reason of the first failure.
     character(len=160) :: reason = ""
   end type tally_t
 
@@ -38,47 +45,43 @@ program benchmark_robustness
   type(law_choice_t) :: hardening
   character(len=60) :: wanted
   integer :: i, j, k
-  !> The criteria among the sets with which all hardening laws are tried.
+  !> Sets with which all hardening laws are tested.
   integer, parameter :: chosen(3) = [2, 15, 17]
 
   call get_command_argument(1, wanted)
   sets = published_sets()
   call describe_laws(law_hardening, hardenings)
   backs = [law_of("prager k=800"), law_of("lemaitre_chaboche CX=50 Xsat=60"), &
-           law_of("lemaitre_chaboche CX=400 Xsat=30")]
+      law_of("lemaitre_chaboche CX=400 Xsat=30")]
   allocate (none(0))
-  print '(a)', "| criterion, laws | increments | failures | cut | parts | iterations | distance |", &
-    "|---|---|---|---|---|---|---|"
+  print '(a)', "| criterion, laws | increments | failed | cut | parts | iterations | distance |", &
+      "|---|---|---|---|---|---|---|"
   do i = 1, size(sets)
-    call try(sets(i), law_of("swift K=565 e0=0.007117 n=0.259"), none, many)
+    call test(sets(i), law_of("swift K=565 e0=0.007117 n=0.259"), none, many)
   end do
   do i = 1, size(sets)
-    call try(sets(i), law_of("voce Y0=120 Rsat=80 CR=28"), backs, some)
+    call test(sets(i), law_of("voce Y0=120 Rsat=80 CR=28"), backs, some)
   end do
   do j = 1, size(hardenings)
     hardening = law_choice_t(hardenings(j)%name, hardenings(j)%example)
     do i = 1, size(sets)
       if (hardening%name /= "teodosiu_hu" .and. all(chosen /= i)) cycle
-      call try(sets(i), hardening, none, some)
+      call test(sets(i), hardening, none, some)
       if (all(chosen /= i)) cycle
       do k = 1, 2
-        call try(sets(i), hardening, backs(k:k), some)
+        call test(sets(i), hardening, backs(k:k), some)
       end do
-      call try(sets(i), hardening, backs, some)
+      call test(sets(i), hardening, backs, some)
     end do
   end do
 
 contains
 
-  !> Tries one material and prints a line.
-  subroutine try(set, hardening, back, increments)
-    !> Criterion and hardening law.
+  !> Test one material and print a line.
+  subroutine test(set, hardening, back, increments)
     type(set_t), intent(in) :: set
-    !> See `set`.
-    type(law_choice_t), intent(in) :: hardening
-    !> Back-stresses.
-    type(law_choice_t), intent(in) :: back(:)
-    !> How many increments.
+    type(law_choice_t), intent(in) :: hardening, back(:)
+    !> Number of increments.
     integer, intent(in) :: increments
 
     type(material_t) :: material
@@ -95,13 +98,13 @@ contains
     if (index(name, trim(wanted)) == 0) return
     call seed()
     call new_material(material, 2.1e5_wp, 0.3_wp, set%law, hardening, back)
-    call take_walks(material, increments, tally)
+    call walk_randomly(material, increments, tally)
     print '(a, 5(a, i0), a, es8.1, a)', "| "//name, " | ", increments, " | ", tally%failed, " | ", &
-      tally%cut, " | ", tally%parts, " | ", tally%iterations, " | ", tally%distance, " |"
+        tally%cut, " | ", tally%parts, " | ", tally%iterations, " | ", tally%distance, " |"
     if (tally%failed > 0) print '(2a)', "    ", trim(tally%reason)
-  end subroutine try
+  end subroutine test
 
-  !> Makes the random numbers the same for every material.
+  !> Start the same random numbers for every material.
   subroutine seed()
     integer :: n, i
 
@@ -109,7 +112,7 @@ contains
     call random_seed(put=[(4321 + 77*i, i=1, n)])
   end subroutine seed
 
-  !> A random direction in the space of strains.
+  !> Return a random strain of unit norm.
   function random_direction() result(v)
     real(wp) :: v(6)
 
@@ -121,14 +124,12 @@ contains
     v = v/norm2(v)
   end function random_direction
 
-  !> Walks of random increments from the unstrained state; before half of the increments the stress
-  !> is moved to a random place within the yield surface, and always to a pressure of its order.
-  subroutine take_walks(material, increments, tally)
-    !> The material.
+  !> Apply random increments, starting from the unstrained state; before half of them the stress is
+  !> moved to a random point within the yield surface, and before all of them the pressure changes.
+  subroutine walk_randomly(material, increments, tally)
     type(material_t), intent(in) :: material
-    !> How many increments.
+    !> Number of increments.
     integer, intent(in) :: increments
-    !> What was found.
     type(tally_t), intent(inout) :: tally
 
     real(wp) :: stress(6), internal(material%n_internal), chance(4), strain(6)
@@ -140,10 +141,11 @@ contains
         internal = 0.0_wp
       end if
       call random_number(chance)
-      if (chance(1) < 0.5_wp) stress = chance(2)*stress &
-                                       + (1 - chance(2))*material%back_stress(internal)
+      if (chance(1) < 0.5_wp) then
+        stress = chance(2)*stress + (1 - chance(2))*material%back_stress(internal)
+      end if
       stress(1:3) = stress(1:3) - sum(stress(1:3))/3 + 600*chance(3) - 300
-      ! Half of the sizes spread evenly, half over four decades.
+      ! Norms: half of them uniform, half log-uniform over four decades.
       if (modulo(n, 2) == 0) then
         strain = largest*chance(4)*random_direction()
       else
@@ -151,17 +153,13 @@ contains
       end if
       call try_increment(material, stress, internal, strain, tally)
     end do
-  end subroutine take_walks
+  end subroutine walk_randomly
 
-  !> Takes a state over an increment and notes what happens.
+  !> Update a state by a strain increment and add the result to the tally.
   subroutine try_increment(material, stress, internal, strain, tally)
-    !> The material.
     type(material_t), intent(in) :: material
-    !> The state.
     real(wp), intent(inout) :: stress(6), internal(material%n_internal)
-    !> The increment.
     real(wp), intent(in) :: strain(6)
-    !> What is found.
     type(tally_t), intent(inout) :: tally
 
     real(wp) :: new_stress(6), new_internal(material%n_internal), tangent(6, 6), flow, excess
@@ -170,7 +168,7 @@ contains
     integer :: parts
 
     call material%update(stress, internal, strain, new_stress, new_internal, tangent, plastic, &
-                         verdict)
+        verdict)
     if (verdict%outcome /= verdict_converged) then
       if (tally%failed == 0) tally%reason = verdict%reason
       tally%failed = tally%failed + 1
@@ -187,17 +185,13 @@ contains
     internal = new_internal
   end subroutine try_increment
 
-  !> Into how many parts the update has cut an increment.
+  !> Count the parts into which the update cuts an increment.
   subroutine count_parts(material, stress, internal, strain, iterations, parts)
-    !> The material.
     type(material_t), intent(in) :: material
-    !> The state.
-    real(wp), intent(in) :: stress(6), internal(material%n_internal)
-    !> The increment.
-    real(wp), intent(in) :: strain(6)
-    !> Raised to the most iterations of a step that converged.
+    real(wp), intent(in) :: stress(6), internal(material%n_internal), strain(6)
+    !> Raised to the largest number of iterations of a part that converged.
     integer, intent(inout) :: iterations
-    !> The number of parts.
+    !> Number of parts.
     integer, intent(out) :: parts
 
     real(wp) :: start(6), before(material%n_internal), after(material%n_internal)
@@ -215,7 +209,7 @@ contains
         iterations = max(iterations, step%iterations)
         start = step%stress
         if (step%plastic) call evolve_internal_variables(material%laws, before, step%increment, &
-                                                step%direction, after)
+            step%direction, after)
       end do
       if (step%converged) return
       parts = 2*parts

@@ -1,14 +1,15 @@
-!> Compares the linear solvers on the matrices of a run: CGS with ILU(k), k = 0 ... 3, on every numbering, the
-!> complete factorisation that `auto` may take in its place, and UMFPACK.
+!> Compare the linear solvers on the matrices of a run: CGS with ILU(k), k = 0 ... 3, for every
+!> ordering, the automatic choice, and UMFPACK.
 !>
 !>     benchmark_run_matrices <input file> [name=value ...]
 !>
-!> runs the job and takes the reduced matrix and right-hand side of the predictor and of the corrector's last iteration
-!> from ten increments spread over its last phase and from one in the middle of each phase before. Two tables in
-!> Markdown go to the standard output: the matrices, and what each solver did with them. There iterations are the median
-!> (least - most) over the matrices it did not fail on, times are medians over the matrices of medians of several
-!> repeats, the residual is the largest of all, and so is the difference from UMFPACK's solution, relative to that
-!> solution's largest member; iterations and difference once more for the sharpest residual that makes sense.
+!> Runs the job and keeps the reduced matrix and right-hand side of the predictor and of the
+!> corrector's last iteration, from ten increments of the last phase and from one in the middle of
+!> each earlier phase. Prints two Markdown tables: the matrices, and the results of each solver.
+!> Iterations are the median (least - most) over the matrices without failure, times the medians
+!> over the matrices of the medians of several repeats, residual and difference from UMFPACK's
+!> solution (relative to its largest component) the largest values. Iterations and difference are
+!> repeated for a tolerance near round-off ("sharp").
 program benchmark_run_matrices
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t, error_list_t
@@ -18,7 +19,7 @@ program benchmark_run_matrices
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_input_case, only : case_t
   use dd3_input_reader, only : read_case
-  use dd3_linalg_ilu, only : level_of_fill
+  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering, ordering_names
   use dd3_linalg_scaled_system, only : scaled_system_t
@@ -29,36 +30,34 @@ program benchmark_run_matrices
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, shrink_increment, stepper_t, &
-                                    try_increment
+  use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
+      shrink_increment, stepper_t, try_increment
   use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
   use dd3_system_system, only : new_system
   implicit none
 
-  !> Increments looked at in the last phase, and repeats of a measurement.
+  !> Number of increments sampled in the last phase, and repeats of a measurement.
   integer, parameter :: places = 10, repeats = 9
-  !> Relative residual asked for where solutions are compared; the table's other numbers are those at a job's default.
+  !> Tolerance near round-off, with which solutions are compared.
   real(wp), parameter :: sharp_tolerance = 1.0e-14_wp
 
   !> One linear system of the run.
   type :: sample_t
-    !> Where it comes from.
+    !> Row of the first table.
     character(len=120) :: origin = ""
-    !> The matrix.
     type(block_matrix_t) :: matrix
-    !> Its right-hand side, and the direct solution.
+    !> Right-hand side and direct solution.
     real(wp), allocatable :: b(:), reference(:)
   end type sample_t
 
-  !> What a solver did with a system.
+  !> Result of a solver for one system.
   type :: outcome_t
-    !> Whether it converged, and without the direct solver.
+    !> Whether it converged without fallback.
     logical :: converged = .false.
-    !> Iterations.
     integer :: iterations = 0
-    !> Times of the factorisation and of the solution, ms.
+    !> Times of factorisation and solution, ms.
     real(wp) :: factor = 0.0_wp, solve = 0.0_wp
-    !> Residual, and difference from the direct solution relative to its largest member.
+    !> Residual, and difference from the direct solution relative to its largest component.
     real(wp) :: residual = 0.0_wp, difference = 0.0_wp
   end type outcome_t
 
@@ -69,7 +68,9 @@ program benchmark_run_matrices
   type(sample_t), allocatable :: sample(:)
   integer :: i
 
-  if (command_argument_count() == 0) error stop "benchmark_run_matrices <input file> [name=value ...]"
+  if (command_argument_count() == 0) then
+    error stop "benchmark_run_matrices <input file> [name=value ...]"
+  end if
   allocate (override(command_argument_count() - 1))
   do i = 1, size(override)
     override(i)%s = argument(i + 1)
@@ -89,9 +90,8 @@ program benchmark_run_matrices
 
 contains
 
-  !> An argument of the command line.
+  !> Return an argument of the command line.
   function argument(number) result(text)
-    !> Its number.
     integer, intent(in) :: number
     character(len=:), allocatable :: text
 
@@ -102,11 +102,20 @@ contains
     call get_command_argument(number, text)
   end function argument
 
-  !> Runs the job and keeps linear systems of it.
+  !> Return the options that the measurements vary.
+  pure type(solver_options_t) function usual_options(method) result(options)
+    character(len=*), intent(in) :: method
+
+    options%method = method
+    options%ilu_level = 2
+    options%tolerance = 1.0e-10_wp
+    options%iterations = 200
+    options%ordering = "none"
+  end function usual_options
+
+  !> Run the job and keep linear systems of it.
   subroutine collect(model, sample)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The systems.
     type(sample_t), allocatable, intent(inout) :: sample(:)
 
     type(stepper_t) :: stepper
@@ -119,7 +128,7 @@ contains
 
     call new_initial_state(committed, model)
     call new_initial_state(trial, model)
-    call new_system(stepper%system, model, solver_options_t(), 1, error)
+    call new_system(stepper%system, model, usual_options("auto"), 1, error)
     if (allocated(error)) error stop 1
     call new_stepper(stepper, model)
     do number = 1, size(model%phase)
@@ -129,34 +138,29 @@ contains
       next = 0.5_wp*step
       do while (.not. phase_is_over(phase, committed))
         chosen = committed%progress >= next
-        call take_increment(model, phase, stepper, committed, trial, chosen, sample)
+        call run_increment(model, phase, stepper, committed, trial, chosen, sample)
         if (committed%increment /= trial%increment) return
         if (chosen) next = next + step
       end do
     end do
   end subroutine collect
 
-  !> One increment of the run; keeps its systems where it is one of those chosen. The trial state's number tells that
-  !> it failed.
-  subroutine take_increment(model, phase, stepper, committed, trial, chosen, sample)
-    !> The model.
+  !> Run one increment; `trial%increment` is -1 on return if it fails.
+  subroutine run_increment(model, phase, stepper, committed, trial, chosen, sample)
     type(model_t), intent(in) :: model
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> The maker of increments.
     type(stepper_t), intent(inout) :: stepper
-    !> The states.
     type(state_t), intent(inout) :: committed, trial
-    !> Whether the systems are kept.
+    !> Whether to add the systems of the increment to `sample`.
     logical, intent(in) :: chosen
-    !> Gets them.
     type(sample_t), allocatable, intent(inout) :: sample(:)
 
     type(verdict_t) :: verdict
     logical :: again
 
     trial%increment = -1
-    call prepare_increment(stepper, model, phase, committed, next_output_progress(model, phase, committed), verdict)
+    call prepare_increment(stepper, model, phase, committed, &
+        next_output_progress(model, phase, committed), verdict)
     if (verdict%outcome /= verdict_converged) return
     if (chosen) call keep("predictor", phase, committed, stepper, sample)
     do
@@ -169,19 +173,15 @@ contains
     end do
     if (chosen) call keep("corrector", phase, trial, stepper, sample)
     call accept_increment(stepper, trial, committed)
-  end subroutine take_increment
+  end subroutine run_increment
 
-  !> Keeps the linear system of this moment.
+  !> Append the present linear system to the samples.
   subroutine keep(part, phase, state, stepper, sample)
     !> Predictor or corrector.
     character(len=*), intent(in) :: part
-    !> The running phase.
     type(phase_t), intent(in) :: phase
-    !> The state it belongs to.
     type(state_t), intent(in) :: state
-    !> Holds the system.
     type(stepper_t), intent(in) :: stepper
-    !> Gets it.
     type(sample_t), allocatable, intent(inout) :: sample(:)
 
     type(sample_t), allocatable :: longer(:)
@@ -194,20 +194,20 @@ contains
     associate (this => sample(n + 1), status => stepper%system%contact%status)
       this%matrix = stepper%system%reduced
       this%b = stepper%system%problem%rhs
-      write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') n + 1, phase%name, &
-        state%travel, state%increment, part, count(state%plastic), count(status == status_gap), &
-        count(status == status_stick), count(status == status_slip)
+      write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') &
+          n + 1, phase%name, state%travel, state%increment, part, count(state%plastic), &
+          count(status == status_gap), count(status == status_stick), count(status == status_slip)
     end associate
   end subroutine keep
 
-  !> Prints where the systems come from.
+  !> Print the table of the systems.
   subroutine print_samples(sample)
-    !> The systems.
     type(sample_t), intent(in) :: sample(:)
 
     integer :: k
 
-    print '(i0," unknowns, ",i0," blocks of 3 x 3",/)', size(sample(1)%b), size(sample(1)%matrix%column)
+    print '(i0," unknowns, ",i0," blocks of 3 x 3",/)', size(sample(1)%b), &
+        size(sample(1)%matrix%column)
     print '(a)', "| | phase | travel, mm | increment | from | plastic points | gap | stick | slip |"
     print '(a)', "|---|---|---|---|---|---|---|---|---|"
     do k = 1, size(sample)
@@ -215,22 +215,20 @@ contains
     end do
   end subroutine print_samples
 
-  !> Runs all solvers over all systems.
+  !> Measure all solvers on all systems.
   subroutine compare(sample)
-    !> The systems.
     type(sample_t), intent(inout) :: sample(:)
 
     type(solver_options_t) :: options
     integer :: i, level
 
-    print '(/,a)', "| solver | numbering | fill | failed | iterations | set-up, ms | factorisation, ms "// &
-      "| solution, ms | residual | difference | sharp: iterations | difference |"
+    print '(/,a)', "| solver | numbering | fill | failed | iterations | set-up, ms "// &
+        "| factorisation, ms | solution, ms | residual | difference | sharp: iterations "// &
+        "| difference |"
     print '(a)', "|---|---|---|---|---|---|---|---|---|---|---|---|"
-    options%method = "umfpack"
-    call measure(options, "UMFPACK", sample)
-    options%method = "auto"
-    call measure(options, "auto", sample)
-    options%method = "cgs"
+    call measure(usual_options("umfpack"), "UMFPACK", sample)
+    call measure(usual_options("auto"), "auto", sample)
+    options = usual_options("cgs")
     do i = 1, size(ordering_names)
       options%ordering = ordering_names(i)
       do level = 0, 3
@@ -240,59 +238,60 @@ contains
     end do
   end subroutine compare
 
-  !> One solver over all systems, a line of the table; systems it failed on count among the failures only.
+  !> Measure one solver on all systems and print its row of the table; systems on which it failed
+  !> enter the number of failures only.
   subroutine measure(options, name, sample)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> What it is called.
+    !> Name for the table.
     character(len=*), intent(in) :: name
-    !> The systems; UMFPACK's solutions are kept.
+    !> Systems; the first solver sets their direct solutions.
     type(sample_t), intent(inout) :: sample(:)
 
     type(outcome_t) :: usual(size(sample)), sharp(size(sample))
     type(solver_options_t) :: sharper
-    real(wp) :: setup, no_matter
+    real(wp) :: setup
 
     sharper = options
     sharper%tolerance = sharp_tolerance
-    call solve_all(sharper, 1, sample, sharp, no_matter)
+    call solve_all(sharper, 1, sample, sharp, setup)
     call solve_all(options, repeats, sample, usual, setup)
     associate (good => usual%converged, fit => sharp%converged)
-      write (*, '("| ",a," | ",a," | ",a," | ",i0," of ",i0," | ")', advance="no") name, trim(options%ordering), &
-        trim(fill_text(options, sample(1)%matrix)), count(.not. good), size(sample)
+      write (*, '("| ",a," | ",a," | ",a," | ",i0," of ",i0," | ")', advance="no") name, &
+          trim(options%ordering), trim(fill_text(options, sample(1)%matrix)), count(.not. good), &
+          size(sample)
       if (count(good) == 0) then
         print '(a,f8.3,a)', "| ", setup, " | | | | | | |"
         return
       end if
-      write (*, '(a," | ",3(f8.3," | "),2(es7.1," | "))', advance="no") range_text(pack(usual%iterations, good)), &
-        setup, median(usual%factor), median(pack(usual%solve, good)), maxval(usual%residual, good), &
-        maxval(usual%difference, good)
+      write (*, '(a," | ",3(f8.3," | "),2(es7.1," | "))', advance="no") &
+          range_text(pack(usual%iterations, good)), setup, median(usual%factor), &
+          median(pack(usual%solve, good)), maxval(usual%residual, good), &
+          maxval(usual%difference, good)
       if (count(fit) == 0) then
         print '(a)', "| |"
       else
-        print '(a," | ",es7.1," |")', range_text(pack(sharp%iterations, fit)), maxval(sharp%difference, fit)
+        print '(a," | ",es7.1," |")', range_text(pack(sharp%iterations, fit)), &
+            maxval(sharp%difference, fit)
       end if
     end associate
   end subroutine measure
 
-  !> Median, least and largest of numbers, as text.
+  !> Return median, least and largest of some numbers as text.
   function range_text(number) result(text)
-    !> The numbers.
     integer, intent(in) :: number(:)
     character(len=:), allocatable :: text
 
-    text = to_text(nint(median(real(number, wp))))//" ("//to_text(minval(number))//" - "//to_text(maxval(number))//")"
+    text = to_text(nint(median(real(number, wp))))//" ("//to_text(minval(number))//" - " &
+        //to_text(maxval(number))//")"
   end function range_text
 
-  !> One solver over all systems.
+  !> Solve all systems by one solver.
   subroutine solve_all(options, rounds, sample, outcome, setup)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> How often each system is solved.
+    !> Number of repeats.
     integer, intent(in) :: rounds
-    !> The systems; gets the direct solutions where they have none.
+    !> Systems; direct solutions are set where there are none.
     type(sample_t), intent(inout) :: sample(:)
-    !> What came of it.
     type(outcome_t), intent(out) :: outcome(:)
     !> Time of the set-up, ms.
     real(wp), intent(out) :: setup
@@ -313,15 +312,14 @@ contains
     call solver%release()
   end subroutine solve_all
 
-  !> Solves one system several times.
+  !> Solve one system several times.
   subroutine solve(solver, rounds, sample, outcome)
-    !> The solver, set up.
+    !> Solver, set up for the pattern.
     class(linear_solver_t), intent(inout) :: solver
-    !> How often.
+    !> Number of repeats.
     integer, intent(in) :: rounds
-    !> The system; gets the direct solution where it has none.
+    !> System; its direct solution is set if there is none.
     type(sample_t), intent(inout) :: sample
-    !> What came of it.
     type(outcome_t), intent(out) :: outcome
 
     type(solver_report_t) :: report
@@ -347,9 +345,9 @@ contains
     outcome%difference = maxval(abs(x - sample%reference))/maxval(abs(sample%reference))
   end subroutine solve
 
-  !> Median of a list.
+  !> Return the median of a list.
   pure real(wp) function median(list)
-    !> The list; not empty.
+    !> List with at least one number.
     real(wp), intent(in) :: list(:)
 
     real(wp) :: sorted(size(list)), least
@@ -365,11 +363,9 @@ contains
     median = 0.5_wp*(sorted((size(list) + 1)/2) + sorted(size(list)/2 + 1))
   end function median
 
-  !> Blocks of an incomplete factorisation against those in the matrix, as text; nothing for other solvers.
+  !> Return the fill as text, empty for solvers without incomplete factorisation.
   character(len=8) function fill_text(options, matrix)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> The matrix.
     type(block_matrix_t), intent(in) :: matrix
 
     fill_text = ""
@@ -377,23 +373,21 @@ contains
     fill_text = adjustl(fill_text)
   end function fill_text
 
-  !> Blocks of an incomplete factorisation against those in the matrix.
+  !> Return the ratio of the blocks of an incomplete factorisation to those in the matrix.
   real(wp) function fill_of(options, matrix)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> The matrix.
     type(block_matrix_t), intent(in) :: matrix
 
     type(scaled_system_t) :: system
     type(error_t), allocatable :: error
-    integer, allocatable :: order(:), fill_start(:), fill_column(:), fill_diagonal(:)
+    type(fill_pattern_t) :: pattern
+    integer, allocatable :: order(:)
 
     call find_ordering(trim(options%ordering), matrix, order, error)
     if (allocated(error)) error stop 1
     call system%setup(matrix, order)
-    call level_of_fill(matrix%n, system%matrix%row_start, system%matrix%column, options%ilu_level, fill_start, &
-                       fill_column, fill_diagonal)
-    fill_of = real(size(fill_column), wp)/real(size(matrix%column), wp)
+    call new_fill_pattern(pattern, system%matrix, options%ilu_level)
+    fill_of = real(size(pattern%column), wp)/real(size(matrix%column), wp)
   end function fill_of
 
 end program benchmark_run_matrices

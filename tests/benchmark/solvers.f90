@@ -1,26 +1,28 @@
-!> Times the linear solvers, on strips of hexahedra like those of a bending test and on matrices in
-!> the form of Matrix Market.
+!> Time the linear solvers on strips of hexahedra like those of a bending test, or on a system in
+!> Matrix Market format.
 !>
-!> Without arguments: strips of several sizes. With a file name: the system in that file (matrix,
-!> and `.rhs` beside it). Columns: level of fill (all: nothing left out), numbering, blocks in the
-!> factors against those in the matrix, iterations, restarts, symbolic set-up, factorisation and
-!> solution in ms (best of several), relative residual, and the largest difference from the direct
-!> solution relative to its largest member.
+!>     benchmark_solvers [matrix file]
+!>
+!> The right-hand side is read from the matrix file's name with `.rhs` appended. Columns: level of
+!> fill (all: complete), ordering, ratio of the blocks in the factors to those in the matrix,
+!> iterations, restarts, times of set-up, factorisation and solution in ms (best of several),
+!> relative residual, and largest difference from the direct solution relative to its largest
+!> component.
 program benchmark_solvers
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_linalg_ilu, only : level_of_fill
+  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
-  use matrix_market, only : read_matrix_market
+  use dd3_linalg_ordering, only : find_ordering, ordering_names
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_solver_registry, only : new_linear_solver
-  use dd3_linalg_ordering, only : find_ordering, ordering_names
+  use matrix_market, only : read_matrix_market
   implicit none
 
-  !> A level of fill that leaves nothing out.
+  !> Level of fill of a complete factorisation.
   integer, parameter :: complete = huge(0)/2
   type(block_matrix_t) :: matrix
   type(error_t), allocatable :: error
@@ -44,9 +46,9 @@ program benchmark_solvers
 
 contains
 
-  !> Compares the solvers on a strip.
+  !> Compare the solvers on a strip.
   subroutine compare_strip(divisions)
-    !> Number of elements along length, width and thickness.
+    !> Number of elements in length, width and thickness.
     integer, intent(in) :: divisions(3)
 
     character(len=40) :: name
@@ -56,16 +58,12 @@ contains
     call compare(trim(name), matrix, b)
   end subroutine compare_strip
 
-  !> Compares the solvers on a system.
+  !> Compare the solvers on a system and print a table.
   subroutine compare(name, matrix, b)
-    !> Its name.
     character(len=*), intent(in) :: name
-    !> The system.
     type(block_matrix_t), intent(in) :: matrix
-    !> Its right-hand side.
     real(wp), intent(in) :: b(:)
 
-    !> Levels of fill compared.
     integer, parameter :: levels(6) = [0, 1, 2, 3, 5, complete]
     real(wp), allocatable :: reference(:)
     type(solver_options_t) :: options
@@ -73,8 +71,12 @@ contains
 
     print '(/,a,": ",i0," unknowns, ",i0," blocks")', name, size(b), size(matrix%column)
     print '(2a)', "  method   level order   fill  iter  re    set-up    factor     solve", &
-      "  residual     error"
+        "  residual     error"
     options%method = "umfpack"
+    options%ilu_level = 2
+    options%tolerance = 1.0e-10_wp
+    options%iterations = 200
+    options%ordering = "none"
     allocate (reference(size(b)))
     reference = 0.0_wp
     call measure(options, matrix, b, reference)
@@ -90,15 +92,12 @@ contains
     end do
   end subroutine compare
 
-  !> Times one solver on a system and prints a line.
+  !> Time one solver on a system and print a line.
   subroutine measure(options, matrix, b, reference)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> The system.
     type(block_matrix_t), intent(in) :: matrix
-    !> Its right-hand side.
     real(wp), intent(in) :: b(:)
-    !> The direct solution; made where it is zero.
+    !> Direct solution; set if it is zero.
     real(wp), intent(inout) :: reference(:)
 
     class(linear_solver_t), allocatable :: solver
@@ -130,15 +129,14 @@ contains
     call solver%release()
     if (all(abs(reference) <= 0.0_wp)) reference = x
     print '(2x,a8,a6,2x,a4,a7,i6,i4,3f10.3,2es10.1,1x,a)', options%method, level_text(options), &
-      options%ordering, fill_text(options, matrix), report%iterations, report%restarts, &
-      1.0e3_wp*[setup, factor, solve], report%residual, &
-      maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%reason)//trim(report%reason)
+        options%ordering, fill_text(options, matrix), report%iterations, report%restarts, &
+        1.0e3_wp*[setup, factor, solve], report%residual, &
+        maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%reason)//trim(report%reason)
     if (options%method == "auto") print '(10x,a)', trim(solver%description)
   end subroutine measure
 
-  !> Level of fill of a solver, for the table.
+  !> Return the level of fill of a solver for the table.
   function level_text(options) result(text)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
     character(len=6) :: text
 
@@ -147,36 +145,32 @@ contains
     if (options%method /= "cgs") text = "     -"
   end function level_text
 
-  !> Blocks in the factors of a solver against those in the matrix, for the table.
+  !> Return the ratio of the blocks in the factors to those in the matrix for the table.
   function fill_text(options, matrix) result(text)
-    !> The solver's options.
     type(solver_options_t), intent(in) :: options
-    !> The system.
     type(block_matrix_t), intent(in) :: matrix
     character(len=7) :: text
 
     type(scaled_system_t) :: system
     type(error_t), allocatable :: error
-    integer, allocatable :: order(:), fill_start(:), fill_column(:), fill_diagonal(:)
+    type(fill_pattern_t) :: pattern
+    integer, allocatable :: order(:)
 
     text = "      -"
     if (options%method /= "cgs") return
     call find_ordering(trim(options%ordering), matrix, order, error)
     call system%setup(matrix, order)
-    call level_of_fill(matrix%n, system%matrix%row_start, system%matrix%column, options%ilu_level, &
-                       fill_start, fill_column, fill_diagonal)
-    write (text, '(f7.2)') real(size(fill_column), wp)/real(size(matrix%column), wp)
+    call new_fill_pattern(pattern, system%matrix, options%ilu_level)
+    write (text, '(f7.2)') real(size(pattern%column), wp)/real(size(matrix%column), wp)
   end function fill_text
 
-  !> Elastic stiffness of a strip of 175 x 35 x 0.78 mm, clamped at one end, its top nodes at the
-  !> other end held by stiff contact rows as a sheet between tools is; nodes numbered through the
-  !> thickness, then across, then along.
+  !> Build the elastic stiffness matrix and a right-hand side of a strip of 175 x 35 x 0.78 mm,
+  !> clamped at one end; some top nodes are held by unit rows like those of contact. Nodes are
+  !> numbered in thickness first, then in width.
   subroutine make_strip(divisions, matrix, b)
-    !> Number of elements along length, width and thickness.
+    !> Number of elements in length, width and thickness.
     integer, intent(in) :: divisions(3)
-    !> The matrix.
     type(block_matrix_t), intent(out) :: matrix
-    !> A right-hand side.
     real(wp), allocatable, intent(out) :: b(:)
 
     real(wp), parameter :: size_of_strip(3) = [175.0_wp, 35.0_wp, 0.78_wp]
@@ -191,7 +185,7 @@ contains
         do k = 1, divisions(3)
           e = e + 1
           corner(1:4) = [number(divisions, i, j, k), number(divisions, i + 1, j, k), &
-                         number(divisions, i + 1, j + 1, k), number(divisions, i, j + 1, k)]
+              number(divisions, i + 1, j + 1, k), number(divisions, i, j + 1, k)]
           connectivity(:, e) = [corner(1:4), corner(1:4) + 1]
         end do
       end do
@@ -225,27 +219,22 @@ contains
     do j = 1, divisions(2) + 1
       b(3*number(divisions, divisions(1) + 1, j, 1)) = 1.0_wp
     end do
-
   end subroutine make_strip
 
-  !> Number of a node of the grid.
+  !> Return the number of a node of the grid.
   pure integer function number(divisions, i, j, k)
-    !> Number of elements along length, width and thickness.
+    !> Number of elements in length, width and thickness.
     integer, intent(in) :: divisions(3)
-    !> Place along length, width and thickness.
+    !> Position in length, width and thickness.
     integer, intent(in) :: i, j, k
 
     number = k + (divisions(3) + 1)*(j - 1 + (divisions(2) + 1)*(i - 1))
   end function number
 
-  !> Replaces rows of a node by unit rows.
+  !> Replace rows of a node by scaled unit rows.
   subroutine hold(matrix, node, components)
-    !> The matrix.
     type(block_matrix_t), intent(inout) :: matrix
-    !> The node.
-    integer, intent(in) :: node
-    !> The components.
-    integer, intent(in) :: components(:)
+    integer, intent(in) :: node, components(:)
 
     integer :: c
 
@@ -255,21 +244,20 @@ contains
     end do
   end subroutine hold
 
-  !> Stiffness of an elastic brick, shear strains at the Gauss points and volume strain at the
-  !> middle.
+  !> Evaluate the stiffness of an elastic brick with its deviatoric strain at the Gauss points and
+  !> its volumetric strain at the centre.
   subroutine brick_stiffness(edge, stiffness)
-    !> Lengths of its edges, mm.
+    !> Edge lengths, mm.
     real(wp), intent(in) :: edge(3)
     !> Row component, column component, row node, column node.
     real(wp), intent(out) :: stiffness(3, 3, 8, 8)
 
-    !> Bulk and shear modulus of steel, MPa.
+    ! Bulk and shear modulus of steel, MPa.
     real(wp), parameter :: bulk = 175000.0_wp, shear = 80769.0_wp
-    real(wp), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, &
-      -1, &
-                                                        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], &
-                                                        wp), [3, 8])
-    real(wp) :: g(3, 8), mean(3, 8), point(3), weight
+    integer, parameter :: corner_sign(3, 8) = reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
+        -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], [3, 8])
+    real(wp), parameter :: corner(3, 8) = real(corner_sign, wp)
+    real(wp) :: g(3, 8), mean(3, 8), point(3), weight, value
     integer :: p, a, b, i, j
 
     stiffness = 0.0_wp
@@ -291,10 +279,10 @@ contains
         do a = 1, 8
           do j = 1, 3
             do i = 1, 3
-              stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*(bulk*mean(i, a)*mean(j, b) &
-                                      + shear*(g(j, a)*g(i, b) - 2.0_wp/3.0_wp*g(i, a)*g(j, b)))
-              if (i == j) stiffness(i, j, a, b) = stiffness(i, j, a, b) &
-                + weight*shear*dot_product(g(:, a), g(:, b))
+              value = bulk*mean(i, a)*mean(j, b) &
+                  + shear*(g(j, a)*g(i, b) - 2.0_wp/3.0_wp*g(i, a)*g(j, b))
+              if (i == j) value = value + shear*dot_product(g(:, a), g(:, b))
+              stiffness(i, j, a, b) = stiffness(i, j, a, b) + weight*value
             end do
           end do
         end do

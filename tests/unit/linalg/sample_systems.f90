@@ -78,7 +78,7 @@ contains
           matrix%value(c, c, k) = matrix%value(c, c, k) - 1.0_wp
         end do
         matrix%value(c, c, matrix%diagonal(i)) = &
-          real(matrix%row_start(i + 1) - matrix%row_start(i), wp)
+            real(matrix%row_start(i + 1) - matrix%row_start(i), wp)
       end do
     end do
   end subroutine grid_matrix
