@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Run the bending test in all its variants and print the tables of docs/bending_test.md.
+"""Run the bending test in all its variants and print the tables of docs/reports/bending_test.md.
 
     utils/bending_tables.py --program build/release/dd3imp
-    utils/bending_tables.py --program build/release/dd3imp --write docs/bending_test.md
+    utils/bending_tables.py --program build/release/dd3imp --write docs/reports/bending_test.md
 
 The runs go to --work, a folder each; --reuse takes those that are there already. Each run has one core; --jobs of
 them go at a time. Times are processor times, so that a busy machine does not change them much. --write puts each

@@ -4,7 +4,7 @@
     utils/study.py command b-1e3              prints the plain command of a case
     utils/study.py case b-1e3                 runs a case, unless it is done, into bending_study.out/b-1e3/
     utils/study.py table                      gathers the cases that are done into bending_study.out/results.csv
-    utils/study.py report docs/bending_study.md      writes the document's tables anew from results.csv
+    utils/study.py report docs/reports/bending_study.md      writes the document's tables anew from results.csv
 
 A case is a row of input_files/bending_study/cases.csv; its columns beyond `case` and `set` are parameters of
 study.dat beside it, an empty cell leaves the value that stands there. The file run.json in a case's folder says that

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The bending study of docs/bending_study.md by one command: installs what is missing, builds, runs every case of
+# The bending study of docs/reports/bending_study.md by one command: installs what is missing, builds, runs every case of
 # input_files/bending_study/cases.csv on the cores there are, gathers bending_study.out/results.csv and draws the
 # figures. Called again it goes on where it was interrupted; what is done is not repeated.
 #

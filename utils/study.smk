@@ -1,5 +1,5 @@
 # The workflow of the bending study: a run for every row of the table of cases, one table of results, its figures.
-# utils/study.sh calls it; docs/bending_study.md says how it runs on a cluster. Exit code 3 of a run, stopped before
+# utils/study.sh calls it; docs/reports/bending_study.md says how it runs on a cluster. Exit code 3 of a run, stopped before
 # its end, is a result: `study.py case` notes it and succeeds.
 import csv
 import sys

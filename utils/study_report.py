@@ -1,4 +1,4 @@
-"""The tables of docs/bending_study.md, from the results of the bending study; `study.py report` writes them."""
+"""The tables of docs/reports/bending_study.md, from the results of the bending study; `study.py report` writes them."""
 
 import sys
 from functools import cache
