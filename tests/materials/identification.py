@@ -3,10 +3,10 @@
 
     identification.py --program build/release/dd3imp
 
-- Values that the program computes from known parameters are met again, and the parameters where they are determined.
-- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by those that can follow it.
-- Scattered and missing values; a curve with a reversal; what is said of input that cannot be used.
-- Each file written is read by the program.
+- Values that the program computes from known parameters are reproduced, and so are the parameters they determine.
+- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by the criteria that can fit it.
+- Scattered and missing values; a curve with a reversal; messages on input that cannot be used.
+- Each file written can be read by the program.
 """
 import argparse
 import contextlib
@@ -26,16 +26,17 @@ if not all(importlib.util.find_spec(name) for name in ("numpy", "scipy", "matplo
 
 import identify  # noqa: E402
 import numpy as np  # noqa: E402
-from measurements import TENSION, Datum, Problem  # noqa: E402
+from measurements import TENSION, Datum  # noqa: E402
+from scripts import Problem  # noqa: E402
 
-identify.BORDER, identify.EVALUATIONS = 5, 25  # enough to see that it works
+identify.BORDER, identify.EVALUATIONS = 5, 25  # enough for a test
 ANGLES = range(0, 91, 15)
 TITANIUM = ["--stress", "90:1.053", "--compression", "0:0.898", "90:0.805", "--biaxial-stress", "1.449",
             "--biaxial-compression", "1.104"]  # Ti-4Al-1/4O2 at 0.2 %
 STEEL = ["--r", "0:1.79", "45:1.51", "90:2.27"]  # NUMISHEET'93
 G = 1 / 2.79
 F = 1.79 * G / 2.27
-# Criterion, what is given, the parameters known, tolerance: of the library, where not by formula.
+# Criterion, what is given, the known parameters: by formula, or of the library.
 STEEL_SETS = (
     ("hill48", [], {"F": F, "G": G, "H": 1 - G, "N": (F + G) * 2.01}),
     ("yld91", ["m=6"], {"a": 0.81385, "b": 0.88006, "c": 1.11247, "h": 0.94446}),
@@ -44,7 +45,7 @@ STEEL_SETS = (
     ("karafillis_boyce", ["k=3"], {}),
     ("drucker", ["c=1.2129"], {"C1": 0.81324, "C2": 0.87964, "C3": 1.11288, "C6": 0.94426}),
     ("drucker", [], {}), ("cazacu_barlat2001", [], {}), ("yld2004", ["m=6"], {}), ("cpb06", [], {}))
-# Criterion, its true parameters, those given, whether all come out again.
+# Criterion, its true parameters, those given, whether the values determine all of them.
 TRUE_SETS = (
     ("hill48", "F=0.284 G=0.358 H=0.642 N=1.289", [], True),
     ("hosford", "m=8", [], True),
@@ -63,7 +64,7 @@ REVERSAL = "voce Y0=200 Rsat=100 CR=10\n  backstress = lemaitre_chaboche CX=50 X
 ALLOY = "\n".join(["# AA2090-T3", *(f"stress {15 * i} {value}" for i, value in enumerate(
     (1, .9605, .9102, .8114, .8096, .8815, .9102))), *(f"r {15 * i} {value}" for i, value in enumerate(
         (.2115, .3269, .6923, 1.5769, 1.0385, .5384, .6923))), "biaxial_stress 1.035", "biaxial_r .67  # last"])
-# Words of the command line, and what is said.
+# Words of the command line, and a part of the message.
 MISTAKES = (
     ("--criterion hill48", "error: no measured values"),
     ("--criterion yld91 --fix m=1 --r 0:1.79 45:1.51 90:2.27", "it said: m = 1 is out of range"),
@@ -84,7 +85,7 @@ MISTAKES = (
     ("--criterion hill48 --r 0:x --data two_bad.txt", "--r: error: 'x' is not a number"),
     ("--criterion hill48 --data many_bad.txt", "\nand 5 more\n"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --fix Q=1 Z=2", "hill48 has no Q Z"),
-    ("--criterion hosford --stress 90:1", "say nothing about m"),
+    ("--criterion hosford --stress 90:1", "do not determine m"),
     ("--criterion hill48 --data none.txt", "none.txt: error: No such file"),
     ("--criterion hill48 --data bad_key.txt", "bad_key.txt:2: error: unknown key 'rr'\n    rr 0 1.5\n    ^^\n"),
     ("--criterion hill48 --data bad_word.txt", "bad_word.txt:1: error: 'one' is not a number\n  r 0 one\n      ^^^\n"),
@@ -100,13 +101,13 @@ MISTAKES = (
     ("--hardening swift --curve decimal.csv", "decimal.csv:1: error: more than two numbers"),
     ("--hardening swift --curve neck.csv",
      "neck.csv:3: error: from here the stress falls to 150\n  0.2,300\n      ^^^\n"),
-    ("--hardening swift --curve back.csv", "back.csv:3: error: strain = 0.01 does not grow\n  0.01,300\n  ^^^^\n"),
-    ("--hardening voce --backstress prager --curve forth.csv", "says nothing about a back-stress"),
+    ("--hardening swift --curve back.csv", "back.csv:3: error: strain = 0.01 does not increase\n  0.01,300\n  ^^^^\n"),
+    ("--hardening voce --backstress prager --curve forth.csv", "no back-stress can be identified"),
     ("--hardening voce --curve elastic.csv", "0 rows beyond the elastic range"),
     ("--hardening voce", "--curve and the name of a law"),
     ("--hardening vocal --curve forth.csv", "--hardening: one of"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --hardening", "expected one argument"),
-    ("--criterion hill48 --r 0:1 45:1 90:1 --program ./none", "./none: error: No such file"),
+    ("--criterion hill48 --r 0:1 45:1 90:1 --program ./none", "./none: no such program"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --program /bin/true", "/bin/true: error: exit code 0, and no results"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --program /bin/false", "/bin/false: error: exit code 1, and no results"),
     ("--criterion hill48 --r 0:1 45:1 90:1 --output no/where.dat", "no/where.dat: error: No such file"))
@@ -123,18 +124,18 @@ FILES = {
 
 
 class Trial:
-    """Runs of identify.py in a folder, and what went wrong."""
+    """Runs of identify.py in a folder, and the failures."""
 
     def __init__(self, program):
         self.program, self.points, self.wrong = program, identify.Points(program, 2.1e5, 0.3), []
 
     def expect(self, true, what):
-        """Notes what is not as it should be."""
+        """Record a failure."""
         if not true:
             self.wrong.append(what)
 
     def call(self, *words):
-        """Exit code, what was said and the file written."""
+        """Return the exit code, the messages and the file written."""
         before, sys.argv = sys.argv, ["identify.py", "found", "--program", self.program, *words]
         Path("found.dat").unlink(missing_ok=True)
         code, out, err = 0, io.StringIO(), io.StringIO()
@@ -149,7 +150,7 @@ class Trial:
         return code, out.getvalue() + err.getvalue(), text
 
     def fit(self, *words):
-        """Parameters and rows of the table (measured, identified) of a fit that must succeed."""
+        """Return parameters, rows of the table (measured, identified) and file of a fit that must succeed."""
         code, said, text = self.call("--starts", "2", *words)
         self.expect(code == 0, f"{words}: exit code {code}\n{said}")
         back, told, _ = self.points.run(text + "*POINT p\n  material = found\n  control = " + TENSION
@@ -160,24 +161,24 @@ class Trial:
         return {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", text)}, rows, text
 
     def near(self, name, found, wanted, tolerance):
-        """Compares parameters."""
+        """Compare parameters."""
         for key, value in wanted.items():
             self.expect(abs(found.get(key, 1e9) - value) <= tolerance * max(abs(value), 1),
                         f"{name}: {key} is {found.get(key)}, expected {value:.6g}")
 
 
 def largest(rows):
-    """The largest difference of measured and identified."""
+    """Return the largest difference of measured and identified values."""
     return max((abs(one - two) for one, two in rows.values() if one is not None), default=float("inf"))
 
 
 def of_law(law):
-    """The parameters of a text."""
+    """Return the parameters of a text."""
     return {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", law)}
 
 
 def check_steel(trial):
-    """Every criterion has exactly the r-values of mild steel."""
+    """Check that every criterion fits the r-values of mild steel."""
     for name, given, wanted in STEEL_SETS:
         found, rows, text = trial.fit("--criterion", name, *STEEL, *(["--fix", *given] if given else []))
         trial.expect(largest(rows) < 2e-4, f"{name}: {text}")
@@ -186,14 +187,14 @@ def check_steel(trial):
         trial.expect(rows["equibiaxial, r"][1] > 0, f"{name}: equibiaxial r\n{text}")
         trial.expect("end of its range" not in text and " in place of " not in text, f"{name}: notes\n{text}")
     _, _, text = trial.fit("--criterion", "hill48", "--r", "0:1.79", "90:2.27", "--stress", "90:1.04")
-    trial.expect("the data say nothing about N: left as in the isotropic case" in text, f"N is open:\n{text}")
+    trial.expect("the data do not determine N: left as in the isotropic case" in text, f"N is open:\n{text}")
     _, _, text = trial.fit("--criterion", "hill48", "--r", "0:.01", "45:19", "90:.01")
     trial.expect("N is at the end of its range" in text, f"no note of N:\n{text}")
     trial.expect("tension 0, stress is 1.39" in text, f"no note of the stress:\n{text}")
 
 
 def measure(trial, name, law):
-    """Lines with the values that the program gives for a law."""
+    """Return the values that the program computes for a law: key, angle, value."""
     data = [Datum(key, angle) for key in ("stress", "r") for angle in ANGLES]
     data += [Datum("biaxial_stress"), Datum("biaxial_r"), Datum("plane_strain", 0), Datum("plane_strain", 90)]
     keys = ["stress"] * 7 + ["r"] * 7 + ["biaxial_stress", "biaxial_r", "plane_strain", "plane_strain"]
@@ -207,13 +208,13 @@ def measure(trial, name, law):
 
 
 def write(values, path="values.txt"):
-    """Writes values as a file for --data."""
+    """Write values as a file for --data."""
     Path(path).write_text("".join(f"{key} {'' if angle is None else f'{angle} '}{value:.10g}\n"
                                   for key, angle, value in values), encoding="utf-8")
 
 
 def check_true(trial):
-    """Values of known parameters are met again."""
+    """Check that values of known parameters are reproduced."""
     for name, law, given, whole in TRUE_SETS:
         write(measure(trial, name, law))
         found, rows, text = trial.fit("--criterion", name, "--data", "values.txt",
@@ -231,10 +232,10 @@ def check_true(trial):
 
 
 def check_alloy(trial):
-    """Titanium by cpb06; AA2090-T3 by criteria that can follow it: root of the sum of squares, equibiaxial r."""
+    """Check titanium by cpb06 and AA2090-T3: root of the sum of squares, equibiaxial r."""
     found, rows, text = trial.fit("--criterion", "cpb06", *TITANIUM)
     trial.expect(largest(rows) < 2e-3, f"titanium: {text}")
-    trial.expect("C66" not in found and "nothing about C66" in text, f"titanium: {text}")
+    trial.expect("C66" not in found and "do not determine C66" in text, f"titanium: {text}")
     for name, limit, starts in (("yld2004", 0.06, "2"), ("cazacu_barlat2001", 0.28, "1")):
         _, rows, text = trial.fit("--criterion", name, "--data", "alloy.txt", "--starts", starts)
         squares = [((two - one) * (0.5 if label.endswith(", r") else 1)) ** 2 for label, (one, two) in rows.items()]
@@ -243,25 +244,25 @@ def check_alloy(trial):
 
 
 def curve(trial, law, targets):
-    """Strains and stresses of a law along rolling."""
+    """Return strains and stresses of a law along rolling."""
     path = (TENSION, 0, [([value, 0, 0, 0, 0, 0], steps) for value, steps in targets])
     rows = trial.points.rows([("yield = von_mises", f"hardening = {law}")], [path])[0][0]
     return np.array([(row["e11"], row["s11"]) for row in rows[1:]])
 
 
 def write_curve(rows, header="strain,stress (N/mm²)\n"):
-    """Writes a curve, as testing machines do."""
+    """Write a curve as testing machines do."""
     Path("curve.csv").write_text(header + "".join(f"{a:.10g},{b:.10g}\n" for a, b in rows), encoding="latin-1")
 
 
 def check_hardening(trial):
-    """Each law is found again from its curve."""
+    """Check that each law is identified from its curve."""
     for law in LAWS:
         name = law.split()[0]
         write_curve(curve(trial, law, [(0.25, 40)]))
         found, rows, text = trial.fit("--hardening", name, "--curve", "curve.csv")
         trial.expect(largest(rows) < 0.02, f"{name}: {text}")
-        if name != "swift_voce":  # its two parts can do for each other
+        if name != "swift_voce":  # its two parts can replace each other
             trial.near(name, found, of_law(law), 1e-3)
     _, rows, text = trial.fit("--hardening", "table", "--curve", "curve.csv", "--starts", "1")
     trial.expect(largest(rows) < 0.6 and "table 0:" in text, f"table: {text}")
@@ -277,7 +278,7 @@ def check_hardening(trial):
 
 
 def check_reversal(trial):
-    """A back-stress from tension and then compression, and the picture."""
+    """Check a back-stress from tension followed by compression, and the picture."""
     write_curve(curve(trial, REVERSAL, [(0.08, 160), (-0.04, 240)])[4::5])
     found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
                                   "--criterion", "hill48", *STEEL, "--plot", "found.png")
@@ -287,7 +288,7 @@ def check_reversal(trial):
 
 
 def check_few_rows(trial):
-    """Notes where a curve has fewer rows than there are parameters, and where it is missed."""
+    """Check the notes on a curve with fewer rows than parameters, and on one that is not fitted."""
     write_curve([(0.01, 200), (0.05, 250), (0.1, 280), (0.09, -100), (0.05, -250), (0, -290)])
     _, _, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "lemaitre_chaboche", "--curve",
                            "curve.csv")
@@ -296,7 +297,7 @@ def check_few_rows(trial):
 
 
 def check_mistakes(trial):
-    """What is said of input that cannot be used."""
+    """Check the messages on input that cannot be used."""
     Path("bytes.txt").write_bytes(b"\xff\xfe\x00r")
     for words, wanted in MISTAKES:
         code, said, _ = trial.call(*words.split())
@@ -304,7 +305,7 @@ def check_mistakes(trial):
 
 
 def main():
-    """Runs all checks."""
+    """Run all checks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="the program dd3imp")
     trial = Trial(str(Path(parser.parse_args().program).resolve()))
@@ -320,7 +321,7 @@ def main():
                 trial.expect(False, f"{check.__name__}: {problem}")
             print(f"{check.__name__}: {sum(os.times()[:4]):.0f} s", flush=True)
         os.chdir(ROOT)
-    print("\n".join(trial.wrong) or "all is found again")
+    print("\n".join(trial.wrong) or "all parameters are identified")
     sys.exit(1 if trial.wrong else 0)
 
 

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Checks the special cases that docs/laws states: two laws that are said to be the same give the same stresses.
+"""Check the special cases of docs/laws: two laws that are stated to be equal give the same stresses.
 
     special_cases.py --program build/release/dd3imp
 
-Both materials of a pair go along the same random paths of strain, all six components, with a change of direction.
+Both materials of a pair follow the same random paths of strain, all six components, with a change of direction.
 """
 import argparse
-import csv
 import pathlib
 import random
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "utils"))
+from results import run_points  # noqa: E402
 
 PATHS = 12
 UNIT = "perfect Y0=100"
@@ -22,7 +22,7 @@ BARLAT = " ".join(f"{name}={value}" for name, value in ABC.items())
 
 
 def hill_of_barlat():
-    """Hill's coefficients of the transformed stress of yld91 with a quadratic function."""
+    """Return Hill's coefficients for the transformed stress of yld91 with a quadratic function."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     f, g, h = ((x * x + (x * y + x * z - y * z) / 2) / 3 for x, y, z in ((a, b, c), (b, a, c), (c, a, b)))
     shears = (1.5 * ABC[name] ** 2 for name in "fgh")
@@ -30,7 +30,7 @@ def hill_of_barlat():
 
 
 def mixture_of_barlat(k, c):
-    """karafillis_boyce with the transformed stress of yld91."""
+    """Return karafillis_boyce with the transformed stress of yld91."""
     x, y, z = ABC["a"], ABC["b"], ABC["c"]
     scale = (y + z) / 3
     values = (k, c, scale, (x + z) / (y + z), (x + y) / (y + z), *(ABC[name] / scale for name in "fgh"))
@@ -39,7 +39,7 @@ def mixture_of_barlat(k, c):
 
 
 def two_of_barlat(m):
-    """yld2004 with the transformed stress of yld91, twice."""
+    """Return yld2004 with both transformations equal to that of yld91."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     values = {"12": (b + 2 * c) / 3, "13": (2 * b + c) / 3, "21": (a + 2 * c) / 3, "23": (2 * a + c) / 3,
               "31": (a + 2 * b) / 3, "32": (2 * a + b) / 3, "44": ABC["f"], "55": ABC["g"], "66": ABC["h"]}
@@ -47,7 +47,7 @@ def two_of_barlat(m):
 
 
 def ones(law, names, rest):
-    """A criterion with all these parameters 1."""
+    """Return a criterion with all these parameters equal to 1."""
     return f"{law} {' '.join(f'{name}=1' for name in names)} {rest}"
 
 
@@ -91,7 +91,7 @@ HARDENING = (
 
 
 def deck(number, laws):
-    """Both materials of a pair along its paths."""
+    """Return the input that takes both materials of a pair along its paths."""
     lines = []
     for i, law in enumerate(laws):
         lines += [f"*MATERIAL m{i}", "  young = 2.1e5", "  poisson = 0.3", *law]
@@ -106,24 +106,19 @@ def deck(number, laws):
 
 
 def stresses(program, text):
-    """Stresses of both materials of a pair, and what the program says where it fails."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "pair.dat"
-        file.write_text(text, encoding="utf-8")
-        out = pathlib.Path(folder) / "out"
-        done = subprocess.run([program, "--quiet", "--output", str(out), str(file)], capture_output=True, text=True,
-                              timeout=60, check=False)
-        if done.returncode != 0:
-            return None, done.stderr
-        found = ([], [])
-        with open(out / "history.csv", newline="", encoding="utf-8") as stream:
-            for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-                found[int(row["point"][1])].extend(float(row[key]) for key in ("s11", "s22", "s12", "s23", "s13"))
-        return found, ""
+    """Return the stresses of both materials of a pair, or None and the messages if the program fails."""
+    done, points = run_points(program, text, timeout=60)
+    if done.code != 0:
+        return None, done.errors
+    found = ([], [])
+    for name, rows in points.items():
+        for row in rows:
+            found[int(name[1])].extend(row[key] for key in ("s11", "s22", "s12", "s23", "s13"))
+    return found, ""
 
 
 def main():
-    """Compares all pairs."""
+    """Compare all pairs."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="the program dd3imp")
     program = parser.parse_args().program
