@@ -106,7 +106,7 @@ def nodes_at(folder, travel):
 
 
 def sheets(work, results, path):
-    """Both sides of both sheets at 2.0 mm, seen from above; the paper's Fig. 4."""
+    """Draw both sides of both sheets at 2.0 mm from above: the paper's Fig. 4."""
     cases = [f"{mesh}-1e3" for mesh in MESHES]
     if any(case not in results for case in cases):
         return False
