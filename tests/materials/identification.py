@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Checks utils/identify.py. Ends with 77 where there is no .venv and its packages are missing.
+"""Check utils/identify.py. The exit code is 77 if there is no .venv and packages are missing.
 
     identification.py --program build/release/dd3imp
 
-- Values that the program computes from known parameters are reproduced, and so are the parameters they determine.
-- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by the criteria that can fit it.
-- Scattered and missing values; a curve with a reversal; messages on input that cannot be used.
-- Each file written can be read by the program.
+- Values computed by the program from known parameters are reproduced, and so are the parameters if determined.
+- Measured sheets: mild steel of NUMISHEET'93 by every criterion, AA2090-T3 by those that can fit it.
+- Scattered and missing values; a curve with a reversal; messages for unusable input.
+- Each file written is read by the program.
 """
 import argparse
 import contextlib
@@ -29,14 +29,14 @@ import numpy as np  # noqa: E402
 from measurements import TENSION, Datum  # noqa: E402
 from scripts import Problem  # noqa: E402
 
-identify.BORDER, identify.EVALUATIONS = 5, 25  # enough for a test
+identify.BORDER, identify.EVALUATIONS = 5, 25  # enough to see that it works
 ANGLES = range(0, 91, 15)
 TITANIUM = ["--stress", "90:1.053", "--compression", "0:0.898", "90:0.805", "--biaxial-stress", "1.449",
             "--biaxial-compression", "1.104"]  # Ti-4Al-1/4O2 at 0.2 %
 STEEL = ["--r", "0:1.79", "45:1.51", "90:2.27"]  # NUMISHEET'93
 G = 1 / 2.79
 F = 1.79 * G / 2.27
-# Criterion, what is given, the known parameters: by formula, or of the library.
+# Criterion, what is given, the parameters known, tolerance: of the library, where not by formula.
 STEEL_SETS = (
     ("hill48", [], {"F": F, "G": G, "H": 1 - G, "N": (F + G) * 2.01}),
     ("yld91", ["m=6"], {"a": 0.81385, "b": 0.88006, "c": 1.11247, "h": 0.94446}),
@@ -45,7 +45,7 @@ STEEL_SETS = (
     ("karafillis_boyce", ["k=3"], {}),
     ("drucker", ["c=1.2129"], {"C1": 0.81324, "C2": 0.87964, "C3": 1.11288, "C6": 0.94426}),
     ("drucker", [], {}), ("cazacu_barlat2001", [], {}), ("yld2004", ["m=6"], {}), ("cpb06", [], {}))
-# Criterion, its true parameters, those given, whether the values determine all of them.
+# Criterion, its true parameters, those given, whether all come out again.
 TRUE_SETS = (
     ("hill48", "F=0.284 G=0.358 H=0.642 N=1.289", [], True),
     ("hosford", "m=8", [], True),
@@ -64,7 +64,7 @@ REVERSAL = "voce Y0=200 Rsat=100 CR=10\n  backstress = lemaitre_chaboche CX=50 X
 ALLOY = "\n".join(["# AA2090-T3", *(f"stress {15 * i} {value}" for i, value in enumerate(
     (1, .9605, .9102, .8114, .8096, .8815, .9102))), *(f"r {15 * i} {value}" for i, value in enumerate(
         (.2115, .3269, .6923, 1.5769, 1.0385, .5384, .6923))), "biaxial_stress 1.035", "biaxial_r .67  # last"])
-# Words of the command line, and a part of the message.
+# Words of the command line, and what is said.
 MISTAKES = (
     ("--criterion hill48", "error: no measured values"),
     ("--criterion yld91 --fix m=1 --r 0:1.79 45:1.51 90:2.27", "it said: m = 1 is out of range"),
@@ -124,18 +124,18 @@ FILES = {
 
 
 class Trial:
-    """Runs of identify.py in a folder, and the failures."""
+    """Runs of identify.py in a folder, and their failures."""
 
     def __init__(self, program):
         self.program, self.points, self.wrong = program, identify.Points(program, 2.1e5, 0.3), []
 
     def expect(self, true, what):
-        """Record a failure."""
+        """Record a failure unless the condition holds."""
         if not true:
             self.wrong.append(what)
 
     def call(self, *words):
-        """Return the exit code, the messages and the file written."""
+        """Return exit code, messages and the file written."""
         before, sys.argv = sys.argv, ["identify.py", "found", "--program", self.program, *words]
         Path("found.dat").unlink(missing_ok=True)
         code, out, err = 0, io.StringIO(), io.StringIO()
@@ -150,7 +150,7 @@ class Trial:
         return code, out.getvalue() + err.getvalue(), text
 
     def fit(self, *words):
-        """Return parameters, rows of the table (measured, identified) and file of a fit that must succeed."""
+        """Return parameters and rows of the table (measured, identified) of a fit that must succeed."""
         code, said, text = self.call("--starts", "2", *words)
         self.expect(code == 0, f"{words}: exit code {code}\n{said}")
         back, told, _ = self.points.run(text + "*POINT p\n  material = found\n  control = " + TENSION
@@ -168,7 +168,7 @@ class Trial:
 
 
 def largest(rows):
-    """Return the largest difference of measured and identified values."""
+    """Return the largest difference of measured and identified."""
     return max((abs(one - two) for one, two in rows.values() if one is not None), default=float("inf"))
 
 
@@ -178,7 +178,7 @@ def of_law(law):
 
 
 def check_steel(trial):
-    """Check that every criterion fits the r-values of mild steel."""
+    """Check that every criterion has exactly the r-values of mild steel."""
     for name, given, wanted in STEEL_SETS:
         found, rows, text = trial.fit("--criterion", name, *STEEL, *(["--fix", *given] if given else []))
         trial.expect(largest(rows) < 2e-4, f"{name}: {text}")
@@ -194,7 +194,7 @@ def check_steel(trial):
 
 
 def measure(trial, name, law):
-    """Return the values that the program computes for a law: key, angle, value."""
+    """Return lines with the values that the program computes for a law."""
     data = [Datum(key, angle) for key in ("stress", "r") for angle in ANGLES]
     data += [Datum("biaxial_stress"), Datum("biaxial_r"), Datum("plane_strain", 0), Datum("plane_strain", 90)]
     keys = ["stress"] * 7 + ["r"] * 7 + ["biaxial_stress", "biaxial_r", "plane_strain", "plane_strain"]
@@ -232,7 +232,7 @@ def check_true(trial):
 
 
 def check_alloy(trial):
-    """Check titanium by cpb06 and AA2090-T3: root of the sum of squares, equibiaxial r."""
+    """Check titanium by cpb06, AA2090-T3 by criteria that can fit it: root of the sum of squares, equibiaxial r."""
     found, rows, text = trial.fit("--criterion", "cpb06", *TITANIUM)
     trial.expect(largest(rows) < 2e-3, f"titanium: {text}")
     trial.expect("C66" not in found and "do not determine C66" in text, f"titanium: {text}")
@@ -251,7 +251,7 @@ def curve(trial, law, targets):
 
 
 def write_curve(rows, header="strain,stress (N/mm²)\n"):
-    """Write a curve as testing machines do."""
+    """Write a curve in the format of testing machines."""
     Path("curve.csv").write_text(header + "".join(f"{a:.10g},{b:.10g}\n" for a, b in rows), encoding="latin-1")
 
 
@@ -262,7 +262,7 @@ def check_hardening(trial):
         write_curve(curve(trial, law, [(0.25, 40)]))
         found, rows, text = trial.fit("--hardening", name, "--curve", "curve.csv")
         trial.expect(largest(rows) < 0.02, f"{name}: {text}")
-        if name != "swift_voce":  # its two parts can replace each other
+        if name != "swift_voce":  # its two parts can do for each other
             trial.near(name, found, of_law(law), 1e-3)
     _, rows, text = trial.fit("--hardening", "table", "--curve", "curve.csv", "--starts", "1")
     trial.expect(largest(rows) < 0.6 and "table 0:" in text, f"table: {text}")
@@ -278,7 +278,7 @@ def check_hardening(trial):
 
 
 def check_reversal(trial):
-    """Check a back-stress from tension followed by compression, and the picture."""
+    """Check a back-stress from tension and then compression, and the picture."""
     write_curve(curve(trial, REVERSAL, [(0.08, 160), (-0.04, 240)])[4::5])
     found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
                                   "--criterion", "hill48", *STEEL, "--plot", "found.png")
@@ -288,7 +288,7 @@ def check_reversal(trial):
 
 
 def check_few_rows(trial):
-    """Check the notes on a curve with fewer rows than parameters, and on one that is not fitted."""
+    """Check the notes if a curve has fewer rows than there are parameters, and if the fit is poor."""
     write_curve([(0.01, 200), (0.05, 250), (0.1, 280), (0.09, -100), (0.05, -250), (0, -290)])
     _, _, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "lemaitre_chaboche", "--curve",
                            "curve.csv")
@@ -297,7 +297,7 @@ def check_few_rows(trial):
 
 
 def check_mistakes(trial):
-    """Check the messages on input that cannot be used."""
+    """Check the messages for unusable input."""
     Path("bytes.txt").write_bytes(b"\xff\xfe\x00r")
     for words, wanted in MISTAKES:
         code, said, _ = trial.call(*words.split())
@@ -321,7 +321,7 @@ def main():
                 trial.expect(False, f"{check.__name__}: {problem}")
             print(f"{check.__name__}: {sum(os.times()[:4]):.0f} s", flush=True)
         os.chdir(ROOT)
-    print("\n".join(trial.wrong) or "all parameters are identified")
+    print("\n".join(trial.wrong) or "all is found again")
     sys.exit(1 if trial.wrong else 0)
 
 

@@ -5,9 +5,9 @@
 
 - Each has a header with reference, measurements and certainty, and one *MATERIAL named after the file.
 - Each passes `dd3imp --check` when a file with a *POINT includes it.
-- Tension, compression and equibiaxial tension at a point give the stresses (over the flow stress) and r-values of its
-  header, to the digits printed there (0.6 of a unit of the last).
-- r-values in tension and compression are positive every 15 degrees.
+- Tension, compression and equibiaxial tension at a point give the stresses (over the flow stress) and r-values that
+  its header states, to the digits printed there (0.6 of a unit of the last).
+- r-values in tension and compression are positive every 15 degrees, as those of any sheet.
 """
 import argparse
 import pathlib
@@ -27,7 +27,7 @@ CHECK = re.compile(rf"^#\s+({'|'.join(KINDS)})\s+(?:(\d+)\s+)?([-\d.]+)\s+([-\d.
 
 
 def deck(path, checks):
-    """Return the input that takes the material of a file along the paths of its check values."""
+    """Return input that drives the material of a file on the paths of its check values."""
     lines = [f'*INCLUDE "{path}"']
     for i, (kind, angle, _, _) in enumerate(checks):
         control, sign = KINDS[kind]
@@ -40,7 +40,7 @@ def deck(path, checks):
 
 
 def measure(kind, rows):
-    """Return the stress over the flow stress and the r-value of a path."""
+    """Return stress over flow stress and r-value of a path."""
     _, elastic, first, last = rows
     leading = "s11" if KINDS[kind][0] == UNIAXIAL else "s33"
     pair = ("e22", "e33") if leading == "s11" else ("e22", "e11")
@@ -50,7 +50,7 @@ def measure(kind, rows):
 
 
 def off(wanted, value):
-    """Check whether a value differs from the printed one by more than its digits allow."""
+    """Return whether a value differs from the printed one by more than its digits allow."""
     if wanted == "-":
         return False
     return abs(float(wanted) - value) > 0.6 * 10.0 ** -len(wanted.partition(".")[2])

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Check the special cases of docs/laws: two laws that are stated to be equal give the same stresses.
+"""Check the special cases stated in docs/laws: both laws of a pair give the same stresses.
 
     special_cases.py --program build/release/dd3imp
 
-Both materials of a pair follow the same random paths of strain, all six components, with a change of direction.
+Both materials undergo the same random strain paths, in all six components, with a change of direction.
 """
 import argparse
 import pathlib
@@ -22,7 +22,7 @@ BARLAT = " ".join(f"{name}={value}" for name, value in ABC.items())
 
 
 def hill_of_barlat():
-    """Return Hill's coefficients for the transformed stress of yld91 with a quadratic function."""
+    """Return Hill's coefficients of the transformed stress of yld91 with a quadratic function."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     f, g, h = ((x * x + (x * y + x * z - y * z) / 2) / 3 for x, y, z in ((a, b, c), (b, a, c), (c, a, b)))
     shears = (1.5 * ABC[name] ** 2 for name in "fgh")
@@ -39,7 +39,7 @@ def mixture_of_barlat(k, c):
 
 
 def two_of_barlat(m):
-    """Return yld2004 with both transformations equal to that of yld91."""
+    """Return yld2004 with the transformed stress of yld91, twice."""
     a, b, c = ABC["a"], ABC["b"], ABC["c"]
     values = {"12": (b + 2 * c) / 3, "13": (2 * b + c) / 3, "21": (a + 2 * c) / 3, "23": (2 * a + c) / 3,
               "31": (a + 2 * b) / 3, "32": (2 * a + b) / 3, "44": ABC["f"], "55": ABC["g"], "66": ABC["h"]}
@@ -47,7 +47,7 @@ def two_of_barlat(m):
 
 
 def ones(law, names, rest):
-    """Return a criterion with all these parameters equal to 1."""
+    """Return a criterion with all these parameters 1."""
     return f"{law} {' '.join(f'{name}=1' for name in names)} {rest}"
 
 
@@ -91,7 +91,7 @@ HARDENING = (
 
 
 def deck(number, laws):
-    """Return the input that takes both materials of a pair along its paths."""
+    """Return both materials of a pair with its paths."""
     lines = []
     for i, law in enumerate(laws):
         lines += [f"*MATERIAL m{i}", "  young = 2.1e5", "  poisson = 0.3", *law]
@@ -106,7 +106,7 @@ def deck(number, laws):
 
 
 def stresses(program, text):
-    """Return the stresses of both materials of a pair, or None and the messages if the program fails."""
+    """Return the stresses of both materials of a pair, and messages if the program fails."""
     done, points = run_points(program, text, timeout=60)
     if done.code != 0:
         return None, done.errors
