@@ -20,7 +20,7 @@ A case is a folder with a case.json:
     files       files that the results must contain, default ["history.csv", "status.csv", "job.log"]
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
                 `arguments` and keys that replace those of the case, such as a reference of their own
-    labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` includes it in the debug build
+    labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` adds it to the debug build
     timeout     seconds, default 300
 """
 import argparse

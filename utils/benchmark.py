@@ -56,7 +56,8 @@ def best_runs(arguments, job):
 def print_tables(best):
     """Print totals and sections of the runs."""
     first = next(iter(best.values()))
-    print("| program | threads | wall, s | ratio | processor, s | ratio | increments | iterations | of the solver | memory, MB |")
+    print("| program | threads | wall, s | ratio | processor, s | ratio | increments | iterations | of the solver "
+          "| memory, MB |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for (program, threads), run in best.items():
         print(f"| {program} | {threads} | {run.wall:.2f} | {run.wall / first.wall:.2f} | {run.cpu:.2f} "
@@ -74,7 +75,8 @@ def print_tables(best):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("job", nargs="*", type=Path, default=[BENDING], help="input files")
-    parser.add_argument("--program", action="append", type=Path, required=True, help="a dd3imp; the first is compared with")
+    parser.add_argument("--program", action="append", type=Path, required=True,
+                        help="a dd3imp; ratios are to the first")
     parser.add_argument("--threads", action="append", type=int, help="number of threads (1)")
     parser.add_argument("--repeat", type=int, default=3, help="runs of each, the fastest counts (3)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of the jobs")

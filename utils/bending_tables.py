@@ -29,6 +29,7 @@ EDGES = {"free": "corner", "u_y = 0": "all"}
 HALVED = {"strain": "0.0025", "rotation": "0.025", "tangential": "1.5", "normal": "0.5"}
 # First travel at which forces are compared, and the distance of the points, mm.
 FIRST, STEP = 0.1, 0.1
+TENS = (10, 20, 30, 40)
 
 
 def jobs():
@@ -140,14 +141,17 @@ def cutback(work):
     rows = []
     for p in PENALTIES:
         r = Run(work / f"cutback-{p}")
-        rows.append([p, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.retries}", f"{r.force[-1]:.0f}", f"{r.seconds:.1f}"])
-    return table(["p, N/mm", "reached, mm", "increments", "cut-backs", "punch force there, N", "processor time, s"], rows)
+        rows.append([p, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.retries}", f"{r.force[-1]:.0f}",
+                     f"{r.seconds:.1f}"])
+    return table(["p, N/mm", "reached, mm", "increments", "cut-backs", "punch force there, N", "processor time, s"],
+                 rows)
 
 
 def penalties(work):
     """Punch forces of mesh (b) at equal travel for each p."""
     runs = {p: Run(work / f"b-corner-{p}") for p in PENALTIES}
-    rows = [[f"{t}"] + [f"{r.force_at(t):.1f}" if t <= r.travel[-1] else "-" for r in runs.values()] for t in range(5, 41, 5)]
+    rows = [[f"{t}"] + [f"{r.force_at(t):.1f}" if t <= r.travel[-1] else "-" for r in runs.values()]
+            for t in range(5, 41, 5)]
     return table(["travel, mm"] + [f"p = {p}, N" for p in PENALTIES], rows)
 
 
@@ -169,8 +173,10 @@ def halved(work):
     rows = []
     for p in PENALTIES:
         whole, half = Run(work / f"b-corner-{p}"), Run(work / f"halved-{p}")
-        rows.append([p, f"{half.travel[-1]:.1f}", f"{whole.increments}", f"{half.increments}", difference_cells(half, whole)])
-    return table(["p, N/mm", "reached, mm", "increments", "with halved limits", "largest difference of the force", "median"], rows)
+        rows.append([p, f"{half.travel[-1]:.1f}", f"{whole.increments}", f"{half.increments}",
+                     difference_cells(half, whole)])
+    return table(["p, N/mm", "reached, mm", "increments", "with halved limits", "largest difference of the force",
+                  "median"], rows)
 
 
 def holder(work):
@@ -178,14 +184,15 @@ def holder(work):
     rows = []
     for force, name in (("22.6", "b-corner-1e3"), ("11.3", "holder-11300")):
         r = Run(work / name)
-        rows.append([force, f"{r.travel[-1]:.1f}", f"{r.increments}"] + [f"{r.force_at(t):.0f}" for t in (10, 20, 30, 40)])
-    return table(["blank-holder, kN", "reached, mm", "increments"] + [f"force at {t} mm, N" for t in (10, 20, 30, 40)], rows)
+        rows.append([force, f"{r.travel[-1]:.1f}", f"{r.increments}", *(f"{r.force_at(t):.0f}" for t in TENS)])
+    return table(["blank-holder, kN", "reached, mm", "increments"] + [f"force at {t} mm, N" for t in TENS], rows)
 
 
 def limiters(work):
     """Limiters of the increments."""
     rows = []
-    for name, run_name in (("(a), u_y = 0", "a-all-1e3"), ("(b), free", "b-corner-1e3"), ("(b), u_y = 0", "b-all-1e3"), ("fine", "fine")):
+    for name, run_name in (("(a), u_y = 0", "a-all-1e3"), ("(b), free", "b-corner-1e3"), ("(b), u_y = 0", "b-all-1e3"),
+                           ("fine", "fine")):
         percentages = Run(work / run_name).limiters()
         rows.append([name, ", ".join(f"{key} {value:.1f} %" for key, value in percentages.items())])
     return table(["mesh (p = 1e3)", "increments of `draw` limited by"], rows)
@@ -198,8 +205,8 @@ def fine(work):
         r = Run(work / name)
         rows.append([p, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.retries}", f"{r.iterations:.2f}",
                      f"{r.force_at(r.travel[-1]):.1f}", f"{r.seconds:.1f}", f"{r.memory:.0f}"])
-    return table(["p, N/mm", "reached, mm", "increments", "cut-backs", "iterations per increment", "punch force there, N",
-                  "processor time, s", "memory, MB"], rows)
+    return table(["p, N/mm", "reached, mm", "increments", "cut-backs", "iterations per increment",
+                  "punch force there, N", "processor time, s", "memory, MB"], rows)
 
 
 TABLES = {f.__name__: f for f in (stops, reasons, cutback, penalties, agreement, halved, holder, limiters, fine)}

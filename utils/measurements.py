@@ -70,7 +70,7 @@ class Line:
 
 
 class Datum:
-    """A measured value: kind of test, angle, quantity, value, weight. Without a value it is only computed and printed."""
+    """A measured value: kind of test, angle, quantity, value, weight. Without a value it is only computed."""
 
     def __init__(self, key, angle=0.0, value=None, weight=None):
         self.kind, self.quantity, usual, self.angled = KEYS[key]
@@ -85,7 +85,7 @@ class Datum:
         return self.kind, self.angle
 
     def path(self):
-        """Return control, angle and targets at a point; equibiaxial tension is compression in thickness plus pressure."""
+        """Return control, angle and targets; equibiaxial tension is compression in thickness plus pressure."""
         sign = -1 if self.kind in ("compression", "equibiaxial") else 1
         place = 2 if self.kind.startswith("equibiaxial") else 0
         control = EQUIBIAXIAL if place else PLANE if self.kind == "plane strain" else TENSION

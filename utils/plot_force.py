@@ -106,7 +106,8 @@ def arguments():
     parser.add_argument("--tool", help="tool (default: the one that controls the last phase)")
     parser.add_argument("--component", choices=["motion", "x", "y", "z", "magnitude"], default="motion",
                         help="part of the force: against the motion (default), along an axis, or all of it")
-    parser.add_argument("--phase", action="append", default=[], help="phase to draw; may be repeated (default: the last)")
+    parser.add_argument("--phase", action="append", default=[],
+                        help="phase to draw; may be repeated (default: the last)")
     parser.add_argument("--label", action="append", default=[], help="name of a run in the legend, in their order")
     parser.add_argument("--factor", type=float, default=1.0, help="factor on the force; 2 for a half model")
     parser.add_argument("--title", default="", help="title above the plot")

@@ -59,7 +59,7 @@ def point(name, material, control, targets, angle=None):
 
 
 def deck(path, materials, angles, ratios, strain):
-    """Return the input that takes each material along all paths: those of tension are t0_0, those of strain ratios p0_0."""
+    """Return the input that takes each material along all paths; names are t0_45 for tension, p0_3 for strain ratios."""
     blocks = [f'*INCLUDE "{Path(path).resolve()}"']
     for m, material in enumerate(materials):
         for angle in angles:
@@ -77,7 +77,8 @@ def run(program, text):
     if done.code != 0:
         # Messages on the generated input name the files that it includes.
         included = ", ".join(re.findall(r'^\*INCLUDE "(.*)"', text, re.MULTILINE))
-        raise Problem(re.sub(re.escape(results.POINTS) + r"(:\d+)?", included, done.errors.strip()) or f"{program} failed")
+        said = re.sub(re.escape(results.POINTS) + r"(:\d+)?", included, done.errors.strip())
+        raise Problem(said or f"{program} failed")
     return points
 
 
@@ -112,7 +113,7 @@ def draw_over_angle(axes, angles, values, **style):
 
 
 def draw_surface(axes, ends, normals, keys=("s11", "s22"), **style):
-    """Draw a yield surface: stresses over the flow stress at the ends of paths, with the normals of each sixth if given."""
+    """Draw a yield surface: stresses over the flow stress at the ends of paths, and every sixth normal if given."""
     x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in keys)
     line, = axes.plot(np.append(x, x[0]), np.append(y, y[0]), **style)
     if normals is not None:

@@ -50,7 +50,8 @@ class Run(Fields):
     def step_at(self, travel):
         """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
         if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
-            raise Problem(f"{self.path}: no travel {travel:g} mm; there is {self.travel.min():g} to {self.travel.max():g}")
+            raise Problem(f"{self.path}: no travel {travel:g} mm; "
+                          f"there is {self.travel.min():g} to {self.travel.max():g}")
         return self.nearest_step(travel)
 
     def mesh(self, step, field, at_cells):

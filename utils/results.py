@@ -120,7 +120,7 @@ def limiters(status, phase):
 
 
 def force_limits(status, phase):
-    """Yield travel, node, tool and B (N) of the limit on the contact forces in each increment of a phase that has one."""
+    """Yield travel, node, tool and B (N) of the limit on the contact forces in the increments of a phase."""
     for row in status:
         if row["force_node"] and row["phase"] == phase:
             yield float(row["travel"]), int(row["force_node"]), row["force_tool"], float(row["force_size"])

@@ -18,7 +18,7 @@ def need(*packages):
 
 
 def end(message):
-    """Print one line and exit with code 2. Messages in the program's format (file:line: error: ...) are left as they are."""
+    """Print one line and exit with code 2; messages in the program's format, file:line: error: ..., are not changed."""
     print(message if "error: " in message else f"error: {message}", file=sys.stderr)
     sys.exit(2)
 

@@ -70,7 +70,8 @@ def percent(value, base):
 
 def travel_table(results, endings, heading, meshes=MESHES):
     """Travel by mesh, variant and penalty."""
-    rows = [[f"({mesh[0]}){' s = 0.5' if mesh == 'b05' else ''}", label] + [results.travel(f"{mesh}-{p}{ending}") for p in PENALTIES]
+    rows = [[f"({mesh[0]}){' s = 0.5' if mesh == 'b05' else ''}", label,
+             *(results.travel(f"{mesh}-{p}{ending}") for p in PENALTIES)]
             for mesh in meshes for ending, label in endings.items() if f"{mesh}-{PENALTIES[0]}{ending}" in results.row]
     return table(["mesh", heading] + [f"p = {p}" for p in PENALTIES], rows)
 
@@ -119,10 +120,13 @@ def costs(results):
 
     columns = ["increments", "newton_iterations", "linear_iterations", "seconds"]
     base = {column: mean("", column) for column in columns}
-    rows = [["off", str(len(results.finished("")))] + [f"{base[c]:.{1 if c == 'seconds' else 0}f}" for c in columns] + [""]]
+    rows = [["off", str(len(results.finished(""))),
+             *(f"{base[c]:.{1 if c == 'seconds' else 0}f}" for c in columns), ""]]
     for ending, paper in PAPER_COST.items():
-        rows.append([FORCE[ending], str(len(results.finished(ending)))] + [percent(mean(ending, c), base[c]) for c in columns] + [paper])
-    return table(["c, d, e", "runs", "increments", "Newton iterations", "linear iterations", "processor time, s", "paper, CPU"], rows)
+        rows.append([FORCE[ending], str(len(results.finished(ending))),
+                     *(percent(mean(ending, c), base[c]) for c in columns), paper])
+    return table(["c, d, e", "runs", "increments", "Newton iterations", "linear iterations", "processor time, s",
+                  "paper, CPU"], rows)
 
 
 def cost_up_to(results, case, end):
@@ -142,7 +146,8 @@ def equal_travel(results):
         cells = [cost_up_to(results, f"{mesh}-{p}", end) for mesh in MESHES]
         rows.append([p, f"{end:.1f}"] + [f"{a} / {b}" for a, b in list(zip(*cells))[:2]]
                     + [f"{cells[0][2]:.2f} / {cells[1][2]:.2f}", f"{cells[0][2] / cells[1][2]:.2f}"])
-    return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)", "ratio"], rows)
+    return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)",
+                  "ratio"], rows)
 
 
 def control(results):
@@ -151,15 +156,18 @@ def control(results):
     for ending, floor in (("-c1", "0.1"), ("-c1-floor0", "0")):
         for p in PENALTIES:
             pair = [results.row[f"{mesh}-{p}{ending}"] for mesh in MESHES]
-            rows.append([floor, p] + [f"{float(r['B_median']):.3g}" for r in pair] + [f"{float(r['flange']):.1f} %" for r in pair]
-                        + [f"{float(r['percent_force']) + float(r['percent_r_min']):.0f} %" for r in pair])
-    return table(["floor", "p", "median B (a), N", "(b), N", "node in the flange (a)", "(b)", "increments it sets (a)", "(b)"], rows)
+            rows.append([floor, p, *(f"{float(r['B_median']):.3g}" for r in pair),
+                         *(f"{float(r['flange']):.1f} %" for r in pair),
+                         *(f"{float(r['percent_force']) + float(r['percent_r_min']):.0f} %" for r in pair)])
+    return table(["floor", "p", "median B (a), N", "(b), N", "node in the flange (a)", "(b)", "increments it sets (a)",
+                  "(b)"], rows)
 
 
 def limiters(results):
     """Limiters of the increments of the stroke, p = 1e3."""
     names = ["rotation", "strain", "stress", "force", "r_max", "r_min"]
-    rows = [[f"({mesh})", label] + [f"{results.number(f'{mesh}-1e3{ending}', 'percent_' + name):.1f} %" for name in names]
+    rows = [[f"({mesh})", label,
+             *(f"{results.number(f'{mesh}-1e3{ending}', 'percent_' + name):.1f} %" for name in names)]
             for mesh in MESHES for ending, label in FORCE.items()]
     return table(["mesh", "c, d, e"] + [f"`{name}`" for name in names], rows)
 
@@ -215,8 +223,8 @@ def stops(results):
                 row = results.row[f"{mesh}-{p}{ending}"]
                 if row["code"] != "0":
                     last = results.run(row["case"]).status[-1]
-                    rows.append([label, f"({mesh})", p, f"{float(row['travel']):.2f}", last["gap"] + ", " + last["stick"] + ", " + last["slip"],
-                                 row["reason"]])
+                    rows.append([label, f"({mesh})", p, f"{float(row['travel']):.2f}",
+                                 ", ".join(last[key] for key in ("gap", "stick", "slip")), row["reason"]])
     return table(["iterations at most", "mesh", "p", "reached, mm", "gap, stick, slip", "reason"], rows)
 
 
@@ -230,6 +238,6 @@ def write(work, document):
     tables = {make.__name__: make(results) for make in TABLES}
     seconds = sum(float(row["seconds"]) for row in results.row.values())
     programs = sorted({row["program"] for row in results.row.values()})
-    tables["size"] = f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program {', '.join(programs)} "\
-                     "(the first digits of its SHA-256)."
+    tables["size"] = (f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program "
+                      f"{', '.join(programs)} (the first digits of its SHA-256).")
     fill(document, tables)

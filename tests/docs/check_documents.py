@@ -8,8 +8,8 @@
 - Scripts, input files and presets named in the documents exist, and the program and the scripts have every `--option`
   that is used there.
 - Code blocks that are complete input files pass `dd3imp --check`; those of single points run to their end.
-- Each law has a page docs/laws/<law>.md with its picture, linked from the page of its kind. The table of the page has the
-  parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
+- Each law has a page docs/laws/<law>.md with its picture, linked from the page of its kind. The table of the page has
+  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
   input_files/laws/<law>.dat runs to its end.
 """
 import argparse
@@ -60,7 +60,8 @@ def broken_links(path, text):
 def commands(text):
     """Return the commands of a document: lines indented by four columns or more."""
     joined = FENCE.sub("", text).replace("\\\n", " ")
-    return [line.strip() for line in joined.splitlines() if line.startswith("    ") and not line.strip().startswith("|")]
+    indented = [line.strip() for line in joined.splitlines() if line.startswith("    ")]
+    return [line for line in indented if not line.startswith("|")]
 
 
 def broken_commands(program, text):
@@ -176,7 +177,8 @@ def main():
     wrong = []
     printed, _ = run(program, "--help", "markdown")
     if printed != (ROOT / "docs" / "keywords.md").read_text(encoding="utf-8"):
-        wrong.append("docs/keywords.md differs from the output of the program; update it: dd3imp --help markdown >docs/keywords.md")
+        wrong.append("docs/keywords.md differs from the output of the program; update it: "
+                     "dd3imp --help markdown >docs/keywords.md")
     for path in DOCUMENTS:
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:

@@ -20,8 +20,8 @@ from results import run_points  # noqa: E402
 
 FOLDER = ROOT / "input_files" / "materials"
 UNIAXIAL, THICKNESS = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
-KINDS = {"tension": (UNIAXIAL, 1), "compression": (UNIAXIAL, -1), "biaxial": (THICKNESS, -1), "thickness": (THICKNESS, 1),
-         "thickness_compression": (THICKNESS, -1)}
+KINDS = {"tension": (UNIAXIAL, 1), "compression": (UNIAXIAL, -1), "biaxial": (THICKNESS, -1),
+         "thickness": (THICKNESS, 1), "thickness_compression": (THICKNESS, -1)}
 SHEET = [(kind, str(angle), "-", "-") for kind in ("tension", "compression") for angle in range(0, 91, 15)]
 CHECK = re.compile(rf"^#\s+({'|'.join(KINDS)})\s+(?:(\d+)\s+)?([-\d.]+)\s+([-\d.]+)\s*$", re.MULTILINE)
 
@@ -59,7 +59,8 @@ def off(wanted, value):
 def check(program, path):
     """Return the errors of a file."""
     text = path.read_text(encoding="utf-8")
-    wrong = [f"no line '# {word}: ...'" for word in ("Reference", "Measured", "Certainty") if f"\n# {word}: " not in text]
+    wrong = [f"no line '# {word}: ...'" for word in ("Reference", "Measured", "Certainty")
+             if f"\n# {word}: " not in text]
     if re.findall(r"^\*MATERIAL (\S+)", text, re.MULTILINE) != [path.stem] or text.count("\n*") != 1:
         return wrong + [f"its only block must be *MATERIAL {path.stem}"]
     checks = CHECK.findall(text)

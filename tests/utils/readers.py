@@ -10,8 +10,8 @@ import results  # noqa: E402
 import study  # noqa: E402
 from scripts import Problem  # noqa: E402
 
-STATUS = """increment,attempt,phase,travel,r,limiter,iterations,criterion,solver_iterations,gap,stick,slip,outcome,reason,\
-seconds,limiter_element,limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,worst_point,\
+STATUS = """increment,attempt,phase,travel,r,limiter,iterations,criterion,solver_iterations,gap,stick,slip,outcome,\
+reason,seconds,limiter_element,limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,worst_point,\
 solver,r_force,force_node,force_tool,force_size
 1,1,clamp,0,1,r_max,2,0.0047,0,18,68,2,accepted,,0.01,,,,,3,2.67E-02,,,cgs,0.5,7,die,3.5
 2,1,draw,,,,0,,7,18,68,2,retry,"det F <= 0, twice",0.02,,,,,,,12,3,cgs,,,,
@@ -87,7 +87,7 @@ def check_status(folder):
     limits = list(results.force_limits(status, "draw"))
     assert limits == [(0.5, 125, "blank_holder", 120.25), (0.9, 10, "punch", 80.5)], limits
     assert status[1]["reason"] == "det F <= 0, twice" and status[1]["worst_element"] == "12"
-    assert study.force_columns(status, 0.0) == {"B_median": "120.2", "flange": "50.00"}, study.force_columns(status, 0.0)
+    assert study.force_columns(status, 0.0) == {"B_median": "120.2", "flange": "50.00"}
 
 
 def check_deck(folder):

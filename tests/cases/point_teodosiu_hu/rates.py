@@ -8,11 +8,11 @@ The number is that of the program's increments in each part of a path and determ
 not depend on it.
 
 The equations are those of docs/laws/teodosiu_hu.md as rates, with the whole fourth-order tensor S and with h as
-(1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, limited to 0 to 1 (it is outside only if Xsat decreases; without the limit the
-shear stress of latent_crossed is 0.02 MPa higher, the others do not change). The strain is additive, its elastic part is
-Hooke's. The stress rate of the continuum tangent is integrated by the Runge-Kutta method of fourth order; the elastic
-parts of a path are one step up to the yield surface; four times as many steps change no printed digit. Needs numpy only;
-nothing of the program is used.
+(1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, limited to 0 to 1 (it is outside only if Xsat decreases; without the limit
+the shear stress of latent_crossed is 0.02 MPa higher, the others do not change). The strain is additive, its elastic
+part is Hooke's. The stress rate of the continuum tangent is integrated by the Runge-Kutta method of fourth order; the
+elastic parts of a path are one step up to the yield surface; four times as many steps change no printed digit. Needs
+numpy only; nothing of the program is used.
 """
 import math
 import sys
@@ -164,7 +164,7 @@ class Point:
 
 
 def main():
-    """Prints the table."""
+    """Print the table."""
     increments = int(sys.argv[1]) if len(sys.argv) > 1 else 400
     print("# Written by rates.py: the rate equations of the law, integrated independently.")
     print("point,increment,s11,s12,eqps")
