@@ -397,7 +397,7 @@ def hardening_start(options, strain, stress, turns):
 
 
 def hardening(options, points, yields):
-    """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain and both stresses."""
+    """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain, both stresses."""
     strain, stress, turns = measured_curve(options)
     sought = hardening_start(options, strain, stress, turns)
     counts = np.ones(len(strain), int)
@@ -560,7 +560,7 @@ def draw(options, text, data, curve):
 
 
 def on_surface(d):
-    """Return the point of a measured stress in the plane of the rolling and transverse stresses; None if it has none."""
+    """Return the point of a measured stress in the plane of rolling and transverse stresses; None if it has none."""
     if d.quantity != "stress" or d.angle not in (0, 90) or d.kind == "plane strain":
         return None
     value = d.value if d.kind in ("tension", "equibiaxial") else -d.value

@@ -59,7 +59,7 @@ def point(name, material, control, targets, angle=None):
 
 
 def deck(path, materials, angles, ratios, strain):
-    """Return the input that takes each material along all paths; names are t0_45 for tension, p0_3 for strain ratios."""
+    """Return the input that takes each material along all paths; names: t0_45 for tension, p0_3 for strain ratios."""
     blocks = [f'*INCLUDE "{Path(path).resolve()}"']
     for m, material in enumerate(materials):
         for angle in angles:

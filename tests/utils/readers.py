@@ -11,8 +11,8 @@ import study  # noqa: E402
 from scripts import Problem  # noqa: E402
 
 STATUS = """increment,attempt,phase,travel,r,limiter,iterations,criterion,solver_iterations,gap,stick,slip,outcome,\
-reason,seconds,limiter_element,limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,worst_point,\
-solver,r_force,force_node,force_tool,force_size
+reason,seconds,limiter_element,limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,\
+worst_element,worst_point,solver,r_force,force_node,force_tool,force_size
 1,1,clamp,0,1,r_max,2,0.0047,0,18,68,2,accepted,,0.01,,,,,3,2.67E-02,,,cgs,0.5,7,die,3.5
 2,1,draw,,,,0,,7,18,68,2,retry,"det F <= 0, twice",0.02,,,,,,,12,3,cgs,,,,
 2,2,draw,0.5,0.3,rotation,3,0.0021,5,18,68,2,accepted,,0.02,9,8,,,63,5.34E-03,,,cgs,0.9,125,blank_holder,120.25
