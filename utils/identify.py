@@ -263,6 +263,20 @@ def sought_parameters(options, data):
     return sought, fixed
 
 
+def test_paths(data):
+    """Return the paths of the tests of the data, each once, by test."""
+    paths = {d.same_test(): d.path() for d in data}
+    return {test: (control, angle, [(values, 1) for values in targets])
+            for test, (control, angle, targets) in paths.items()}
+
+
+def criterion_table(data, values):
+    """Return the lines that compare measured and identified values."""
+    return [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
+            + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
+            for d, value in zip(data, values)]
+
+
 def criterion(options, points, data):
     """Identify a criterion; return its text, the table of values and notes."""
     sought, fixed = sought_parameters(options, data)
@@ -270,12 +284,11 @@ def criterion(options, points, data):
         data.insert(0, Datum("stress", 0.0, 1.0))
     told = [Datum(key) for key in ("biaxial_stress", "biaxial_r")
             if not any(d.label() == Datum(key).label() for d in data)]
-    paths = list({d.same_test(): d.path() for d in data + told}.items())
-    paths = [(test, (control, angle, [(values, 1) for values in targets])) for test, (control, angle, targets) in paths]
-    place = {test: i for i, (test, _) in enumerate(paths)}
+    paths = test_paths(data + told)
+    place = {test: i for i, test in enumerate(paths)}
 
     def compute(texts):
-        found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], [path for _, path in paths])
+        found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], list(paths.values()))
         return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + told])
                 for rows in found]
 
@@ -291,13 +304,10 @@ def criterion(options, points, data):
     text, values = rounded(lambda digits: law_text(options.criterion, {**dict(zip(sought, point)), **fixed}, digits),
                            compute)
     report(options.criterion, costs)
-    table = [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
-             + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
-             for d, value in zip(data + told, values)]
     notes = fit.left_open(point, "left as in the isotropic case", "the rest stays as near to isotropy as they allow")
     if options.criterion == "cpb06" and "C66" not in {**sought, **fixed}:
         notes.insert(0, "the data do not determine C66: left out, so that it follows the other parameters")
-    return text, table, notes + fit.at_ends(point) + missed(data, values)
+    return text, criterion_table(data + told, values), notes + fit.at_ends(point) + missed(data, values)
 
 
 def missed(data, values):
@@ -396,6 +406,13 @@ def hardening_start(options, strain, stress, turns):
             for name, value in start.items()}
 
 
+def curve_table(strain, stress, values, missed_by):
+    """Return the lines that compare eight rows of the curve, and the root mean square of the difference (MPa)."""
+    some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
+    return [*(f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
+              for i in some), f"root mean square over {len(strain)} rows: {missed_by:.2f} MPa"]
+
+
 def hardening(options, points, yields):
     """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain, both stresses."""
     strain, stress, turns = measured_curve(options)
@@ -420,11 +437,8 @@ def hardening(options, points, yields):
     found = dict(zip(sought, np.exp(point)))
     lines, values = rounded(lambda digits: hardening_lines(options.hardening, found, digits), compute)
     report(options.hardening, costs)
-    some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
-    table = [f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
-             for i in some]
     far = np.linalg.norm(weight * (values - stress))
-    table.append(f"root mean square over {len(strain)} rows: {far * np.abs(stress).max():.2f} MPa")
+    table = curve_table(strain, stress, values, far * np.abs(stress).max())
     notes = fit.left_open(point, "left as at the start", "other values of the rest may do as well") + fit.at_ends(point)
     if far > MISSED_CURVE:
         notes.append(f"the curve is missed by {100 * far:.1f} % of its largest stress: "
@@ -467,8 +481,8 @@ def fixed_value(text):
         raise argparse.ArgumentTypeError(f"{text}: expected name=value") from None
 
 
-def arguments():
-    """Read the command line."""
+def command_line():
+    """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("name", help="name of the material")
@@ -499,6 +513,12 @@ def arguments():
     add("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
     add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves")
+    return parser
+
+
+def arguments():
+    """Return the options, and whether a hardening law is identified."""
+    parser = command_line()
     options = parser.parse_args()
     options.fix = dict(options.fix)
     fits = bool(options.hardening) and "=" not in options.hardening and ":" not in options.hardening

@@ -223,7 +223,8 @@ def direction(text):
     return len(place) == 3 and any(place[:2])
 
 
-def arguments():
+def command_line():
+    """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
     parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
@@ -247,6 +248,12 @@ def arguments():
     parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
                         help="size of one picture in pixels")
     parser.add_argument("--list", action="store_true", help="list the steps and fields, draw nothing")
+    return parser
+
+
+def arguments():
+    """Return the options after their checks."""
+    parser = command_line()
     options = parser.parse_args()
     options.mirror = sorted(set("".join(options.mirror)))
     if options.view not in VIEWS and not direction(options.view):
