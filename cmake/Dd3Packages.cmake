@@ -1,4 +1,4 @@
-# Finds the libraries the project stands on, or says what to install.
+# Find the required libraries, or name the package to install.
 function(dd3_missing what package)
   message(FATAL_ERROR "${what} was not found. On Debian or Ubuntu: apt-get install ${package}")
 endfunction()

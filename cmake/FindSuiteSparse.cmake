@@ -1,10 +1,9 @@
-# Finds UMFPACK and AMD of SuiteSparse.
+# Find UMFPACK and AMD of SuiteSparse.
 #
-#   SuiteSparse::umfpack   to link
-#   SuiteSparse_VERSION    5.12.0, say
+#   SuiteSparse::umfpack   target to link
+#   SuiteSparse_VERSION    such as 5.12.0
 #
-# From version 7 on SuiteSparse brings config packages for its parts; before, Debian's package has neither those nor
-# pkg-config files.
+# SuiteSparse has config packages since version 7; older Debian packages have neither these nor pkg-config files.
 find_package(UMFPACK CONFIG QUIET)
 find_package(AMD CONFIG QUIET)
 if(TARGET SuiteSparse::UMFPACK AND TARGET SuiteSparse::AMD)

@@ -1,12 +1,12 @@
-# A small stand-in for pFUnit, for machines that do not have it: the same .pf files, the same asserts.
+# A small stand-in for pFUnit if it is not installed: the same .pf files, the same asserts.
 #
-#   pf_preprocess   turns x.pf into x.F90
+#   pf_preprocess   converts x.pf to x.F90
 #   pf_standin      the asserts and the runner
 #   dd3_standin_ctest(<name> TEST_SOURCES ... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...] [WORKING_DIRECTORY <dir>])
 set(DD3_STANDIN_SOURCE "${CMAKE_SOURCE_DIR}/tests/standin")
 set(DD3_STANDIN_BINARY "${CMAKE_BINARY_DIR}/standin")
 
-# Appends one specific procedure of funit.f90.in to the lists of the calling scope.
+# Append one specific procedure of funit.f90.in to the lists of the calling scope.
 function(dd3_standin_compare generics expected expected_rank actual actual_rank tolerance)
   set(type_sp "real(sp)")
   set(type_dp "real(dp)")
@@ -60,7 +60,7 @@ function(dd3_standin_compare generics expected expected_rank actual actual_rank 
   endforeach()
 endfunction()
 
-# Writes funit.f90: actual fixes kind and rank, expected is of that rank or a scalar.
+# Write funit.f90: `actual` determines kind and rank, `expected` has that rank or is a scalar.
 function(dd3_standin_write_asserts)
   foreach(rank RANGE 5)
     set(expected_ranks 0)
@@ -100,7 +100,7 @@ set_target_properties(pf_standin PROPERTIES Fortran_MODULE_DIRECTORY "${DD3_STAN
 target_include_directories(pf_standin INTERFACE "${DD3_STANDIN_BINARY}/modules")
 target_link_libraries(pf_standin PUBLIC OpenMP::OpenMP_Fortran)
 
-# The executable alone: TEST_SOURCES, OTHER_SOURCES, LINK_LIBRARIES.
+# Add the executable without the test: TEST_SOURCES, OTHER_SOURCES, LINK_LIBRARIES.
 function(dd3_standin_executable name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TEST_SOURCES;OTHER_SOURCES;LINK_LIBRARIES")
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}.dir")

@@ -1,34 +1,37 @@
 #!/usr/bin/env python3
-"""Runs one case of tests/cases/ and compares its history with the reference.
+"""Run one case of tests/cases/ and compare its history with the reference.
 
     run_case.py --program build/release/dd3imp --work build/cases tests/cases/tension
 
 A case is a folder with a case.json:
 
+    description what the case checks, and where the expected numbers come from
     deck        the input file, default case.dat; a path relative to the folder
     arguments   further arguments of the program, a list
-    exit_code   what the program must return, default 0
-    reference   csv file with the columns of history.csv that are compared; default reference.csv where it exists
-    along       the column along which values are interpolated, default travel; where the reference has a column `phase`
-                or `point`, only the rows of that phase or point are looked at
-    tolerance   per column {"relative": r, "absolute": a}; "*" holds for those not named. A value is accepted where
+    exit_code   expected exit code, default 0
+    reference   csv file with the columns of history.csv to compare; default reference.csv if it exists
+    along       the column along which values are interpolated, default travel; if the reference has a column `phase`
+                or `point`, only the rows of that phase or point are used
+    tolerance   per column {"relative": r, "absolute": a}; "*" holds for the columns not named. A value passes if
                 |value - reference| <= a + r |reference|
     last        per column [value, tolerance]: the last row of history.csv
-    status      per column of status.csv [lowest, highest]: every row lies between
-    contains    texts that the program's output must hold, a list
-    files       files that must lie in the results, default ["history.csv", "status.csv", "job.log"]
+    status      per column of status.csv [lowest, highest]: bounds of every row
+    contains    texts that the program's output must contain, a list
+    files       files that the results must contain, default ["history.csv", "status.csv", "job.log"]
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
-                `arguments` and keys that take the place of the case's, such as a reference of its own
-    labels      CTest labels, a list; `slow` keeps it out of the daily run, `debug` lets it run in the debug build too
+                `arguments` and keys that replace those of the case, such as a reference of their own
+    labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` adds it to the debug build
     timeout     seconds, default 300
 """
 import argparse
-import csv
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "utils"))
+from results import command, find_program, launch, number, read_table  # noqa: E402
+from scripts import Problem  # noqa: E402
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "status", "contains", "files",
@@ -36,31 +39,11 @@ KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "l
 
 
 class Mismatch(Exception):
-    """The case does not do what it should."""
-
-
-def read_table(path):
-    """The rows of a csv file as dictionaries; lines that begin with # are left out."""
-    if not path.exists():
-        raise Mismatch(f"{path} was not written")
-    with open(path, newline="", encoding="utf-8") as stream:
-        lines = [line for line in stream if line.strip() and not line.lstrip().startswith("#")]
-    rows = csv.DictReader(lines, skipinitialspace=True)
-    return [{name.strip(): (value or "").strip() for name, value in row.items() if name} for row in rows]
-
-
-def number(row, column, path):
-    """A value of a row as a number."""
-    if column not in row:
-        raise Mismatch(f"{path}: there is no column {column}; there are {', '.join(row)}")
-    try:
-        return float(row[column])
-    except ValueError:
-        raise Mismatch(f"{path}: {column} = {row[column]!r} is not a number") from None
+    """The results of a case are not the expected ones."""
 
 
 def interpolate(rows, along, at, column, path):
-    """The value of a column where `along` is `at`; the last row of several with the same `along` counts."""
+    """Return the value of a column where `along` is `at`; of several rows with the same `along` the last is used."""
     slack = 1e-9 * max(1.0, abs(at))
     below = above = None
     for row in rows:
@@ -80,40 +63,46 @@ def interpolate(rows, along, at, column, path):
     return value + (at - start) / (end - start) * (number(above, column, path) - value)
 
 
+def selected(history, row):
+    """Return the rows of the history with the phase and point of a row of the reference."""
+    return [other for other in history if all(other[key] == row[key] for key in SELECTS if key in row)]
+
+
+def compare_row(case, name, row, history, path):
+    """Return the number of values compared for a row of the reference, and the list of those that differ."""
+    along, tolerances = case.get("along", "travel"), case.get("tolerance", {})
+    rows, at = selected(history, row), number(row, along, name)
+    columns = [column for column in row if column != along and column not in SELECTS]
+    wrong = []
+    for column in columns:
+        tolerance = tolerances.get(column, tolerances.get("*"))
+        if tolerance is None:
+            raise Mismatch(f"{name}: no tolerance is given for {column}")
+        expected = number(row, column, name)
+        value = interpolate(rows, along, at, column, path)
+        allowed = tolerance.get("absolute", 0.0) + tolerance.get("relative", 0.0) * abs(expected)
+        if not abs(value - expected) <= allowed:
+            wrong.append(f"{along} = {at:g}: {column} = {value:.9g}, expected {expected:.9g} +- {allowed:.3g}")
+    return len(columns), wrong
+
+
 def compare_reference(case, folder, history, path):
-    """Holds the history against the reference, row by row."""
+    """Compare the history with the reference row by row; return the number of values compared."""
     name = case.get("reference", "reference.csv")
     if "reference" not in case and not (folder / name).exists():
         return 0
     reference = read_table(folder / name)
     if not reference:
         raise Mismatch(f"{name} is empty")
-    along = case.get("along", "travel")
-    tolerances = case.get("tolerance", {})
-    compared = 0
-    wrong = []
-    for row in reference:
-        rows = [r for r in history if all(r[key] == row[key] for key in SELECTS if key in row)]
-        at = number(row, along, name)
-        for column in row:
-            if column == along or column in SELECTS:
-                continue
-            tolerance = tolerances.get(column, tolerances.get("*"))
-            if tolerance is None:
-                raise Mismatch(f"{name}: no tolerance is given for {column}")
-            expected = number(row, column, name)
-            value = interpolate(rows, along, at, column, path)
-            allowed = tolerance.get("absolute", 0.0) + tolerance.get("relative", 0.0) * abs(expected)
-            compared += 1
-            if not abs(value - expected) <= allowed:
-                wrong.append(f"{along} = {at:g}: {column} = {value:.9g}, expected {expected:.9g} +- {allowed:.3g}")
+    found = [compare_row(case, name, row, history, path) for row in reference]
+    wrong = [text for _, texts in found for text in texts]
     if wrong:
         raise Mismatch("\n".join(wrong))
-    return compared
+    return sum(count for count, _ in found)
 
 
 def compare_ends(case, history, path, results):
-    """Looks at the last row of the history and at the range of the status table."""
+    """Compare the last row of the history and the ranges of the status table; return the number of values compared."""
     compared = 0
     for column, (expected, tolerance) in case.get("last", {}).items():
         value = number(history[-1], column, path)
@@ -126,47 +115,49 @@ def compare_ends(case, history, path, results):
             compared += 1
             if not lowest <= value <= highest:
                 raise Mismatch(f"status.csv, increment {row.get('increment')}: {column} = {value:.9g}, "
-                               f"not in {lowest:g} ... {highest:g}")
+                               f"not between {lowest:g} and {highest:g}")
     return compared
 
 
 def variants(case):
-    """The case once for each of its variants, with the further arguments."""
+    """Yield the case of each variant, with its further arguments."""
     for variant in case.get("variants", [[]]):
         own = dict(variant) if isinstance(variant, dict) else {"arguments": variant}
         further = own.pop("arguments", [])
         yield {**case, **own}, further
 
 
-def run(case, folder, program, results, arguments):
-    """Runs the case once; returns how many values were compared."""
-    shutil.rmtree(results, ignore_errors=True)
-    results.parent.mkdir(parents=True, exist_ok=True)
-    deck = folder / case.get("deck", "case.dat")
-    command = [str(program), *case.get("arguments", []), *arguments, "--output", str(results), str(deck)]
-    print(" ".join(command), flush=True)
-    done = subprocess.run(command, cwd=results.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors="replace", stdin=subprocess.DEVNULL, timeout=case.get("timeout", 300), check=False)
-    print("\n".join(done.stdout.splitlines()[-40:]))
+def check_output(case, done, results):
+    """Check exit code, output and files of a run."""
     expected = case.get("exit_code", 0)
-    if done.returncode != expected:
-        raise Mismatch(f"exit code {done.returncode} in place of {expected}")
+    if done.code != expected:
+        raise Mismatch(f"exit code {done.code}, expected {expected}")
     for text in case.get("contains", []):
-        if text not in done.stdout:
-            raise Mismatch(f"the output does not hold: {text}")
+        if text not in done.output + done.errors:
+            raise Mismatch(f"the output does not contain: {text}")
     for name in case.get("files", ["history.csv", "status.csv", "job.log"]):
         if not (results / name).exists():
             raise Mismatch(f"{name} was not written")
-    path = results / "history.csv"
-    if not path.exists():
-        return len(case.get("contains", []))
-    history = read_table(path)
-    return (compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)
-            + len(case.get("contains", [])))
+
+
+def run(case, folder, program, results, arguments):
+    """Run the case once; return the number of values compared."""
+    shutil.rmtree(results, ignore_errors=True)
+    results.parent.mkdir(parents=True, exist_ok=True)
+    words = command(program, folder / case.get("deck", "case.dat"), results, [*case.get("arguments", []), *arguments])
+    print(" ".join(words), flush=True)
+    done = launch(words, timeout=case.get("timeout", 300), folder=results.parent, one_core=False)
+    print("\n".join((done.output + done.errors).splitlines()[-40:]))
+    check_output(case, done, results)
+    compared, path = len(case.get("contains", [])), results / "history.csv"
+    if path.exists():
+        history = read_table(path)
+        compared += compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)
+    return compared
 
 
 def main():
-    """Runs the case in all its variants."""
+    """Run the case in all its variants."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results")
@@ -177,12 +168,12 @@ def main():
     unknown = {key for own in (case, *case.get("variants", [])) if isinstance(own, dict) for key in own} - KNOWN
     if unknown:
         sys.exit(f"case.json: unknown: {', '.join(sorted(unknown))}")
-    compared = 0
+    program, compared = find_program(options.program), 0
     for i, (one, arguments) in enumerate(variants(case)):
         results = options.work.resolve() / (folder.name + (f"-{i + 1}" if i else "") + ".out")
         try:
-            compared += run(one, folder, options.program.resolve(), results, arguments)
-        except (Mismatch, OSError, subprocess.TimeoutExpired) as error:
+            compared += run(one, folder, program, results, arguments)
+        except (Mismatch, Problem, OSError) as error:
             sys.exit(f"FAILED {folder.name} {' '.join(arguments)}\n{error}")
     if compared == 0 and case.get("exit_code", 0) == 0:
         sys.exit(f"FAILED {folder.name}: nothing was compared")

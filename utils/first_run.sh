@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# From a fresh clone to the first result: installs what is needed, builds, runs the bending test, draws the curve and the sheet.
+# From a clone to the first result: installs what is missing, builds, runs the bending test, draws its curve and the sheet.
 #
-#   utils/first_run.sh          takes no other argument than --help
+#   utils/first_run.sh          no arguments but --help
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ $# -gt 0 ]; then
@@ -21,7 +21,7 @@ echo "== running input_files/bending/bending.dat"
 result=$PWD/bending.out
 code=0
 build/release/dd3imp --output "$result" input_files/bending/bending.dat || code=$?
-# 3: stopped before its end; what was computed is whole and worth a look.
+# 3: stopped before its end; the results up to there are complete.
 [ "$code" -eq 0 ] || [ "$code" -eq 3 ] || exit "$code"
 
 echo "== drawing"
@@ -29,6 +29,6 @@ echo "== drawing"
 .venv/bin/python utils/plot_sheet.py --output "$result/sheet.png" --deck input_files/bending/bending.dat "$result"
 echo
 echo "punch force against displacement: $result/force.png"
-echo "deformed sheet and tools:         $result/sheet.png (the coarse mesh of a paper; fine.dat beside it: 20 s)"
+echo "deformed sheet and tools:         $result/sheet.png (coarse mesh; the fine one is fine.dat, 20 s)"
 echo "for ParaView:                     $result/fields.vtkhdf"
 exit "$code"

@@ -6,27 +6,25 @@
 """Find the parameters of a yield criterion and of a hardening law from measured values.
 
 Weighted least squares from several starts. Every trial set is evaluated by dd3imp itself, at single points (*POINT), so
-that there is one implementation of the laws. Sets that the program refuses, because they are out of bounds or their
-surface is not convex, count as infinitely bad. The result is a file with one *MATERIAL block.
+that the laws are implemented once. Sets that the program refuses, because they are out of bounds or their surface is
+not convex, have an infinite cost. The result is a file with one *MATERIAL block.
 
   Hill's parameters from three r-values, with a known hardening:
     identify.py steel --criterion hill48 --r 0:1.79 45:1.51 90:2.27 --hardening "swift K=565.32 e0=0.007117 n=0.2589"
   Yld'91 with exponent 6, also from yield stresses (over the one along rolling), the equibiaxial one with double weight:
     identify.py steel --criterion yld91 --fix m=6 --r 0:1.79 45:1.51 90:2.27 --stress 45:1.08 90:1.03 \\
         --biaxial-stress 1.18:2
-  A Voce law from a tension curve; with a back-stress too, from one that goes on in compression:
+  A Voce law from a tension curve; with a back-stress, from a curve that continues in compression:
     identify.py steel --hardening voce --curve tension.csv --plot steel.png
     identify.py steel --hardening voce --backstress lemaitre_chaboche --curve reversal.csv
 
 The curve is a table: logarithmic strain and true stress (MPa) in two columns, separated by commas, semicolons or
-blanks; lines before the first number are passed over. --data names a file that holds in each line what the options --r,
---stress and so on give, such as `r 45 1.51` or `biaxial_stress 1.18 2`; # begins a comment.
+blanks; lines before the first number are skipped. Each line of the file of --data gives one of the values of the
+options --r, --stress and so on, such as `r 45 1.51` or `biaxial_stress 1.18 2`; # begins a comment.
 """
 
 import argparse
-import csv
 import re
-import subprocess
 import sys
 import tempfile
 from functools import partial
@@ -36,22 +34,24 @@ import scripts
 
 scripts.need("numpy", "scipy")
 import numpy as np  # noqa: E402
-from measurements import KEYS, TENSION, Datum, Problem, every, from_argument, read_curve, read_data  # noqa: E402
+import results  # noqa: E402
+from measurements import KEYS, TENSION, Datum, every, from_argument, read_curve, read_data  # noqa: E402
 from scipy.optimize import differential_evolution, least_squares  # noqa: E402
+from scripts import Problem  # noqa: E402
 
-UNIT = "perfect Y0=100"  # the flow stress with which criteria are tried
-REFUSED = 1e3  # residual of a set that the program does not take
-PULL = 1e-3  # weight of the distance from isotropy: decides what the data leave open
+UNIT = "perfect Y0=100"  # hardening law of the trial runs of criteria
+REFUSED = 1e3  # residual of a set that the program refuses
+PULL = 1e-3  # weight of the distance from isotropy, which determines what the data do not
 ENOUGH = 1e-3  # root of the sum of squares of the data below which no other start is tried
-BORDER = 60  # generations along a border of convexity
-EVALUATIONS = 60  # of a descent, at most
+BORDER = 60  # generations of the search along a border of convexity
+EVALUATIONS = 60  # at most, in a descent
 STEP = 1e-4  # of the differences, over the size of the parameter
-END = 3e-3  # part of a range: nearer to its end a parameter is told
-MISSED = 0.1  # difference from a measured value, over the value or 1, that is told
-MISSED_CURVE = 0.01  # the same of a curve: root mean square over the largest stress
+END = 3e-3  # fraction of a range: a note if a parameter is nearer to its end
+MISSED = 0.1  # difference from a measured value, over the value or 1, that is noted
+MISSED_CURVE = 0.01  # the same for a curve: root mean square over the largest stress
 
-# Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the number of
-# values it takes at least.
+# Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the least
+# number of measured values.
 NORMAL, SHEAR = ("12", "13", "21", "23", "31", "32"), ("66",)
 CRITERIA = {
     "hill48": ({"F": (0.5, -1, 5), "G": (0.5, -1, 5), "H": (0.5, -1, 5), "N": (1.5, 0.05, 10)}, {}, 3),
@@ -72,19 +72,19 @@ BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
 
 
 def law_text(name, values, digits=10):
-    """A law with its parameters, as it stands in the input."""
+    """Return a law with its parameters in the form of the input."""
     return " ".join([name, *(f"{key}={value:.{digits}g}" for key, value in values.items())])
 
 
 class Points:
-    """Runs of the program: materials at single points, along given paths."""
+    """Runs of the program with materials at single points, along given paths."""
 
     def __init__(self, program, young, poisson):
         self.program, self.elastic, self.runs = program, f"  young = {young:g}\n  poisson = {poisson:g}", 0
         self.refusal = ""
 
     def deck(self, materials, paths):
-        """The input, and the number of the material to which each of its lines belongs."""
+        """Return the input, and the number of the material to which each of its lines belongs."""
         lines, owner = [], []
         for i, laws in enumerate(materials):
             block = [f"*MATERIAL m{i}", *self.elastic.split("\n"), *(f"  {line}" for line in laws)]
@@ -98,29 +98,13 @@ class Points:
         return "\n".join(lines) + "\n", owner
 
     def run(self, text):
-        """Exit code, messages and rows by point of one run."""
+        """Return exit code, messages and rows by point of one run."""
         self.runs += 1
-        with tempfile.TemporaryDirectory() as folder:
-            file, out = Path(folder) / "points.dat", Path(folder) / "out"
-            file.write_text(text, encoding="utf-8")
-            try:
-                done = subprocess.run([self.program, "--quiet", "--output", str(out), str(file)], capture_output=True,
-                                      text=True, check=False)
-            except OSError as error:
-                raise Problem(f"{self.program}: error: {error.strerror}\n"
-                              "  expected: --program with the path of dd3imp") from None
-            points = {}
-            if done.returncode == 1 or done.returncode == 0 and not (out / "history.csv").is_file():
-                raise Problem(f"{self.program}: error: exit code {done.returncode}, and no results\n"
-                              "  expected: --program with the path of dd3imp")
-            if done.returncode == 0:
-                with open(out / "history.csv", newline="", encoding="utf-8") as stream:
-                    for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-                        points.setdefault(row.pop("point"), []).append({key: float(row[key]) for key in row})
-        return done.returncode, done.stderr, points
+        done, points = results.run_points(self.program, text)
+        return done.code, done.errors, points
 
     def rows(self, materials, paths):
-        """For each material the rows of each path; None for a material that the program refuses."""
+        """Return the rows of each path for each material; None for a material that the program refuses."""
         result, left = [None] * len(materials), list(range(len(materials)))
         while left:
             text, owner = self.deck([materials[i] for i in left], paths)
@@ -129,7 +113,7 @@ class Points:
                 for i, number in enumerate(left):
                     result[number] = [points[f"p{i}_{j}"] for j in range(len(paths))]
                 break
-            refused = {owner[int(line) - 1] for line in re.findall(r"points\.dat:(\d+): error", said)}
+            refused = {owner[int(line) - 1] for line in re.findall(re.escape(results.POINTS) + r":(\d+): error", said)}
             if code == 2 and refused:
                 self.refusal = re.search(r": error: (.*)", said).group(1)
                 left = [number for i, number in enumerate(left) if i not in refused]
@@ -145,7 +129,7 @@ class Points:
 
 
 class NoStart(Exception):
-    """The program takes none of the sets from which the search was to begin."""
+    """The program refuses all starts of the search."""
 
 
 class Fit:
@@ -158,14 +142,14 @@ class Fit:
         self.known = {}
 
     def residuals(self, points):
-        """Residuals at several points, by one run; None for those that the program does not take."""
+        """Return the residuals at several points, from one run; None for those that the program refuses."""
         found = self.evaluate([dict(zip(self.names, point)) for point in points])
         return [None if values is None or not np.all(np.isfinite(values)) else np.concatenate(
             [self.weights * (values - self.measured), self.pull * (point - self.start)])
             for values, point in zip(found, points)]
 
     def at(self, point):
-        """Residuals at a point, their derivatives by differences, and whether a set nearby is refused."""
+        """Return residuals at a point, their derivatives by differences, and whether a set nearby is refused."""
         key = point.tobytes()
         if key not in self.known:
             steps = STEP * np.maximum(np.abs(point), 0.1)
@@ -184,12 +168,12 @@ class Fit:
         return self.known[key]
 
     def descend(self, first):
-        """Least squares from a point."""
+        """Minimise the squares from a point."""
         return least_squares(lambda point: self.at(point)[0], first, jac=lambda point: self.at(point)[1],
                              bounds=(self.low, self.high), xtol=1e-8, ftol=1e-5, gtol=1e-9, max_nfev=EVALUATIONS)
 
     def along_border(self, first, seed):
-        """From a point beside refused sets on, where least squares get stuck: a population that evolves."""
+        """Continue from a point next to refused sets, where least squares fail, by differential evolution."""
         def costs(points):
             found = self.residuals(list(points.T))
             return np.array([np.inf if one is None else one @ one / 2 for one in found])
@@ -203,7 +187,7 @@ class Fit:
         return found.x if found.fun < costs(first[:, None])[0] else first
 
     def best(self, starts, spread, seed):
-        """The best of several starts: parameters and the root of the cost of each start."""
+        """Return the parameters of the best of several starts, and the root of the cost of each start."""
         random, best, costs = np.random.default_rng(seed), None, []
         scale = spread * np.maximum(np.abs(self.start), 0.5)
         for number in range(starts):
@@ -228,33 +212,33 @@ class Fit:
         return point, costs
 
     def left_open(self, point, none, rest):
-        """What the data do not determine, in words, and what becomes of it: what has no bearing, and the rest."""
+        """Return notes on what the data do not determine; `none` and `rest` say what value those parameters have."""
         slope = self.at(point)[1][:len(self.measured)]
         size = np.linalg.norm(slope, axis=0)
         idle = [name_of(name) for name, part in zip(self.names, size) if part < 1e-6]
         count = int(np.sum(np.linalg.svd(slope, compute_uv=False) > PULL))
         notes = []
         if idle:
-            notes.append(f"the data say nothing about {', '.join(idle)}: {none}")
+            notes.append(f"the data do not determine {', '.join(idle)}: {none}")
         if count < len(point) - len(idle):
             notes.append(f"the data determine {count} of {len(point) - len(idle)} parameters, or combinations of them; "
                          f"{rest}")
         return notes
 
     def at_ends(self, point):
-        """The parameters that are at the end of their range, in words."""
+        """Return notes on the parameters at the end of their range."""
         ends = np.minimum(point - self.low, self.high - point) < END * (self.high - self.low)
-        return [f"{name_of(name)} is at the end of its range: another law may follow the data better"
+        return [f"{name_of(name)} is at the end of its range: another law may fit the data better"
                 for name, end in zip(self.names, ends) if end]
 
 
 def name_of(name):
-    """A parameter as it stands in the input."""
+    """Return the name of a parameter in the input."""
     return name[-1] if isinstance(name, tuple) else name
 
 
 def sought_parameters(options, data):
-    """What is sought, with start and bounds, and what is given."""
+    """Return the parameters to identify, with start and bounds, and those that are given."""
     sought, fixed, least = CRITERIA[options.criterion]
     sought, fixed = dict(sought), dict(fixed)
     unknown = [name for name in options.fix if name not in sought and name not in fixed]
@@ -274,24 +258,37 @@ def sought_parameters(options, data):
         raise Problem(f"{options.criterion}: error: {len(data)} measured value{'s' * (len(data) != 1)}\n  expected: "
                       f"{least} or more, such as r-values at 0, 45 and 90 degrees")
     if options.criterion == "hosford" and not any(datum.kind == "plane strain" for datum in data):
-        raise Problem("hosford: error: tension and equibiaxial tension say nothing about m\n"
+        raise Problem("hosford: error: tension and equibiaxial tension do not determine m\n"
                       "  expected: --plane-strain, or no identification: m is 6 for bcc, 8 for fcc metals")
     return sought, fixed
 
 
+def test_paths(data):
+    """Return the paths of the tests of the data, each once, by test."""
+    paths = {d.same_test(): d.path() for d in data}
+    return {test: (control, angle, [(values, 1) for values in targets])
+            for test, (control, angle, targets) in paths.items()}
+
+
+def criterion_table(data, values):
+    """Return the lines that compare measured and identified values."""
+    return [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
+            + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
+            for d, value in zip(data, values)]
+
+
 def criterion(options, points, data):
-    """Identifies a criterion: its text, the table of values and notes."""
+    """Identify a criterion; return its text, the table of values and notes."""
     sought, fixed = sought_parameters(options, data)
     if not any(d.same_test() == ("tension", 0) and d.quantity == "stress" for d in data):
         data.insert(0, Datum("stress", 0.0, 1.0))
     told = [Datum(key) for key in ("biaxial_stress", "biaxial_r")
             if not any(d.label() == Datum(key).label() for d in data)]
-    paths = list({d.same_test(): d.path() for d in data + told}.items())
-    paths = [(test, (control, angle, [(values, 1) for values in targets])) for test, (control, angle, targets) in paths]
-    place = {test: i for i, (test, _) in enumerate(paths)}
+    paths = test_paths(data + told)
+    place = {test: i for i, test in enumerate(paths)}
 
     def compute(texts):
-        found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], [path for _, path in paths])
+        found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], list(paths.values()))
         return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + told])
                 for rows in found]
 
@@ -307,38 +304,35 @@ def criterion(options, points, data):
     text, values = rounded(lambda digits: law_text(options.criterion, {**dict(zip(sought, point)), **fixed}, digits),
                            compute)
     report(options.criterion, costs)
-    table = [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
-             + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
-             for d, value in zip(data + told, values)]
     notes = fit.left_open(point, "left as in the isotropic case", "the rest stays as near to isotropy as they allow")
     if options.criterion == "cpb06" and "C66" not in {**sought, **fixed}:
-        notes.insert(0, "the data say nothing about C66: left out, so that it follows the other parameters")
-    return text, table, notes + fit.at_ends(point) + missed(data, values)
+        notes.insert(0, "the data do not determine C66: left out, so that it follows the other parameters")
+    return text, criterion_table(data + told, values), notes + fit.at_ends(point) + missed(data, values)
 
 
 def missed(data, values):
-    """The measured values that the criterion does not meet, in words."""
+    """Return notes on the measured values that the criterion does not fit."""
     far = [f"{d.label()} is {value:.4g} in place of {d.value:.4g}" for d, value in zip(data, values)
            if d.weight and abs(value - d.value) > MISSED * max(d.value, 1)]
-    return [f"{text}: another criterion may follow the data better, or the value is wrong" for text in far]
+    return [f"{text}: another criterion may fit the data better, or the value is wrong" for text in far]
 
 
 def rounded(trial, compute):
-    """The law with as few digits as the program takes, six or more, and its values."""
+    """Return the law with the fewest digits that the program accepts, six or more, and its values."""
     texts = [trial(digits) for digits in (6, 8, 10)]
     for text, values in zip(texts, compute(texts)):
         if values is not None:
             return text, values
-    sys.exit("the program does not take the rounded parameters: " + texts[-1])
+    raise Problem("the program refuses the rounded parameters: " + texts[-1])
 
 
 def report(name, costs):
-    """Says what the starts gave."""
+    """Print the result of each start."""
     print(f"{name}: root of the sum of squares from each start: " + " ".join(f"{cost:.3g}" for cost in costs))
 
 
 def law_start(name, plastic, stress):
-    """First values of a hardening law's parameters."""
+    """Return the starting values of a hardening law's parameters."""
     first, last, end = stress[0], stress.max(), max(plastic.max(), 1e-3)
     rise = max(last - first, 0.05 * last)
     swift = {"K": last / (0.01 + end) ** 0.2, "e0": 0.01, "n": 0.2}
@@ -350,7 +344,7 @@ def law_start(name, plastic, stress):
 
 
 def table_start(plastic, stress):
-    """First points of a table: the flow stress at no plastic strain and its rise from each knot to the next."""
+    """Return the start of a table: the initial flow stress and its rise from each knot to the next."""
     count = min(8, len(plastic) - 1)
     knots = [float(f"{value:.4g}") for value in plastic.max() * np.linspace(0, 1, count) ** 2]
     order = np.argsort(plastic)
@@ -360,7 +354,7 @@ def table_start(plastic, stress):
 
 
 def hardening_lines(name, values, digits=10):
-    """The hardening, and the back-stresses, whose keys end with a number."""
+    """Return the input lines of the hardening and of the back-stresses, whose keys are (law, number, parameter)."""
     own = {key: value for key, value in values.items() if not isinstance(key, tuple)}
     if name == "table":
         knots = " ".join(f"{knot:g}:{value:.{digits}g}" for knot, value in zip(own, np.cumsum(list(own.values()))))
@@ -374,7 +368,7 @@ def hardening_lines(name, values, digits=10):
 
 
 def measured_curve(options):
-    """Strains and stresses beyond the first elastic range, 60 at most, turning points among them."""
+    """Return at most 60 strains and stresses beyond the first elastic range, and the turning points."""
     strain, stress = read_curve(options.curve, bool(options.backstress))
     if options.plastic_strain:
         strain = strain + stress / options.young
@@ -388,7 +382,7 @@ def measured_curve(options):
                       f"{options.young:g}\n  expected: four or more")
     turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
     if options.backstress and not len(turns):
-        raise Problem(f"{options.curve}: error: the strain grows throughout: it says nothing about a back-stress\n"
+        raise Problem(f"{options.curve}: error: the strain increases throughout: no back-stress can be identified\n"
                       "  expected: a curve with a reversal, such as tension and then compression")
     if len(strain) > 60:
         chosen = np.linspace(0, len(strain) - 1, 60).astype(int)
@@ -399,7 +393,7 @@ def measured_curve(options):
 
 
 def hardening_start(options, strain, stress, turns):
-    """What is sought: logarithms of the parameters with start and bounds."""
+    """Return the logarithms of the parameters to identify, with start and bounds."""
     forward = slice(0, turns[0] + 1 if len(turns) else None)
     plastic = strain[forward] - stress[forward] / options.young
     start = law_start(options.hardening, plastic, stress[forward])
@@ -412,8 +406,15 @@ def hardening_start(options, strain, stress, turns):
             for name, value in start.items()}
 
 
+def curve_table(strain, stress, values, missed_by):
+    """Return the lines that compare eight rows of the curve, and the root mean square of the difference (MPa)."""
+    some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
+    return [*(f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
+              for i in some), f"root mean square over {len(strain)} rows: {missed_by:.2f} MPa"]
+
+
 def hardening(options, points, yields):
-    """Identifies a hardening law: its lines, the table of values, notes, and the curve: strain, measured, fitted."""
+    """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain, both stresses."""
     strain, stress, turns = measured_curve(options)
     sought = hardening_start(options, strain, stress, turns)
     counts = np.ones(len(strain), int)
@@ -436,20 +437,17 @@ def hardening(options, points, yields):
     found = dict(zip(sought, np.exp(point)))
     lines, values = rounded(lambda digits: hardening_lines(options.hardening, found, digits), compute)
     report(options.hardening, costs)
-    some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
-    table = [f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
-             for i in some]
     far = np.linalg.norm(weight * (values - stress))
-    table.append(f"root mean square over {len(strain)} rows: {far * np.abs(stress).max():.2f} MPa")
+    table = curve_table(strain, stress, values, far * np.abs(stress).max())
     notes = fit.left_open(point, "left as at the start", "other values of the rest may do as well") + fit.at_ends(point)
     if far > MISSED_CURVE:
         notes.append(f"the curve is missed by {100 * far:.1f} % of its largest stress: "
-                     "another law may follow it better")
+                     "another law may fit it better")
     return lines, table, notes, (strain, stress, values)
 
 
 def folded(key, text):
-    """A line of the block, continued where it is long."""
+    """Return a line of the block, continued if it is long."""
     lines, line = [], f"  {key} ="
     for word in text.split():
         if len(line) + len(word) > 92:
@@ -460,7 +458,7 @@ def folded(key, text):
 
 
 def block(options, yields, hardens, table, notes):
-    """The file: what was measured and what came out, then the *MATERIAL."""
+    """Return the file: measured and identified values as comments, then the *MATERIAL."""
     lines = ["# Identified by utils/identify.py",
              f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}{'weight':>8}"]
     lines += [f"# {line}" for line in table]
@@ -475,7 +473,7 @@ def block(options, yields, hardens, table, notes):
 
 
 def fixed_value(text):
-    """A parameter of --fix."""
+    """Return name and value of an argument of --fix."""
     name, _, value = text.partition("=")
     try:
         return name, float(value)
@@ -483,8 +481,8 @@ def fixed_value(text):
         raise argparse.ArgumentTypeError(f"{text}: expected name=value") from None
 
 
-def arguments():
-    """The command line."""
+def command_line():
+    """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("name", help="name of the material")
@@ -501,13 +499,13 @@ def arguments():
     add("--biaxial-compression", nargs="+", default=[], metavar="S[:WEIGHT]",
         help="the same in equibiaxial compression, or tension through the thickness")
     add("--biaxial-r", nargs="+", default=[], metavar="R[:WEIGHT]",
-        help="its ratio of strains, across over along (0.5)")
+        help="its strain ratio, transverse over along rolling (0.5)")
     add("--hardening", metavar="LAW",
         help=f"law to identify from --curve ({', '.join(LAWS)}), or a law with all its values")
     add("--backstress", nargs="+", choices=BACKSTRESSES, default=[], metavar="LAW",
         help=f"back-stresses to identify with it ({', '.join(BACKSTRESSES)}), from a curve with a reversal")
-    add("--curve", metavar="FILE", help="tension curve along rolling; with --backstress going on in compression")
-    add("--plastic-strain", action="store_true", help="the strains of the curve are the plastic parts")
+    add("--curve", metavar="FILE", help="tension curve along rolling; with --backstress continuing in compression")
+    add("--plastic-strain", action="store_true", help="the strains of the curve are plastic strains")
     add("--young", type=float, default=2.1e5, help="Young's modulus, MPa (2.1e5)")
     add("--poisson", type=float, default=0.3, help="Poisson's ratio (0.3)")
     add("--starts", type=int, default=4, help="number of starts: the first from isotropy, the others at random (4)")
@@ -515,6 +513,12 @@ def arguments():
     add("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
     add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves")
+    return parser
+
+
+def arguments():
+    """Return the options, and whether a hardening law is identified."""
+    parser = command_line()
     options = parser.parse_args()
     options.fix = dict(options.fix)
     fits = bool(options.hardening) and "=" not in options.hardening and ":" not in options.hardening
@@ -534,7 +538,7 @@ def arguments():
 
 
 def measured(options):
-    """The measured values of a criterion."""
+    """Return the measured values of a criterion."""
     parts = [partial(read_data, options.data)] if options.data else []
     parts += [partial(from_argument, key, text) for key in KEYS for text in getattr(options, key)]
     data = [datum for part in every(parts) for datum in part]
@@ -546,13 +550,13 @@ def measured(options):
 
 
 def draw(options, text, data, curve):
-    """Draws the material as plot_point.py does, but for its back-stresses, and the measured values into it."""
+    """Draw the material without its back-stresses as plot_point.py does, and the measured values."""
     import plot_point
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "material.dat"
         path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
         figure = plot_point.picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
-    figure.legends[0].remove()  # each part gets one of its own
+    figure.legends[0].remove()  # each panel has its own
     axes = figure.axes
     if options.backstress:
         for line in list(axes[0].lines):
@@ -576,7 +580,7 @@ def draw(options, text, data, curve):
 
 
 def on_surface(d):
-    """The place of a measured stress in the plane of the stresses along and across, if it has one."""
+    """Return the point of a measured stress in the plane of rolling and transverse stresses; None if it has none."""
     if d.quantity != "stress" or d.angle not in (0, 90) or d.kind == "plane strain":
         return None
     value = d.value if d.kind in ("tension", "equibiaxial") else -d.value
@@ -586,7 +590,7 @@ def on_surface(d):
 
 
 def identify():
-    """Identifies and writes."""
+    """Identify the parameters and write the file."""
     options, fits = arguments()
     points, table, notes, data, curve = Points(options.program, options.young, options.poisson), [], [], [], None
     yields, hardens = "von_mises", [f"hardening = {options.hardening or UNIT}"]
@@ -598,7 +602,7 @@ def identify():
             hardens, more, other, curve = hardening(options, points, yields)
             table, notes = table + more, notes + other
     except NoStart:
-        raise Problem("error: no start gave a set that the program takes; it said: "
+        raise Problem("error: the program refused the parameters of every start; it said: "
                       f"{points.refusal or 'the points did not converge'}\n"
                       "  expected: more --starts, or other values of --fix") from None
     text = block(options, yields, hardens, table, notes)
@@ -617,7 +621,7 @@ def identify():
 
 
 def main():
-    """Ends with 2 where the input cannot be used."""
+    """End with exit code 2 if the input cannot be used."""
     try:
         identify()
     except Problem as problem:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the utilities.
-# Asks for root only where something is missing.
+# Needs root only if a package is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,7 +9,7 @@ packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev li
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    echo "This is no Debian or Ubuntu: install by hand what these packages hold there: ${packages[*]}"
+    echo "This is not Debian or Ubuntu: install the equivalents of these packages: ${packages[*]}"
     return
   fi
   local missing=() package
@@ -21,7 +21,7 @@ install_packages() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-      echo "error: root is needed once: apt-get install --no-install-recommends ${missing[*]}" >&2
+      echo "error: root is needed for: apt-get install --no-install-recommends ${missing[*]}" >&2
       exit 1
     fi
     as_root=(sudo)
@@ -30,7 +30,7 @@ install_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# The environment is made anew when the list of requirements has changed.
+# The environment is created again if the list of requirements has changed.
 install_python() {
   local python=/usr/bin/python3 wanted
   [ -x "$python" ] || python=python3

@@ -9,9 +9,9 @@
     law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
 
 Materials and paths are those of input_files/laws/<law>.dat; all values come from runs of the program. Criteria: the
-yield surface with its normals, r-values and yield stresses against the angle, with von Mises' surface as a broken line.
-Hardening laws: tension as true and as nominal stress, a dot where the force is largest; reversals and changes of the
-path for back-stresses and for laws that follow the path.
+yield surface with its normals, r-values and yield stresses by angle; the broken line is the surface of von Mises.
+Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
+depend on the strain path: reversals and changes of the path.
 """
 
 import argparse
@@ -31,8 +31,9 @@ import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
 import plot_point as pp  # noqa: E402
+from results import ROOT, read_deck  # noqa: E402
+from scripts import Problem  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[1]
 DECKS = ROOT / "input_files" / "laws"
 STYLE = {"font.size": 9, "axes.grid": True, "grid.color": "0.9", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
          "lines.markersize": 4, "axes.titlesize": 9, "legend.frameon": False, "axes.spines.top": False,
@@ -50,25 +51,25 @@ ALLOY = {"r": {0: 0.2115, 15: 0.3269, 30: 0.6923, 45: 1.5769, 60: 1.0385, 75: 0.
 
 
 def labels(law):
-    """Names of the law's input file in words, by the names that the program gives them: n_0.3 is n = 0.3."""
-    names = re.findall(r"^\*(?:POINT|MATERIAL) (\S+)", (DECKS / f"{law}.dat").read_text(encoding="utf-8"), re.MULTILINE)
+    """Return labels for the points and materials of the law's input file, by their names: n_0.3 becomes n = 0.3."""
+    names = [block.name for block in read_deck(DECKS / f"{law}.dat") if block.keyword in ("point", "material")]
     return {name.lower(): re.sub(r"^([^_]+)_(?=[\d.]+$)", r"\1 = ", name).replace("_", " ") for name in names}
 
 
 def legend(axes, **options):
-    """The names of the lines, small."""
+    """Add a small legend."""
     axes.legend(fontsize="small", **options)
 
 
 def von_mises(program):
-    """Ends of the paths in the plane of s11 and s22 of a von Mises material."""
+    """Return the ends of the paths in the plane of s11 and s22 for a von Mises material."""
     text = pp.deck(DECKS / "von_mises.dat", ["steel"], [], RATIOS, 0.1)
     points = pp.run(program, text)
     return [points[f"p0_{i}"][-1] for i in range(len(RATIOS))]
 
 
 def orthotropic(program, law, figure, measured=None, compression=False):
-    """Yield surface, r-values and yield stresses of a sheet."""
+    """Draw yield surface, r-values and yield stresses of a sheet."""
     path, materials = pp.names_in(str(DECKS / f"{law}.dat"))
     points = pp.run(program, pp.deck(path, materials, ANGLES, RATIOS, 0.1))
     axes = figure.subplot_mosaic([["surface", "r"], ["surface", "stress"]], width_ratios=(1, 1.1))
@@ -77,8 +78,8 @@ def orthotropic(program, law, figure, measured=None, compression=False):
                     label=law)
     pp.draw_surface(axes["surface"], von_mises(program), None, **BROKEN)
     if measured and "biaxial" in measured:
-        across, both = measured["stress"][90], measured["biaxial"]
-        axes["surface"].plot([1, 0, both], [0, across, both], **DOTS)
+        transverse, both = measured["stress"][90], measured["biaxial"]
+        axes["surface"].plot([1, 0, both], [0, transverse, both], **DOTS)
     legend(axes["surface"], loc="upper left")
     ways = [("tension", 0.1, "-")] + ([("compression", -0.1, ":")] if compression else [])
     for label, strain, line in ways:
@@ -98,7 +99,7 @@ def orthotropic(program, law, figure, measured=None, compression=False):
 
 
 def isotropic(program, law, figure):
-    """Yield surfaces in the plane of two normal stresses, and in that of a normal stress and a shear."""
+    """Draw yield surfaces in the plane of two normal stresses and in that of a normal and a shear stress."""
     path, materials = pp.names_in(str(DECKS / f"{law}.dat"))
     axes = figure.subplots(1, 2)
     points = pp.run(program, pp.deck(path, materials, [], RATIOS, 0.1))
@@ -122,7 +123,7 @@ def isotropic(program, law, figure):
 
 
 def tension(program, law, figure, points_of=None):
-    """Tension as true stress over logarithmic strain and as nominal stress over elongation."""
+    """Draw tension as true stress over logarithmic strain and as nominal stress over elongation."""
     axes, names = figure.subplots(1, 2), labels(law)
     for name, rows in deck_run(program, law).items():
         strain, stress = (np.array([row[key] for row in rows]) for key in ("e11", "s11"))
@@ -141,13 +142,13 @@ def tension(program, law, figure, points_of=None):
 
 
 def deck_run(program, law):
-    """Rows of the law's input file, by point."""
+    """Return the rows of the law's input file by point."""
     path = (DECKS / f"{law}.dat").as_posix()
     return pp.run(program, f'*INCLUDE "{path}"\n')
 
 
 def prager(program, law, figure):
-    """A reversal, and large simple shear."""
+    """Draw a reversal, and large simple shear."""
     points = deck_run(program, law)
     axes = figure.subplots(1, 2)
     for name, colour in (("isotropic", "C1"), ("kinematic", "C0")):
@@ -162,7 +163,7 @@ def prager(program, law, figure):
 
 
 def lemaitre_chaboche(program, law, figure):
-    """Reversals of tension and of shear."""
+    """Draw reversals of tension and of shear."""
     points = deck_run(program, law)
     axes = figure.subplots(1, 2)
     for name in ("none", "one", "two"):
@@ -174,15 +175,15 @@ def lemaitre_chaboche(program, law, figure):
 
 
 def teodosiu_hu(program, law, figure):
-    """A reversal, and shear after tension."""
+    """Draw a reversal, and shear after tension."""
     points = deck_run(program, law)
     axes, names = figure.subplots(1, 2, sharey=True), labels(law)
     for part, way, first in ((axes[0], "compression", "tension"), (axes[1], "shear", "shear")):
         for number, name in enumerate((first, f"{way}_after_0.1", f"{way}_after_0.2")):
-            strain, along, shear = columns(points[name], "eqps", "s11", "s12")
+            strain, tensile, shear = columns(points[name], "eqps", "s11", "s12")
             flows = np.diff(strain, prepend=0) > 1e-9
-            stress = np.where(flows, np.sqrt(along**2 + 3 * shear**2), np.nan)
-            turned = along < 0 if part is axes[0] else shear > 0
+            stress = np.where(flows, np.sqrt(tensile**2 + 3 * shear**2), np.nan)
+            turned = tensile < 0 if part is axes[0] else shear > 0
             stress = np.where(turned | (number == 0), stress, np.nan)
             style = BROKEN if number == 0 else {"color": f"C{number - 1}"}
             part.plot(strain, stress, **{**style, "label": names[name]})
@@ -193,7 +194,7 @@ def teodosiu_hu(program, law, figure):
 
 
 def columns(rows, *keys):
-    """Columns of rows."""
+    """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
 
 
@@ -211,7 +212,7 @@ PICTURES = {
 
 
 def save(figure, path):
-    """Writes a picture of 64 colours, which keeps it small."""
+    """Write a picture of 64 colours, which keeps it small."""
     memory = io.BytesIO()
     figure.savefig(memory, dpi=110)
     try:
@@ -221,7 +222,7 @@ def save(figure, path):
 
 
 def main():
-    """Draws the pictures."""
+    """Draw the pictures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("law", nargs="*", help="law to draw (default: all)")
     parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
@@ -229,7 +230,7 @@ def main():
     options = parser.parse_args()
     for law in options.law:
         if law not in PICTURES:
-            sys.exit(f"no law {law}; there are: {', '.join(PICTURES)}")
+            raise Problem(f"no law {law}; there are: {', '.join(PICTURES)}")
     options.output.mkdir(parents=True, exist_ok=True)
     for law in options.law or PICTURES:
         draw, settings = PICTURES[law]

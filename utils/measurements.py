@@ -1,4 +1,4 @@
-"""What identify.py is told: measured values of tests on sheets, and curves. Says what is wrong with them, and where."""
+"""Measured values of tests on sheets, and curves, for identify.py. Errors name the file, the line and the word."""
 
 import re
 from dataclasses import dataclass
@@ -6,27 +6,26 @@ from functools import partial
 
 import numpy as np
 
+from results import read_text
+from scripts import Problem
+
 TENSION, EQUIBIAXIAL = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
-# Key: kind of test, quantity, weight, whether an angle is given.
+# Key: kind of test, quantity, default weight, whether it has an angle.
 KEYS = {
     "r": ("tension", "r", 0.5, True), "stress": ("tension", "stress", 1, True),
     "compression": ("compression", "stress", 1, True), "plane_strain": ("plane strain", "stress", 1, True),
     "biaxial_stress": ("equibiaxial", "stress", 1, False), "biaxial_r": ("equibiaxial", "r", 0.5, False),
     "biaxial_compression": ("equibiaxial compression", "stress", 1, False),
 }
-# Quantity: lowest and highest value, what is meant.
-RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain across over that through the thickness"),
+# Quantity: lowest and highest value, meaning.
+RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain in width over the strain in thickness"),
           "stress": (0.1, 10, "a ratio, 0.1 to 10: yield stresses (MPa) are divided by the one along rolling")}
-FALL = 0.95  # of the largest stress: a curve that ends below is not one of true stresses
-
-
-class Problem(Exception):
-    """Input that cannot be used; its text is the message."""
+FALL = 0.95  # a curve that ends below this fraction of its largest stress is not one of true stresses
 
 
 def every(parts):
-    """The results of all parts; where some have a problem, the messages of these, the first 20."""
+    """Call all parts and return their results; if some fail, raise a Problem with the first 20 messages."""
     results, said = [], []
     for part in parts:
         try:
@@ -41,26 +40,26 @@ def every(parts):
 
 @dataclass
 class Line:
-    """A line of a file, or an argument of the command line: where it stands, its text."""
+    """A line of a file or an argument of the command line: its place and its text."""
     where: str
     text: str
 
     def words(self, pattern):
-        """Its words, each with its place; a comment after # is left out."""
+        """Return its words, each with its column; a comment after # is left out."""
         return [(found.group(), found.start()) for found in re.finditer(pattern, self.text.partition("#")[0])]
 
     def problem(self, word, message, expected):
-        """A message that points at a word (text and place)."""
+        """Return a Problem that points at a word (text and column)."""
         text, start = word
         return Problem(f"{self.where}: error: {message}\n  {self.text}\n  {' ' * start}{'^' * max(len(text), 1)}\n"
                        f"  expected: {expected}")
 
     def end(self):
-        """The place behind the last character."""
+        """Return the position behind the last character."""
         return "", len(self.text.rstrip())
 
     def number(self, word, name, low, high, expected):
-        """A word as a number from low to high."""
+        """Return a word as a number between low and high."""
         try:
             value = float(word[0])
         except ValueError:
@@ -71,22 +70,22 @@ class Line:
 
 
 class Datum:
-    """A measured value: kind of test, angle, quantity, value, weight. Without a value: only to be told."""
+    """A measured value: kind of test, angle, quantity, value, weight. Without a value it is only computed."""
 
     def __init__(self, key, angle=0.0, value=None, weight=None):
         self.kind, self.quantity, usual, self.angled = KEYS[key]
         self.angle, self.value, self.weight = angle, value, usual if weight is None else weight
 
     def label(self):
-        """Its name in the table."""
+        """Return its name in the table."""
         return f"{self.kind}{f' {self.angle:g}' if self.angled else ''}, {self.quantity}"
 
     def same_test(self):
-        """What tells tests apart."""
+        """Return the identity of the test: kind and angle."""
         return self.kind, self.angle
 
     def path(self):
-        """Control and targets at a point; equibiaxial tension is compression through the thickness plus pressure."""
+        """Return control, angle and targets; equibiaxial tension is compression in thickness plus pressure."""
         sign = -1 if self.kind in ("compression", "equibiaxial") else 1
         place = 2 if self.kind.startswith("equibiaxial") else 0
         control = EQUIBIAXIAL if place else PLANE if self.kind == "plane strain" else TENSION
@@ -94,16 +93,16 @@ class Datum:
         return control, self.angle, [[sign * strain if i == place else 0.0 for i in range(6)] for strain in strains]
 
     def computed(self, rows):
-        """Its value from the rows of its path; the strains between the last two are plastic."""
+        """Return its value from the rows of its path; the strain between the last two is plastic."""
         through = self.kind.startswith("equibiaxial")
         if self.quantity == "stress":
             return abs(rows[-1]["s33" if through else "s11"]) / rows[-1]["flow_stress"]
-        across, other = (rows[-1][key] - rows[-2][key] for key in ("e22", "e11" if through else "e33"))
-        return across / other
+        width, other = (rows[-1][key] - rows[-2][key] for key in ("e22", "e11" if through else "e33"))
+        return width / other
 
 
 def datum(key, line, words):
-    """A datum from the words of its values."""
+    """Return the datum of the words of its values."""
     _, quantity, _, angled = KEYS[key]
     expected = f"{'angle, ' if angled else ''}value and, if wanted, weight; {RANGES[quantity][2]}"
     least = 2 if angled else 1
@@ -118,25 +117,22 @@ def datum(key, line, words):
 
 
 def from_argument(key, text):
-    """The datum of an argument of the command line: angle:value:weight."""
+    """Return the datum of an argument of the command line: angle:value:weight."""
     line = Line(f"--{key.replace('_', '-')}", text)
     return [datum(key, line, line.words(r"[^:]+"))]
 
 
 def lines_of(path):
-    """The lines of a file. Only its numbers and keys matter: letters of headings may be coded in any way."""
+    """Return the lines of a file. Headings may have any encoding."""
     try:
-        with open(path, encoding="utf-8-sig", errors="replace") as stream:
-            text = stream.read()
-    except OSError as error:
-        raise Problem(f"{path}: error: {error.strerror}") from None
-    if "\0" in text:
-        raise Problem(f"{path}: error: not a text")
+        text = read_text(path)
+    except Problem as problem:
+        raise Problem(str(problem).replace(": ", ": error: ", 1)) from None
     return [Line(f"{path}:{i}", line) for i, line in enumerate(text.splitlines(), 1)]
 
 
 def read_data(path):
-    """The data of a file: in each line a key and its numbers."""
+    """Return the data of a file with a key and its numbers in each line."""
     lines = [(line, data_words(line)) for line in lines_of(path)]
     data = every([partial(data_line, line, words) for line, words in lines if words])
     if not data:
@@ -145,20 +141,20 @@ def read_data(path):
 
 
 def data_words(line):
-    """The words of a line; a comma within one, where others separate words, may be meant for a decimal point."""
+    """Return the words of a line; a comma inside a word is kept if blanks separate words, as a wrong decimal point."""
     others = re.search(r"\S[\s;]+\S", line.text.partition("#")[0])
     return line.words(r"[^\s;:=]*[^\s,;:=]" if others else r"[^\s,;:=]+")
 
 
 def data_line(line, words):
-    """The datum of a line."""
+    """Return the datum of a line."""
     if words[0][0] not in KEYS:
         raise line.problem(words[0], f"unknown key '{words[0][0]}'", "one of: " + " ".join(KEYS))
     return datum(words[0][0], line, words[1:])
 
 
 def read_curve(path, reversed_too):
-    """Strains and stresses of a table: two columns; lines before the first number are a header."""
+    """Return strains and stresses of a table with two columns; lines before the first number are a header."""
     lines = [(line, words) for line in lines_of(path) if (words := line.words(r"[^\s,;]+"))]
     first = next((i for i, (_, words) in enumerate(lines) if re.match(r"[-+.\d]", words[0][0])), len(lines))
     rows = every([partial(curve_row, line, words) for line, words in lines[first:]])
@@ -169,7 +165,7 @@ def read_curve(path, reversed_too):
 
 
 def curve_row(line, words):
-    """A row of a curve: its line, its words, strain and stress."""
+    """Return a row of a curve: its line, its words, strain and stress."""
     if len(words) < 2:
         raise line.problem(line.end(), "a number is missing", "strain and stress")
     if len(words) > 2:
@@ -181,11 +177,11 @@ def curve_row(line, words):
 
 
 def check_curve(rows, reversed_too):
-    """Refuses what no tension test gives."""
+    """Check that a curve can be one of a tension test."""
     for (_, _, last, _), (line, words, strain, _) in zip(rows, rows[1:]):
         if strain == last or strain < last and not reversed_too:
-            raise line.problem(words[0], f"strain = {words[0][0]} does not grow",
-                               "growing strains; reversals with --backstress only")
+            raise line.problem(words[0], f"strain = {words[0][0]} does not increase",
+                               "increasing strains; reversals with --backstress only")
     for line, words, strain, stress in rows:
         if (stress < 0 or stress == 0 and strain > 0) and not reversed_too:
             raise line.problem(words[1], f"stress = {words[1][0]} is not positive",
@@ -195,5 +191,5 @@ def check_curve(rows, reversed_too):
         raise line.problem(words[1], f"the largest stress is {words[1][0]}", "stresses in MPa")
     if rows[-1][3] < FALL * most and not reversed_too:
         raise line.problem(words[1], f"from here the stress falls to {rows[-1][1][1][0]}",
-                           "true stresses up to the largest force; nominal ones fall, and what follows a neck tells "
-                           "nothing")
+                           "true stresses up to the largest force; nominal stresses fall, and those after necking are "
+                           "not usable")

@@ -8,16 +8,14 @@
     plot_force.py bending.out
     plot_force.py p1000.out p10000.out --label "p = 1000" --label "p = 10000" --output force.svg
 
-A run is a folder of results or its history.csv. The tool is the one that controls the last phase; its
-displacement is counted from the start of the phases drawn, along its motion, and so is its force: positive
-where the sheet resists. Of another tool, such as one that is pressed, the size of the force is drawn over the
-displacement of the one that controls. A cross marks a run that stopped before the end of its last phase.
+A run is a folder of results or its history.csv. By default the tool is the one that controls the last phase. Its
+displacement and force are taken in the direction of its motion, from the start of the phases drawn; the force is
+positive where the sheet resists. For another tool, such as a pressed one, the magnitude of its force is drawn over
+the displacement of the controlling tool. A cross marks a run that stopped before the end of its last phase.
 """
 
 import argparse
-import csv
 import sys
-from pathlib import Path
 
 import scripts
 
@@ -27,47 +25,38 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import results  # noqa: E402
+from scripts import Problem  # noqa: E402
 
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
 class History:
-    """The columns of a history.csv."""
+    """Columns of a history.csv; rows that are not whole are left out."""
 
     def __init__(self, run):
-        path = Path(run)
-        if path.is_dir():
-            path = path / "history.csv"
-        try:
-            with open(path, newline="", encoding="utf-8") as file:
-                rows = list(csv.reader(line for line in file if not line.startswith("#")))
-        except OSError as error:
-            sys.exit(f"{path}: {error.strerror}")
-        if len(rows) < 2:
-            sys.exit(f"{path}: no rows")
-        self.path = path
-        self.names = rows[0]
-        rows = [row for row in rows[1:] if len(row) == len(self.names)]
-        self.text = {name: [row[i] for row in rows] for i, name in enumerate(self.names)}
-        for needed in ("phase", "travel", "progress"):
-            if needed not in self.text:
-                sys.exit(f"{path}: no column '{needed}'")
-        self.phase = np.array(self.text["phase"])
+        self.path = results.history_file(run)
+        rows = results.read_table(self.path, "phase", "travel", "progress")
+        if not rows:
+            raise Problem(f"{self.path}: no rows")
+        self.names = list(rows[0])
+        self.rows = [row for row in rows if results.is_whole(row)]
+        self.phase = np.array([row["phase"] for row in self.rows])
 
     def column(self, name):
-        return np.array(self.text[name], dtype=float)
+        return np.array([row[name] for row in self.rows], dtype=float)
 
     def tools(self):
-        return [name[: -len("_contacts")] for name in self.names if name.endswith("_contacts")]
+        return results.tools_in(self.names)
 
     def vector(self, tool, quantity):
         return np.column_stack([self.column(f"{tool}_{quantity}{axis}") for axis in AXES])
 
     def rows_of(self, phases):
-        """The rows of the phases, with the state they start from."""
+        """Return the rows of the phases, with the state they start from."""
         for phase in phases:
             if phase not in self.phase:
-                sys.exit(f"{self.path}: no phase '{phase}'; there are: {', '.join(dict.fromkeys(self.phase))}")
+                raise Problem(f"{self.path}: no phase '{phase}'; there are: {', '.join(dict.fromkeys(self.phase))}")
         rows = np.flatnonzero(np.isin(self.phase, phases))
         if rows[0] > 0:
             rows = np.concatenate(([rows[0] - 1], rows))
@@ -75,19 +64,19 @@ class History:
 
 
 def controlling_tool(history):
-    """The tool whose path in the last phase is the travel; where none moves, the one pressed most."""
+    """Return the tool whose path in the last phase is the travel; if none moves, the one with the largest force."""
     rows = history.rows_of([history.phase[-1]])
     travel = np.ptp(history.column("travel")[rows])
     paths = {tool: np.linalg.norm(np.ptp(history.vector(tool, "u")[rows], axis=0)) for tool in history.tools()}
     if not paths:
-        sys.exit(f"{history.path}: there is no tool")
+        raise Problem(f"{history.path}: there is no tool")
     if travel > 0:
         return min(paths, key=lambda tool: abs(paths[tool] - travel))
     return max(paths, key=lambda tool: np.linalg.norm(history.vector(tool, "f")[rows], axis=1).max())
 
 
 def curve(history, tool, phases, component):
-    """Displacement (mm) and force (N) of the tool."""
+    """Return displacement (mm) and force (N) of the tool."""
     rows = history.rows_of(phases)
     leader = controlling_tool(history) if component == "motion" else tool
     displacement = history.vector(leader, "u")[rows]
@@ -103,12 +92,11 @@ def curve(history, tool, phases, component):
     if not direction.any():
         return path, np.linalg.norm(force, axis=1)
     direction = direction / np.linalg.norm(direction)
-    along = displacement @ direction
-    return along, np.linalg.norm(force, axis=1) if leader != tool else -force @ direction
+    return displacement @ direction, np.linalg.norm(force, axis=1) if leader != tool else -force @ direction
 
 
 def common(tools):
-    """The one name of all tools, else `Tool`."""
+    """Return the name that all tools have, else `Tool`."""
     return tools[0].replace("_", " ").capitalize() if len(set(tools)) == 1 else "Tool"
 
 
@@ -118,7 +106,8 @@ def arguments():
     parser.add_argument("--tool", help="tool (default: the one that controls the last phase)")
     parser.add_argument("--component", choices=["motion", "x", "y", "z", "magnitude"], default="motion",
                         help="part of the force: against the motion (default), along an axis, or all of it")
-    parser.add_argument("--phase", action="append", default=[], help="phase to draw; may be repeated (default: the last)")
+    parser.add_argument("--phase", action="append", default=[],
+                        help="phase to draw; may be repeated (default: the last)")
     parser.add_argument("--label", action="append", default=[], help="name of a run in the legend, in their order")
     parser.add_argument("--factor", type=float, default=1.0, help="factor on the force; 2 for a half model")
     parser.add_argument("--title", default="", help="title above the plot")
@@ -130,24 +119,10 @@ def arguments():
     return options
 
 
-def main():
-    options = arguments()
-    curves = []
-    for number, run in enumerate(options.runs):
-        history = History(run)
-        tool = options.tool or controlling_tool(history)
-        if tool not in history.tools():
-            sys.exit(f"{history.path}: no tool '{tool}'; there are: {', '.join(history.tools())}")
-        phases = options.phase or [history.phase[-1]]
-        displacement, force = curve(history, tool, phases, options.component)
-        name = history.path.parent.resolve().name.removesuffix(".out")
-        label = options.label[number] if number < len(options.label) else name
-        leader = controlling_tool(history) if options.component == "motion" else tool
-        curves.append((tool, leader, label, displacement, options.factor * force, history.column("progress")[-1] < 1.0))
-
+def draw(options, curves, axes):
+    """Draw the curves: tool, controlling tool, label, displacement, force, whether the run stopped."""
     largest = max(np.abs(force).max() for *_, force, _ in curves)
     unit, scale = ("kN", 1000.0) if largest >= 1000.0 else ("N", 1.0)
-    figure, axes = plt.subplots(figsize=options.size, layout="constrained")
     for _, _, label, displacement, force, stopped in curves:
         line, = axes.plot(displacement, force / scale, linewidth=1.4, label=label)
         if stopped:
@@ -166,6 +141,26 @@ def main():
         axes.set_ylim(bottom=0.0)
     if len(curves) > 1 or options.label:
         axes.legend(frameon=False)
+
+
+def read_curve(options, number):
+    """Return the curve of a run as `draw` takes it."""
+    history = History(options.runs[number])
+    tool = options.tool or controlling_tool(history)
+    if tool not in history.tools():
+        raise Problem(f"{history.path}: no tool '{tool}'; there are: {', '.join(history.tools())}")
+    displacement, force = curve(history, tool, options.phase or [history.phase[-1]], options.component)
+    name = history.path.parent.resolve().name.removesuffix(".out")
+    label = options.label[number] if number < len(options.label) else name
+    leader = controlling_tool(history) if options.component == "motion" else tool
+    return tool, leader, label, displacement, options.factor * force, history.column("progress")[-1] < 1.0
+
+
+def main():
+    options = arguments()
+    curves = [read_curve(options, number) for number in range(len(options.runs))]
+    figure, axes = plt.subplots(figsize=options.size, layout="constrained")
+    draw(options, curves, axes)
     try:
         figure.savefig(options.output, dpi=200)
     except (OSError, ValueError) as error:

@@ -3,25 +3,22 @@
 # requires-python = ">=3.11"
 # dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
 # ///
-"""Draw what materials do at a point: tension curves, r-values and yield stresses against the angle, yield surfaces.
+"""Draw the response of materials at a point: tension curves, r-values and yield stresses by angle, yield surfaces.
 
     plot_point.py steel.dat aluminium.dat --program build/release/dd3imp --output materials.png
     plot_point.py sheets.dat:dc06 sheets.dat:dp600
     plot_point.py --run point.out --run other.out
 
-The files hold *MATERIAL blocks, and no sheet; FILE:NAME draws one of them. Each material is drawn in one colour. All
-values come from runs of the program with single points (*POINT): tension at angles to the rolling direction; plane
-stress by ratios of strain, whose stresses over the flow stress are the yield surface and whose strains are its
-normals. Back-stresses count as stress. --run draws the points of a run that was made already, a folder of results or
-its history.csv: s11 over e11.
+The files contain *MATERIAL blocks and no sheet; FILE:NAME draws one of them. Each material has one colour. All values
+are computed by the program at single points (*POINT): tension at angles to the rolling direction, and plane stress at
+fixed ratios of strain, which gives the yield surface (stresses over the flow stress) and its normals (the strains).
+Stresses include the back-stress. --run draws s11 over e11 of the points of a finished run, given its folder of results
+or its history.csv.
 """
 
 import argparse
-import csv
 import re
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import scripts
@@ -32,39 +29,28 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import results  # noqa: E402
+from scripts import Problem  # noqa: E402
 
 TENSION = "e11 s22 s33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
-INCLUDE = re.compile(r'^\s*\*include\s+"?([^"#!\n]*[^"#!\s])', re.IGNORECASE | re.MULTILINE)
-
-
-def text_of(path, parents=()):
-    """The text of a file, and of those it includes."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        sys.exit(f"{path}: {getattr(error, 'strerror', None) or 'not a text'}")
-    included = [path.parent / name for name in INCLUDE.findall(text)]
-    return "".join([text, *(text_of(file, (*parents, path)) for file in included if file not in parents)])
 
 
 def names_in(file):
-    """The path of FILE or FILE:NAME, and the names of its materials."""
+    """Return the path of FILE or FILE:NAME, and the names of its materials in small letters."""
     path, _, chosen = file.rpartition(":")
     if not path or Path(file).exists():
         path, chosen = file, ""
-    text = text_of(Path(path))
-    found = re.findall(r"^\s*\*material\s+([\w.-]+)", text, re.IGNORECASE | re.MULTILINE)
-    if not found:
-        sys.exit(f"{path}: no *MATERIAL")
-    names = [name.lower() for name in found]
+    names = [block.name.lower() for block in results.read_deck(path) if block.keyword == "material"]
+    if not names:
+        raise Problem(f"{path}: no *MATERIAL")
     if chosen and chosen.lower() not in names:
-        sys.exit(f"{path}: no *MATERIAL {chosen}; there are: {', '.join(names)}")
+        raise Problem(f"{path}: no *MATERIAL {chosen}; there are: {', '.join(names)}")
     return path, [chosen.lower()] if chosen else names
 
 
 def point(name, material, control, targets, angle=None):
-    """A *POINT block."""
+    """Return a *POINT block."""
     lines = [f"*POINT {name}", f"  material = {material}", f"  control = {control}"]
     if angle is not None:
         lines.append(f"  angle = {angle:g}")
@@ -73,7 +59,7 @@ def point(name, material, control, targets, angle=None):
 
 
 def deck(path, materials, angles, ratios, strain):
-    """Input that takes each material along all paths."""
+    """Return the input that takes each material along all paths; names: t0_45 for tension, p0_3 for strain ratios."""
     blocks = [f'*INCLUDE "{Path(path).resolve()}"']
     for m, material in enumerate(materials):
         for angle in angles:
@@ -86,60 +72,33 @@ def deck(path, materials, angles, ratios, strain):
 
 
 def run(program, text):
-    """Rows of the history of a run, by point."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "points.dat"
-        file.write_text(text, encoding="utf-8")
-        command = [program, "--quiet", "--output", str(Path(folder) / "out"), str(file)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-        except OSError as error:
-            sys.exit(f"{program}: {error.strerror}; give --program FILE")
-        if done.returncode != 0:
-            # The paths at a point stand in a file of ours; what the user has is the files it includes.
-            said = re.sub(re.escape(str(file)) + r"(:\d+)?", ", ".join(INCLUDE.findall(text)), done.stderr.strip())
-            sys.exit(said or f"{program} failed")
-        return read_points(Path(folder) / "out")
-
-
-def read_points(path):
-    """Rows of a history by point; path is a folder of results or its history.csv."""
-    path = Path(path)
-    if path.is_dir():
-        path = path / "history.csv"
-    try:
-        with open(path, newline="", encoding="utf-8") as stream:
-            rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
-    except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
-    if not rows or "point" not in rows[0]:
-        sys.exit(f"{path}: not the history of single points")
-    points = {}
-    for number, row in enumerate(rows, 1):
-        try:
-            points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
-        except (TypeError, ValueError):
-            sys.exit(f"{path}: row {number} does not hold a number in each column")
+    """Return the rows of a run of single points by point; its input includes files of the user."""
+    done, points = results.run_points(program, text)
+    if done.code != 0:
+        # Messages on the generated input name the files that it includes.
+        included = ", ".join(re.findall(r'^\*INCLUDE "(.*)"', text, re.MULTILINE))
+        said = re.sub(re.escape(results.POINTS) + r"(:\d+)?", included, done.errors.strip())
+        raise Problem(said or f"{program} failed")
     return points
 
 
 def r_value(rows):
-    """Ratio of the plastic strains across, over the second half of a tension test."""
-    share = rows[1]["e22"] / rows[1]["s11"], rows[1]["e33"] / rows[1]["s11"]
-    across, through = ([row[key] - part * row["s11"] for row in (rows[len(rows) // 2], rows[-1])]
-                       for key, part in zip(("e22", "e33"), share))
-    return (across[1] - across[0]) / (through[1] - through[0])
+    """Return the ratio of the plastic strains in width and thickness over the second half of a tension test."""
+    elastic = rows[1]["e22"] / rows[1]["s11"], rows[1]["e33"] / rows[1]["s11"]
+    width, thickness = ([row[key] - part * row["s11"] for row in (rows[len(rows) // 2], rows[-1])]
+                        for key, part in zip(("e22", "e33"), elastic))
+    return (width[1] - width[0]) / (thickness[1] - thickness[0])
 
 
 def yield_stress(rows):
-    """Stress over the flow stress in tension."""
+    """Return the stress over the flow stress at the end of a tension test."""
     return rows[-1]["s11"] / rows[-1]["flow_stress"]
 
 
 def draw_runs(axes, runs):
-    """Draws s11 over e11 of the points of the runs."""
+    """Draw s11 over e11 of the points of the runs."""
     for path in runs:
-        points = read_points(path)
+        points = results.read_points(path)
         name = Path(path).resolve()
         name = (name if name.is_dir() else name.parent).name.removesuffix(".out")
         for point_name, rows in points.items():
@@ -148,25 +107,25 @@ def draw_runs(axes, runs):
 
 
 def draw_over_angle(axes, angles, values, **style):
-    """Draws values over the angle to the rolling direction."""
+    """Draw values over the angle to the rolling direction."""
     axes.plot(angles, values, **style)
     axes.set(xlabel="angle to the rolling direction (°)", xticks=range(0, 91, 15))
 
 
 def draw_surface(axes, ends, normals, keys=("s11", "s22"), **style):
-    """Draws a yield surface: stresses over the flow stress at the ends of paths; given normals, those of each sixth."""
+    """Draw a yield surface: stresses over the flow stress at the ends of paths, and every sixth normal if given."""
     x, y = (np.array([row[key] / row["flow_stress"] for row in ends]) for key in keys)
     line, = axes.plot(np.append(x, x[0]), np.append(y, y[0]), **style)
     if normals is not None:
-        along, across = (part[::6] / np.hypot(*normals)[::6] for part in normals)
-        axes.quiver(x[::6], y[::6], along, across, color=line.get_color(), angles="xy", units="inches", width=0.016,
+        u, v = (part[::6] / np.hypot(*normals)[::6] for part in normals)
+        axes.quiver(x[::6], y[::6], u, v, color=line.get_color(), angles="xy", units="inches", width=0.016,
                     scale_units="inches", scale=3.5, zorder=2)
     axes.set(xlabel=f"{keys[0]} / flow stress", ylabel=f"{keys[1]} / flow stress", aspect="equal")
     axes.margins(0.15)
 
 
 def draw(axes, points, m, label, angles, ratios, colour):
-    """Draws one material."""
+    """Draw one material."""
     for angle, style in ((0, "-"), (45, "--"), (90, ":")):
         rows = points[f"t{m}_{angle}"]
         text = None if angle else label
@@ -179,7 +138,7 @@ def draw(axes, points, m, label, angles, ratios, colour):
 
 
 def picture(files, program, strain=0.2, runs=()):
-    """The figure: the materials of the files, and the points of finished runs."""
+    """Return the figure of the materials of the files and the points of finished runs."""
     angles = list(range(0, 91, 15))
     ratios = np.radians(np.arange(0, 360, 5))
     panels = (2, 2) if files else (1, 1)
@@ -208,12 +167,12 @@ def picture(files, program, strain=0.2, runs=()):
 
 
 def colour_of(number):
-    """One of twenty colours, the dark ones first."""
+    """Return one of twenty colours, the dark ones first."""
     return plt.get_cmap("tab20")((2 * number + number // 10 % 2) % 20)
 
 
 def save(figure, path, dpi=100):
-    """Writes the figure."""
+    """Write the figure."""
     try:
         figure.savefig(path, dpi=dpi)
     except (OSError, ValueError) as error:
@@ -221,7 +180,7 @@ def save(figure, path, dpi=100):
 
 
 def main():
-    """Draws the picture."""
+    """Draw the picture."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", nargs="*", help="file with *MATERIAL blocks, or FILE:NAME")
     parser.add_argument("--run", action="append", default=[], help="finished run to draw; may be repeated")

@@ -8,32 +8,30 @@
     plot_sheet.py bending.out
     plot_sheet.py bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
 
-The sheet comes from fields.vtkhdf, the tools' surfaces from the .bez files named in the job's input file
-(bending.dat beside bending.out; else --deck or --tool), their displacements from the run. Several --at give
-several pictures below each other.
+The sheet is read from fields.vtkhdf, the tools' surfaces from the .bez files named in the job's input file
+(bending.dat in the folder of bending.out; otherwise --deck or --tool), their displacements from the results. Several
+--at give several pictures below each other.
 """
 
 import argparse
-import csv
 import math
-import os
-import re
 import sys
 from pathlib import Path
 
 import scripts
 
 scripts.need("h5py", "matplotlib", "numpy", "pyvista")
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
-import h5py  # noqa: E402
 import matplotlib  # noqa: E402
 import numpy as np  # noqa: E402
 import pyvista as pv  # noqa: E402
+import results  # noqa: E402
+from fields import Fields, text_of  # noqa: E402
+from scripts import Problem  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkLogger  # noqa: E402
 
 COMPONENTS = {"stress": ["11", "22", "33", "12", "23", "13"]}
 VECTOR = ["x", "y", "z"]
-VIEWS = {  # where the camera stands, seen from the sheet, and what is up
+VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
     "front": ((0, -1, 0), (0, 0, 1)),
     "back": ((0, 1, 0), (0, 0, 1)),
@@ -46,57 +44,29 @@ BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 
-class Run:
-    """The field file of a run."""
-
-    def __init__(self, folder):
-        path = Path(folder)
-        if path.is_dir():
-            path = path / "fields.vtkhdf"
-        try:
-            self.file = h5py.File(path, "r")
-            self.grid = self.file["VTKHDF"]
-            self.steps = self.grid["Steps"]
-            self.count = int(self.steps.attrs["NSteps"])
-        except FileNotFoundError:
-            sys.exit(f"{path}: No such file")
-        except (OSError, KeyError):
-            sys.exit(f"{path}: not the field file of a run")
-        if self.count == 0:
-            sys.exit(f"{path}: no steps")
-        self.path = path
-        self.folder = path.parent
-        self.travel = self.steps["Values"][: self.count]
+class Run(Fields):
+    """A run: the sheet at its steps, and the tools' displacements."""
 
     def step_at(self, travel):
-        """The last step whose travel is nearest."""
+        """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
         if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
-            sys.exit(f"{self.path}: no travel {travel:g} mm; there is {self.travel.min():g} to {self.travel.max():g}")
-        distance = np.abs(self.travel - travel)
-        return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
+            raise Problem(f"{self.path}: no travel {travel:g} mm; "
+                          f"there is {self.travel.min():g} to {self.travel.max():g}")
+        return self.nearest_step(travel)
 
     def mesh(self, step, field, at_cells):
-        """The sheet at a step with its field, and the name of what it shows."""
-        connectivity = self.grid["Connectivity"][...]
+        """Return the sheet at a step with its field as `shown`, and the label of the field."""
         offsets = self.grid["Offsets"][...]
-        n_point, n_cell = int(self.grid["NumberOfPoints"][0]), int(self.grid["NumberOfCells"][0])
-        cells = np.insert(connectivity, offsets[:-1], np.diff(offsets))
-        first = int(self.steps["PointOffsets"][step])
-        mesh = pv.UnstructuredGrid(cells, self.grid["Types"][...], self.grid["Points"][first:first + n_point])
-        where, rows = ("CellData", n_cell) if at_cells else ("PointData", n_point)
+        cells = np.insert(self.grid["Connectivity"][...], offsets[:-1], np.diff(offsets))
+        mesh = pv.UnstructuredGrid(cells, self.grid["Types"][...], self.points(step))
         name, _, component = field.partition(":")
-        if name not in self.grid[where]:
-            sys.exit(f"{self.path}: no field '{name}'; there are: {', '.join(self.grid[where])}")
-        data = self.grid[where][name]
-        first = int(self.steps[where + "Offsets"][name][step])
-        values = data[first:first + rows].astype(float)
-        unit = data.attrs.get("unit", b"")
-        unit = unit.decode().strip() if isinstance(unit, bytes) else str(unit).strip()
-        values, label = self.component(values, name, component)
+        values, unit = self.values(step, name, at_cells)
+        values, label = self.component(values.astype(float), name, component)
         (mesh.cell_data if at_cells else mesh.point_data)["shown"] = values
         return mesh, label + (f" ({unit})" if unit else "")
 
     def component(self, values, name, component):
+        """Return a component of a field, or its magnitude, and its label."""
         label = name.replace("_", " ")
         if values.ndim == 1:
             return values, label
@@ -105,63 +75,28 @@ class Run:
             return values[:, names.index(component)], f"{label} {component}"
         if component in ("", "magnitude"):
             return np.linalg.norm(values, axis=1), f"{label}, magnitude"
-        sys.exit(f"{self.path}: no component '{component}' of '{name}'; there are: {', '.join(names)}, magnitude")
+        raise Problem(f"{self.path}: no component '{component}' of '{name}'; there are: {', '.join(names)}, magnitude")
 
     def tool_displacement(self, step):
-        """Displacement of each tool at a step."""
+        """Return the displacement of each tool at a step: from the fields, or from history.csv."""
         job = self.file.get("job")
         if job is not None and "tool_displacement" in job:
-            names = job.attrs["tools"]
-            names = (names.decode() if isinstance(names, bytes) else str(names)).split()
+            names = text_of(job.attrs["tools"]).split()
             return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3)))
-        with open(self.folder / "history.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        rows = results.read_table(results.history_file(self.folder), "travel")
         row = min(rows, key=lambda r: abs(float(r["travel"]) - self.travel[step]))
-        tools = [name[: -len("_contacts")] for name in row if name.endswith("_contacts")]
-        return {tool: np.array([float(row[f"{tool}_u{axis}"]) for axis in VECTOR]) for tool in tools}
-
-
-def read_lines(path, seen=()):
-    """The lines of an input file and of those it includes, each with the folder it stands in."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
-    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
-        line = re.sub(r"[#!].*", "", line).strip()
-        include = re.match(r"\*include\s+(.*)", line, re.IGNORECASE)
-        if include:
-            file = path.parent / include[1].strip().strip("\"'")
-            if file not in seen:
-                yield from read_lines(file, (*seen, file))
-        elif line:
-            yield line, path.parent
+        return {tool: np.array([float(row[f"{tool}_u{axis}"]) for axis in VECTOR]) for tool in results.tools_in(row)}
 
 
 def tools_of_deck(deck):
-    """The surfaces' files by the tools' names."""
-    tools, parameters, block, name = {}, {}, "", ""
-    for line, folder in read_lines(deck):
-        if line.startswith("*"):
-            block, _, name = line[1:].lower().partition(" ")
-            name = name.strip()
-            continue
-        key, _, value = (part.strip() for part in line.partition("="))
-        value = re.sub(r"\$\{(\w+)\}", lambda m: parameters.get(m[1].lower(), m[0]), value)
-        if block == "parameter":
-            parameters[key.lower()] = value
-        elif block == "tool" and key.lower() == "patches":
-            tools[name] = folder / value.strip("\"'")
-    return tools
+    """Return the surfaces' files by the tools' names in small letters."""
+    tools = [block for block in results.read_deck(deck) if block.keyword == "tool" and block.value("patches")]
+    return {tool.name.lower(): tool.folder / tool.value("patches").strip("\"'") for tool in tools}
 
 
 def read_patches(path):
-    """The patches of a .bez file: points (v, u, 3) and weights (v, u)."""
-    try:
-        lines = [re.sub(r"[#!].*", "", line).split() for line in path.read_text().splitlines()]
-    except OSError as error:
-        sys.exit(f"{path}: {error.strerror}")
-    lines = [line for line in lines if line]
+    """Return the patches of a .bez file: points (v, u, 3) and weights (v, u)."""
+    lines = [line.split() for line, _ in results.deck_lines(path)]
     patches, i = [], 0
     try:
         while i < len(lines):
@@ -175,7 +110,7 @@ def read_patches(path):
             patches.append((rows[..., :3], rows[..., 3] if rational else np.ones((n + 1, m + 1))))
             i += 1 + count
     except (ValueError, IndexError):
-        sys.exit(f"{path}: not a file of Bézier patches")
+        raise Problem(f"{path}: not a file of Bézier patches") from None
     return patches
 
 
@@ -184,7 +119,7 @@ def bernstein(degree, t):
 
 
 def tool_surface(patches, shift):
-    """The tool's patches as surfaces, moved."""
+    """Return the tool's patches as surfaces, moved by `shift`."""
     surface = pv.MultiBlock()
     for points, weights in patches:
         n, m = weights.shape[0] - 1, weights.shape[1] - 1
@@ -198,7 +133,7 @@ def tool_surface(patches, shift):
 
 
 def reflected(mesh, axes):
-    """The mesh and its images in the planes x = 0 and so on."""
+    """Return the mesh and its mirror images in the planes normal to the axes."""
     parts = [mesh]
     for axis in axes:
         normal = tuple(float(axis == a) for a in VECTOR)
@@ -207,14 +142,14 @@ def reflected(mesh, axes):
 
 
 def draw(plotter, run, step, options, tools, limits, box):
-    """One picture."""
+    """Draw one picture."""
     mesh = run.mesh(step, options.field, options.cells)[0]
     for part in reflected(mesh, options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
                          edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
                          lighting=True, ambient=0.25)
-    # Tools are drawn a little farther from the eye than they are: where they touch the sheet, its colours show.
+    # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
     behind = -0.006 * diagonal(box) * eye(options)[0]
     displacement = run.tool_displacement(step)
     for number, (name, patches) in enumerate(tools.items()):
@@ -235,7 +170,7 @@ def draw(plotter, run, step, options, tools, limits, box):
 
 
 def draw_bar(plotter, label, options, limits):
-    """The colour bar, in a strip of its own."""
+    """Draw the colour bar in a strip below the pictures."""
     table = pv.LookupTable(options.colours, scalar_range=limits)
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
     mapper.lookup_table = table
@@ -248,10 +183,8 @@ def diagonal(box):
 
 
 def box_of(run, steps, options):
-    """Corners of a box round the sheet at all steps drawn."""
-    count = int(run.grid["NumberOfPoints"][0])
-    places = [int(run.steps["PointOffsets"][step]) for step in steps]
-    points = np.concatenate([run.grid["Points"][first:first + count] for first in places])
+    """Return the corners of the box that holds the sheet at all steps drawn."""
+    points = np.concatenate([run.points(step) for step in steps])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in options.mirror:
         i = VECTOR.index(axis)
@@ -260,13 +193,13 @@ def box_of(run, steps, options):
 
 
 def eye(options):
-    """Unit vector towards the camera, and what is up."""
+    """Return the unit vector towards the camera and the upward direction."""
     place, up = VIEWS[options.view] if options.view in VIEWS else (tuple(map(float, options.view.split())), (0, 0, 1))
     return np.array(place) / np.linalg.norm(place), np.array(up)
 
 
 def aim(plotter, box, options):
-    """Points the camera at the sheet."""
+    """Point the camera at the sheet."""
     (place, up), (low, high) = eye(options), box
     centre = np.array(options.focus) if options.focus else (low + high) / 2
     plotter.camera_position = [centre + 2 * diagonal(box) * place, centre, up]
@@ -282,7 +215,7 @@ def aim(plotter, box, options):
 
 
 def direction(text):
-    """Whether a text is three numbers, not all zero and not along z, which is up."""
+    """Check for three numbers that are not a direction parallel to z, the upward direction."""
     try:
         place = [float(word) for word in text.split()]
     except ValueError:
@@ -290,14 +223,15 @@ def direction(text):
     return len(place) == 3 and any(place[:2])
 
 
-def arguments():
+def command_line():
+    """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
     parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
                         help="travel in mm, the nearest step is drawn; may be repeated (default: the last step)")
     parser.add_argument("--field", default="equivalent_plastic_strain",
                         help="field, or field:component, such as stress:11 or displacement:z")
-    parser.add_argument("--cells", action="store_true", help="values of the cells, not of the nodes")
+    parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
     parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
     parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
     parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
@@ -305,7 +239,7 @@ def arguments():
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
     parser.add_argument("--mirror", action="append", default=[], choices=["x", "y", "z", "xy"],
                         help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
-    parser.add_argument("--deck", type=Path, help="input file of the job (default: beside the folder of results)")
+    parser.add_argument("--deck", type=Path, help="input file of the job (default: in the folder that holds RUN)")
     parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
     parser.add_argument("--hide", action="append", default=[], metavar="NAME", help="tool to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
@@ -314,6 +248,12 @@ def arguments():
     parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
                         help="size of one picture in pixels")
     parser.add_argument("--list", action="store_true", help="list the steps and fields, draw nothing")
+    return parser
+
+
+def arguments():
+    """Return the options after their checks."""
+    parser = command_line()
     options = parser.parse_args()
     options.mirror = sorted(set("".join(options.mirror)))
     if options.view not in VIEWS and not direction(options.view):
@@ -330,7 +270,7 @@ def arguments():
 
 
 def find_tools(run, options):
-    """Patches of the tools to draw."""
+    """Return the patches of the tools to draw."""
     if "all" in options.hide:
         return {}
     files = {}
@@ -345,12 +285,36 @@ def find_tools(run, options):
         name, _, file = item.partition("=")
         files[name.lower()] = Path(file)
     if not files:
-        print("no input file beside the results: the tools are left out (see --deck)", file=sys.stderr)
+        print("no input file in the folder of the results: the tools are not drawn (see --deck)", file=sys.stderr)
     options.hide = [name.lower() for name in options.hide]
     unknown = [name for name in options.hide if name not in files]
     if unknown:
-        sys.exit(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
+        raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
     return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
+
+
+def limits_of(run, steps, options):
+    """Return the range of the colours: that of --limits, or of all values drawn."""
+    if options.limits:
+        return options.limits
+    ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
+    low, high = min(r.min() for r in ranges), max(r.max() for r in ranges)
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        high = low + max(1e-3, 1e-3 * abs(low))
+    return [low, high]
+
+
+def new_plotter(options, count):
+    """Return the plotter of `count` pictures and the strip of the colour bar."""
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    pv.OFF_SCREEN = True
+    window = [options.size[0], options.size[1] * count]
+    bar = min(BAR_HEIGHT, window[1] / 2)
+    plotter = pv.Plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
+                         off_screen=True, border=False, window_size=window)
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    return plotter
 
 
 def main():
@@ -363,21 +327,8 @@ def main():
         return
     tools = find_tools(run, options)
     steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
-    limits = options.limits
-    if limits is None:
-        ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
-        limits = [min(r.min() for r in ranges), max(r.max() for r in ranges)]
-        if limits[1] - limits[0] <= 1e-9 * max(map(abs, limits)):
-            limits[1] = limits[0] + max(1e-3, 1e-3 * abs(limits[0]))
-    box = box_of(run, steps, options)
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    pv.OFF_SCREEN = True
-    window = [options.size[0], options.size[1] * len(steps)]
-    bar = min(BAR_HEIGHT, window[1] / 2)
-    plotter = pv.Plotter(shape=(len(steps) + 1, 1), row_weights=[(window[1] - bar) / len(steps)] * len(steps) + [bar],
-                         off_screen=True, border=False, window_size=window)
-    plotter.set_background("white")
-    plotter.enable_anti_aliasing("ssaa")
+    limits, box = limits_of(run, steps, options), box_of(run, steps, options)
+    plotter = new_plotter(options, len(steps))
     for row, step in enumerate(steps):
         plotter.subplot(row, 0)
         draw(plotter, run, step, options, tools, limits, box)

@@ -5,7 +5,7 @@
 
 study_fig3, 6, 8, 9: travel reached, by penalty and mesh (3_8: with at most 8 iterations); study_fig4: the sheet at
 2.0 mm with the status of its contact candidates; study_fig7: B of the node that controls the limit on the contact
-forces. A figure whose cases are not there is left out. Needs utils/requirements.txt.
+forces. Figures whose cases were not run are left out. Needs utils/requirements.txt.
 """
 
 import argparse
@@ -17,16 +17,16 @@ scripts.need("h5py", "matplotlib", "numpy")
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
-import h5py  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from study import controlling, read_table  # noqa: E402
+from fields import Fields  # noqa: E402
+from results import force_limits, read_table  # noqa: E402
 
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
 MESHES = ["a", "b"]
 END = 40.0
-# For each figure the endings of its cases' names, and what they mean.
+# Figure: endings of its cases' names and their meaning.
 BARS = {
     "3": [("", "no force control")],
     "3_8": [("-max8", "no force control"), ("-c1-max8", "c = 1")],
@@ -35,19 +35,19 @@ BARS = {
     "9": [("-c1-alone", "c = 1"), ("-c1000-alone", "c = 1000")],
 }
 COLOURS = {"a": ["#c2571a", "#e08a4f", "#f2bd94"], "b": ["#1f5f99", "#5a95c9", "#a9cbe8"]}
-# Status of a candidate as fields.vtkhdf has it: name, colour, marker.
+# Contact status by its number in fields.vtkhdf: name, colour, marker.
 STATUS = [("gap", "0.75", "o"), ("stick", "#1f5f99", "s"), ("slip", "#c2571a", "D")]
 
 
-def reach_between(results, case):
-    """Least and largest travel of a case and of those that differ from it by round-off alone."""
+def travel_range(results, case):
+    """Return the smallest and largest travel of a case and of those that differ from it by round-off only."""
     ways = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
     travel = [float(results[case + way]["travel"]) for way in ways if case + way in results]
     return min(travel), max(travel)
 
 
 def bars(results, number, path):
-    """Travel reached by each case of a set; the paper's Figs 3, 6, 8 and 9."""
+    """Draw the travel reached by each case of a set: the paper's Figs 3, 6, 8 and 9."""
     groups = [(mesh, *ending) for mesh in MESHES for ending in BARS[number]]
     if any(f"{mesh}-{p}{ending}" not in results for mesh, ending, _ in groups for p in PENALTIES):
         return False
@@ -58,7 +58,7 @@ def bars(results, number, path):
         travel = [float(results[f"{mesh}-{p}{ending}"]["travel"]) for p in PENALTIES]
         shade = COLOURS[mesh][i % len(BARS[number])]
         axes.bar(place, travel, 0.94 * width, color=shade, label=f"mesh ({mesh}), {label}")
-        spread = np.array([reach_between(results, f"{mesh}-{p}{ending}") for p in PENALTIES]).T
+        spread = np.array([travel_range(results, f"{mesh}-{p}{ending}") for p in PENALTIES]).T
         axes.errorbar(place, travel, np.abs(spread - travel), fmt="none", ecolor="0.15", elinewidth=0.8, capsize=1.5)
         for x, reached, top in zip(place, travel, spread[1]):
             axes.annotate("40" if reached > END - 0.05 else f"{reached:.1f}", (x, top), (0, 2), fontsize=6, ha="center",
@@ -74,13 +74,13 @@ def bars(results, number, path):
 
 
 def control_force(work, results, path):
-    """B of the controlling node against travel; the paper's Fig. 7."""
+    """Draw B of the controlling node over travel: the paper's Fig. 7."""
     cases = [f"{mesh}-1e3-c1" for mesh in MESHES]
     if any(case not in results for case in cases):
         return False
     figure, axes = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
     for mesh, case in zip(MESHES, cases):
-        points = list(controlling(read_table(work / case / "status.csv")))
+        points = list(force_limits(read_table(work / case / "status.csv", "force_node"), "draw"))
         colour = COLOURS[mesh][0]
         axes.plot([t for t, *_ in points], [b for *_, b in points], ".", markersize=2.5, color=colour)
         median = sorted(b for *_, b in points)[len(points) // 2]
@@ -97,23 +97,16 @@ def control_force(work, results, path):
 
 
 def nodes_at(folder, travel):
-    """Positions and contact status of the nodes at a travel, and the elements' corners."""
-    with h5py.File(folder / "fields.vtkhdf", "r") as file:
-        grid = file["VTKHDF"]
-        steps = grid["Steps"]
-        values = steps["Values"][: int(steps.attrs["NSteps"])]
-        step = int(np.flatnonzero(np.abs(values - travel) <= np.abs(values - travel).min() + 2e-6)[-1])
-        count = int(grid["NumberOfPoints"][0])
-        first = int(steps["PointOffsets"][step])
-        points = grid["Points"][first:first + count]
-        first = int(steps["PointDataOffsets"]["contact_status"][step])
-        status = grid["PointData"]["contact_status"][first:first + count]
-        elements = grid["Connectivity"][...].reshape(-1, 8)
-    return points, status.astype(int).ravel(), elements, float(values[step])
+    """Return positions and contact status of the nodes at a travel, the elements' corners, and the step's travel."""
+    fields = Fields(folder)
+    step = fields.nearest_step(travel)
+    status, _ = fields.values(step, "contact_status")
+    elements = fields.grid["Connectivity"][...].reshape(-1, 8)
+    return fields.points(step), status.astype(int).ravel(), elements, float(fields.travel[step])
 
 
 def sheets(work, results, path):
-    """Both sides of both sheets at 2.0 mm, seen from above; the paper's Fig. 4."""
+    """Draw both sides of both sheets at 2.0 mm from above: the paper's Fig. 4."""
     cases = [f"{mesh}-1e3" for mesh in MESHES]
     if any(case not in results for case in cases):
         return False
@@ -148,7 +141,7 @@ def sheets(work, results, path):
 
 
 def main():
-    """Draws what can be drawn."""
+    """Draw the figures whose cases were run."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of the study's results")
     parser.add_argument("--output", type=Path, help="folder of the pictures (default: the same)")

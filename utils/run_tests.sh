@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs what is needed, builds and runs all tests but those labelled slow; ends with the line `N passed, N failed`.
+# Installs what is missing, builds and runs all tests except those labelled slow; the last line is `N passed, N failed`.
 #
-#   utils/run_tests.sh          the optimised build, and the build with bounds checks and floating-point traps
-#   utils/run_tests.sh --slow   the long cases too
+#   utils/run_tests.sh          the optimised build, and the debug build (bounds checks, floating-point traps)
+#   utils/run_tests.sh --slow   also the slow cases
 #
-# JOBS=<n> sets the number of tests and compilers at a time (default: the number of cores).
+# JOBS=<n> sets the number of parallel tests and compilers (default: the number of cores).
 set -uo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
@@ -19,7 +19,7 @@ jobs=${JOBS:-$(nproc)}
 passed=0
 failed=0
 
-# Counts what ctest says: "98% tests passed, 1 tests failed out of 50".
+# Counts the results of ctest: "98% tests passed, 1 tests failed out of 50".
 run_tests() {
   local log=build/$1/tests.log run good=0 bad=1
   mkdir -p "build/$1"
@@ -36,7 +36,7 @@ run_tests() {
   failed=$((failed + bad))
 }
 
-# Configures (with the options that follow the preset) and builds; a build that fails counts as a failed test.
+# Configures (with the options after the preset) and builds; a failed build counts as a failed test.
 build() {
   echo "== building: $1"
   mkdir -p "build/$1"

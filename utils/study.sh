@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# The bending study of docs/bending_study.md by one command: installs what is missing, builds, runs every case of
-# input_files/bending_study/cases.csv on the cores there are, gathers bending_study.out/results.csv and draws the
-# figures. Called again it goes on where it was interrupted; what is done is not repeated.
+# The bending study of docs/reports/bending_study.md: installs what is missing, builds, runs every case of
+# input_files/bending_study/cases.csv on all cores, gathers bending_study.out/results.csv and draws the figures. After an
+# interruption the same command continues; finished cases are not repeated.
 #
 #   utils/study.sh                       all cases
 #   utils/study.sh --quick               the four cases of quick.csv, to 5 mm, into bending_study_quick.out
-#   utils/study.sh --sets "fig3 fig6"    some sets of cases
+#   utils/study.sh --sets "fig3 fig6"    selected sets of cases
 #
 #   --cores N       runs at a time (default: the number of cores)
 #   --work DIR      folder of the results
-#   --program FILE  a program that is built already; nothing is built then
+#   --program FILE  an existing program; nothing is built
 #   -- ...          further options of snakemake, such as --dry-run or --profile utils/study_slurm
 set -euo pipefail
 from=$PWD
@@ -63,11 +63,11 @@ else
   set -- --config $settings "sets=$sets" "$@"
 fi
 mkdir -p "$work"
-# The engine's own lock would stay behind when it is killed; this one goes with the process.
+# Unlike snakemake's lock this one is released when the process is killed.
 exec 9>"$work/.lock"
-flock --nonblock 9 || { echo "error: another study.sh works in $work" >&2; exit 1; }
+flock --nonblock 9 || { echo "error: another study.sh is running in $work" >&2; exit 1; }
 found=("$work"/*/run.json)
 [ -e "${found[0]}" ] || found=()
-echo "== ${#found[@]} cases are done in $work; running those that are missing"
+echo "== ${#found[@]} cases are done in $work; running the others"
 exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going --nolock \
   --rerun-incomplete --rerun-triggers mtime params input --quiet all "$@"

@@ -1,6 +1,6 @@
-# The workflow of the bending study: a run for every row of the table of cases, one table of results, its figures.
-# utils/study.sh calls it; docs/bending_study.md says how it runs on a cluster. Exit code 3 of a run, stopped before
-# its end, is a result: `study.py case` notes it and succeeds.
+# Workflow of the bending study: a run for every row of the table of cases, a table of results, and its figures.
+# utils/study.sh calls it; docs/reports/bending_study.md explains how it runs on a cluster. A run that stops before its
+# end (exit code 3) is a result: `study.py case` records it and succeeds.
 import csv
 import sys
 from pathlib import Path
@@ -35,7 +35,7 @@ rule all:
         ["figures.txt"] if FIGURES else [],
 
 
-# One run of the program. Its result hangs on the row of the table, not on the rest of the table.
+# One run of the program. It depends on its row of the table only.
 rule case:
     input:
         deck=TABLE.parent / "study.dat",

@@ -1,16 +1,16 @@
-"""The tables of docs/bending_study.md, from the results of the bending study; `study.py report` writes them."""
+"""Tables of docs/reports/bending_study.md from the results of the bending study; `study.py report` writes them."""
 
-import sys
 from functools import cache
 
 from bending_tables import FIRST, Run, differences, table
 from bending_tables import write as fill
-from study import read_table
+from results import read_table, totals
+from scripts import Problem
 
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
 MESHES = ["a", "b"]
 END = 40.0
-# Endings of the cases' names and what they stand for.
+# Endings of the cases' names and their meaning.
 FORCE = {"": "off", "-c0.1": "0.1, 0.1, 0.1", "-c1": "1, 1, 1", "-c1000": "1000, 1000, 1000",
          "-normal": "1, 1000, 1000", "-tangential": "1000, 1, 1"}
 ALONE = {"-c1-alone": "c = 1, trial 1 mm", "-c1000-alone": "c = 1000, trial 1 mm",
@@ -27,7 +27,7 @@ SCATTER = {("a", "", "30"): "off", ("a", "-c0.1", "30"): "0.1, 0.1, 0.1", ("a", 
            ("a", "-c1-alone", "30"): "1, 1, 1 alone, trial 1 mm", ("b", "-c1-alone", "30"): "1, 1, 1 alone, trial 1 mm",
            ("a", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm",
            ("b", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm"}
-# Endings of the cases that must not differ from the plain one but by round-off.
+# Endings of the cases that differ from the plain one by round-off only.
 PERTURBED = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
 PAPER_COST = {"-c0.1": "+150 %", "-c1": "+7 %", "-c1000": "-2 %", "-normal": "+3 %", "-tangential": "-8 %"}
 SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e-6", "trial0.1": "trial 0.1 mm",
@@ -36,14 +36,14 @@ SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e
 
 
 class Rows(dict):
-    """The rows of the table of results by their cases."""
+    """Rows of the table of results by their cases."""
 
     def __missing__(self, case):
-        sys.exit(f"results.csv: the case {case} is missing; utils/study.sh runs what is not done")
+        raise Problem(f"results.csv: the case {case} is missing; utils/study.sh runs the cases that are not done")
 
 
 class Results:
-    """The table of results, and the runs behind it."""
+    """Table of results, and the runs it was made from."""
 
     def __init__(self, work):
         self.work = work
@@ -54,23 +54,24 @@ class Results:
         return float(self.row[case][column])
 
     def travel(self, case):
-        """Travel reached, one decimal; `-` where the case was not run."""
+        """Return the travel reached with one decimal; `-` if the case was not run."""
         return f"{self.number(case, 'travel'):.1f}" if case in self.row else "-"
 
     def finished(self, ending):
-        """Runs of mesh (b) with this ending that reached the end."""
+        """Return the runs of mesh (b) with this ending that reached the end."""
         cases = [f"b-{p}{ending}" for p in PENALTIES]
         return [case for case in cases if self.number(case, "travel") > END - 1e-6]
 
 
 def percent(value, base):
-    """A change in per cent with its sign."""
+    """Return a change in per cent with its sign."""
     return f"{100 * (value / base - 1):+.0f} %"
 
 
 def travel_table(results, endings, heading, meshes=MESHES):
     """Travel by mesh, variant and penalty."""
-    rows = [[f"({mesh[0]}){' s = 0.5' if mesh == 'b05' else ''}", label] + [results.travel(f"{mesh}-{p}{ending}") for p in PENALTIES]
+    rows = [[f"({mesh[0]}){' s = 0.5' if mesh == 'b05' else ''}", label,
+             *(results.travel(f"{mesh}-{p}{ending}") for p in PENALTIES)]
             for mesh in meshes for ending, label in endings.items() if f"{mesh}-{PENALTIES[0]}{ending}" in results.row]
     return table(["mesh", heading] + [f"p = {p}" for p in PENALTIES], rows)
 
@@ -96,7 +97,7 @@ def variants(results):
 
 
 def scatter(results):
-    """Least and largest travel of the runs that differ by round-off alone, mm."""
+    """Smallest and largest travel of the runs that differ by round-off only, mm."""
     def cell(case):
         names = [case + ending for ending in PERTURBED if case + ending in results.row]
         if len(names) < 2:
@@ -110,57 +111,69 @@ def scatter(results):
 
 
 def costs(results):
-    """Cost of the runs of mesh (b) that reached the end, against those without force control."""
+    """Cost of the runs of mesh (b) that reached the end, relative to those without force control."""
     def mean(ending, column):
         cases = results.finished(ending)
         if not cases:
-            sys.exit(f"results.csv: no run b-*{ending} reached {END:g} mm")
+            raise Problem(f"results.csv: no run b-*{ending} reached {END:g} mm")
         return sum(results.number(case, column) for case in cases) / len(cases)
 
     columns = ["increments", "newton_iterations", "linear_iterations", "seconds"]
     base = {column: mean("", column) for column in columns}
-    rows = [["off", str(len(results.finished("")))] + [f"{base[c]:.{1 if c == 'seconds' else 0}f}" for c in columns] + [""]]
+    rows = [["off", str(len(results.finished(""))),
+             *(f"{base[c]:.{1 if c == 'seconds' else 0}f}" for c in columns), ""]]
     for ending, paper in PAPER_COST.items():
-        rows.append([FORCE[ending], str(len(results.finished(ending)))] + [percent(mean(ending, c), base[c]) for c in columns] + [paper])
-    return table(["c, d, e", "runs", "increments", "Newton iterations", "linear iterations", "processor time, s", "paper, CPU"], rows)
+        rows.append([FORCE[ending], str(len(results.finished(ending))),
+                     *(percent(mean(ending, c), base[c]) for c in columns), paper])
+    return table(["c, d, e", "runs", "increments", "Newton iterations", "linear iterations", "processor time, s",
+                  "paper, CPU"], rows)
+
+
+def cost_up_to(results, case, end):
+    """Return increments, Newton iterations and processor time of a case up to a travel."""
+    status = results.run(case).status
+    before = [row for row in status if row["outcome"] == "accepted" and float(row["travel"]) <= end + 1e-6]
+    part, whole = (sum(float(row["seconds"]) for row in rows) for rows in (before, status))
+    total = totals(before)
+    return total.increments, total.iterations, part / whole * results.number(case, "seconds")
 
 
 def equal_travel(results):
-    """What both meshes cost up to the travel where mesh (a) stops."""
+    """Cost of both meshes up to the travel where mesh (a) stops."""
     rows = []
     for p in PENALTIES:
         end = results.number(f"a-{p}", "travel")
-        cells = []
-        for mesh in MESHES:
-            status = [r for r in results.run(f"{mesh}-{p}").status if r["outcome"] == "accepted" and float(r["travel"]) <= end + 1e-6]
-            share = sum(float(r["seconds"]) for r in status) / sum(float(r["seconds"]) for r in results.run(f"{mesh}-{p}").status)
-            cells.append((len(status), sum(int(r["iterations"]) for r in status), share * results.number(f"{mesh}-{p}", "seconds")))
+        cells = [cost_up_to(results, f"{mesh}-{p}", end) for mesh in MESHES]
         rows.append([p, f"{end:.1f}"] + [f"{a} / {b}" for a, b in list(zip(*cells))[:2]]
                     + [f"{cells[0][2]:.2f} / {cells[1][2]:.2f}", f"{cells[0][2] / cells[1][2]:.2f}"])
-    return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)", "ratio"], rows)
+    return table(["p", "up to, mm", "increments (a) / (b)", "Newton iterations (a) / (b)", "seconds (a) / (b)",
+                  "ratio"], rows)
 
 
 def control(results):
-    """The node that controls the limit on the contact forces, c = d = e = 1."""
+    """Node that controls the limit on the contact forces, c = d = e = 1."""
     rows = []
     for ending, floor in (("-c1", "0.1"), ("-c1-floor0", "0")):
         for p in PENALTIES:
             pair = [results.row[f"{mesh}-{p}{ending}"] for mesh in MESHES]
-            rows.append([floor, p] + [f"{float(r['B_median']):.3g}" for r in pair] + [f"{float(r['flange']):.1f} %" for r in pair]
-                        + [f"{float(r['share_force']) + float(r['share_r_min']):.0f} %" for r in pair])
-    return table(["floor", "p", "median B (a), N", "(b), N", "node in the flange (a)", "(b)", "increments it sets (a)", "(b)"], rows)
+            rows.append([floor, p, *(f"{float(r['B_median']):.3g}" for r in pair),
+                         *(f"{float(r['flange']):.1f} %" for r in pair),
+                         *(f"{float(r['percent_force']) + float(r['percent_r_min']):.0f} %" for r in pair)])
+    return table(["floor", "p", "median B (a), N", "(b), N", "node in the flange (a)", "(b)", "increments it sets (a)",
+                  "(b)"], rows)
 
 
 def limiters(results):
-    """What set the increments of the stroke, p = 1e3."""
+    """Limiters of the increments of the stroke, p = 1e3."""
     names = ["rotation", "strain", "stress", "force", "r_max", "r_min"]
-    rows = [[f"({mesh})", label] + [f"{results.number(f'{mesh}-1e3{ending}', 'share_' + name):.1f} %" for name in names]
+    rows = [[f"({mesh})", label,
+             *(f"{results.number(f'{mesh}-1e3{ending}', 'percent_' + name):.1f} %" for name in names)]
             for mesh in MESHES for ending, label in FORCE.items()]
     return table(["mesh", "c, d, e"] + [f"`{name}`" for name in names], rows)
 
 
 def sensitivity(results):
-    """What the numerical choices change, p = 1e3, free edges."""
+    """Effect of the numerical choices, p = 1e3, free edges."""
     rows = []
     for mesh in MESHES:
         base = f"{mesh}-1e3"
@@ -174,13 +187,13 @@ def sensitivity(results):
 
 
 def compared(results, case, base):
-    """Differences of the punch force at equal travel, sorted; none where a run ends before the first place."""
+    """Return the sorted differences of the punch force at equal travel; none if a run ends before the first place."""
     pair = results.run(case), results.run(base)
     return sorted(differences(*pair)) if min(run.travel[-1] for run in pair) >= FIRST else []
 
 
 def difference(results, case, base):
-    """Largest and median difference of the punch force at equal travel, as cells."""
+    """Return the largest and the median difference of the punch force at equal travel, as cells."""
     values = compared(results, case, base)
     if not values:
         return ["", ""]
@@ -188,7 +201,7 @@ def difference(results, case, base):
 
 
 def agreement(results):
-    """How far the punch force depends on p and on the limits: against p = 1e4 without force control."""
+    """Dependence of the punch force on p and on the limits: against p = 1e4 without force control."""
     rows = []
     for mesh in MESHES:
         base = f"{mesh}-1e4"
@@ -202,7 +215,7 @@ def agreement(results):
 
 
 def stops(results):
-    """Why the runs without force control stopped."""
+    """Reasons why the runs without force control stopped."""
     rows = []
     for ending, label in (("", "30"), ("-max8", "8")):
         for mesh in MESHES:
@@ -210,8 +223,8 @@ def stops(results):
                 row = results.row[f"{mesh}-{p}{ending}"]
                 if row["code"] != "0":
                     last = results.run(row["case"]).status[-1]
-                    rows.append([label, f"({mesh})", p, f"{float(row['travel']):.2f}", last["gap"] + ", " + last["stick"] + ", " + last["slip"],
-                                 row["reason"]])
+                    rows.append([label, f"({mesh})", p, f"{float(row['travel']):.2f}",
+                                 ", ".join(last[key] for key in ("gap", "stick", "slip")), row["reason"]])
     return table(["iterations at most", "mesh", "p", "reached, mm", "gap, stick, slip", "reason"], rows)
 
 
@@ -220,11 +233,11 @@ TABLES = [travels, scatter, alone, eight, variants, costs, equal_travel, control
 
 
 def write(work, document):
-    """Puts the tables into the document, and the number of runs and their time."""
+    """Write the tables into the document, and the number of runs and their time."""
     results = Results(work)
     tables = {make.__name__: make(results) for make in TABLES}
     seconds = sum(float(row["seconds"]) for row in results.row.values())
     programs = sorted({row["program"] for row in results.row.values()})
-    tables["size"] = f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program {', '.join(programs)} "\
-                     "(the first digits of its SHA-256)."
+    tables["size"] = (f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program "
+                      f"{', '.join(programs)} (the first digits of its SHA-256).")
     fill(document, tables)

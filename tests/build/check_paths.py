@@ -1,4 +1,4 @@
-"""Checks that every file named in the README and in CONTRIBUTING exists, and that its commands can be run."""
+"""Check that the files named in README and CONTRIBUTING exist and that scripts are executable."""
 import pathlib
 import re
 import sys
@@ -8,7 +8,7 @@ PATH = re.compile(r"(?<![\w./-])\.?/?((?:utils|docs|tests|src|input_files|cmake|
 
 
 def main():
-    """Exit code 1 and a list where something is missing."""
+    """Print the errors; exit code 1 if there are any."""
     wrong = []
     for name in ("README.md", "CONTRIBUTING.md"):
         document = ROOT / name
@@ -22,7 +22,7 @@ def main():
             if not target.exists():
                 wrong.append(f"{name}: {path} does not exist")
             elif target.suffix == ".sh" and not target.stat().st_mode & 0o100:
-                wrong.append(f"{name}: {path} cannot be run")
+                wrong.append(f"{name}: {path} is not executable")
     if wrong:
         sys.exit("\n".join(wrong))
 

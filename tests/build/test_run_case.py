@@ -1,4 +1,4 @@
-"""Tests of tests/run_case.py, with a program that only pretends to compute."""
+"""Tests of tests/run_case.py with a stand-in for the program."""
 import json
 import pathlib
 import subprocess
@@ -24,7 +24,7 @@ REFERENCE = "# from a hand calculation\nphase,travel,force\nclamp,0,10\ndraw,1.5
 
 
 class RunCase(unittest.TestCase):
-    """One case folder per test."""
+    """Tests with a case folder each."""
 
     def setUp(self):
         self.scratch = tempfile.TemporaryDirectory()
@@ -38,7 +38,7 @@ class RunCase(unittest.TestCase):
         self.scratch.cleanup()
 
     def run_case(self, reference=REFERENCE, **case):
-        """Exit code and output of the runner."""
+        """Return exit code and output of the runner."""
         (self.folder / "case.json").write_text(json.dumps(case))
         if reference:
             (self.folder / "reference.csv").write_text(reference)
@@ -48,7 +48,7 @@ class RunCase(unittest.TestCase):
         return done.returncode, done.stdout + done.stderr
 
     def refuse(self, text, **case):
-        """The case must fail, and say why."""
+        """Check that the case fails with a message."""
         code, output = self.run_case(**case)
         self.assertNotEqual(code, 0, output)
         self.assertIn(text, output)
@@ -77,7 +77,7 @@ class RunCase(unittest.TestCase):
         self.refuse("unknown: referenz", tolerance={"*": {"absolute": 1}}, variants=[{"referenz": "double.csv"}])
 
     def test_exit_code(self):
-        self.refuse("exit code 3 in place of 0", tolerance={"*": {}}, arguments=["--stop"])
+        self.refuse("exit code 3, expected 0", tolerance={"*": {}}, arguments=["--stop"])
         code, output = self.run_case(tolerance={"*": {}}, arguments=["--stop"], exit_code=3)
         self.assertEqual(code, 0, output)
 
@@ -98,7 +98,7 @@ class RunCase(unittest.TestCase):
         self.refuse("iterations = 3", reference=None, status={"iterations": [0, 2]})
 
     def test_text_file_and_key(self):
-        self.refuse("does not hold: converged", contains=["converged"])
+        self.refuse("does not contain: converged", contains=["converged"])
         self.refuse("fields.vtkhdf was not written", files=["fields.vtkhdf"])
         self.refuse("unknown: tolerances", tolerances={})
 

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Checks README.md, CONTRIBUTING.md and docs/.
+"""Check README.md, CONTRIBUTING.md and docs/.
 
     check_documents.py --program build/release/dd3imp
 
-- docs/keywords.md is what `dd3imp --help markdown` prints; to renew it: `dd3imp --help markdown >docs/keywords.md`.
+- docs/keywords.md is the output of `dd3imp --help markdown`; to update it: `dd3imp --help markdown >docs/keywords.md`.
 - Links and pictures lead to files and headings that exist.
-- Scripts, input files and presets named in the documents exist, and every `--option` of the program and the scripts
-  that is used there is one that they have.
-- Blocks of code that are whole input files pass `dd3imp --check`; those of single points run to their end.
-- Each law has a page docs/laws/<law>.md with its picture, linked from the page that gathers its kind, whose table holds
-  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults; and an input file
-  input_files/laws/<law>.dat that runs to its end.
+- Scripts, input files and presets named in the documents exist, and the program and the scripts have every `--option`
+  that is used there.
+- Code blocks that are complete input files pass `dd3imp --check`; those of single points run to their end.
+- Each law has a page docs/laws/<law>.md with its picture, linked from the page of its kind. The table of the page has
+  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
+  input_files/laws/<law>.dat runs to its end.
 """
 import argparse
 import json
@@ -32,20 +32,20 @@ SCRIPT = re.compile(r"(?:utils|tests)/[\w/]+\.(?:py|sh)")
 
 
 def run(*command):
-    """Output and exit code of a command."""
+    """Return output and exit code of a command."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     return done.stdout + done.stderr, done.returncode
 
 
 def anchors(path):
-    """The anchors of a document's headings."""
+    """Return the anchors of a document's headings."""
     text = FENCE.sub("", path.read_text(encoding="utf-8"))
     headings = re.findall(r"^#+ +(.*)$", text, re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def broken_links(path, text):
-    """Links of a document that lead nowhere."""
+    """Yield the broken links of a document."""
     for target in LINK.findall(FENCE.sub("", text)):
         if target.startswith(("http:", "https:")):
             continue
@@ -58,13 +58,14 @@ def broken_links(path, text):
 
 
 def commands(text):
-    """Lines of the document that are commands: indented by four columns or more."""
+    """Return the commands of a document: lines indented by four columns or more."""
     joined = FENCE.sub("", text).replace("\\\n", " ")
-    return [line.strip() for line in joined.splitlines() if line.startswith("    ") and not line.strip().startswith("|")]
+    indented = [line.strip() for line in joined.splitlines() if line.startswith("    ")]
+    return [line for line in indented if not line.startswith("|")]
 
 
 def broken_commands(program, text):
-    """Commands of a document that cannot work."""
+    """Yield the commands of a document with unknown files, presets or options."""
     presets = json.loads((ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
     names = {preset["name"] for kind in presets if kind.endswith("Presets") for preset in presets[kind]}
     for line in commands(text):
@@ -93,7 +94,7 @@ def broken_commands(program, text):
 
 
 def broken_examples(program, text):
-    """Whole input files in a document that the program refuses, or of single points that do not end well."""
+    """Yield the complete input files in a document that the program refuses or, with single points, that fail."""
     for example in FENCE.findall(text):
         if "*BLANK" not in example and "*POINT" not in example:
             continue
@@ -104,11 +105,11 @@ def broken_examples(program, text):
                 (pathlib.Path(folder) / surface.name).write_bytes(surface.read_bytes())
             said, code = run(program, *(["--check"] if "*BLANK" in example else ["--quiet"]), str(deck))
             if code:
-                yield f"an example is refused, or does not end well:\n{said}"
+                yield f"an example is refused or fails:\n{said}"
 
 
 def laws_of(reference):
-    """The laws of the keyword reference: kind and name."""
+    """Return the laws of the keyword reference: kind and name."""
     kind, laws = "", []
     for heading, name in LAW.findall(reference.partition("\n# Laws")[2]):
         kind = heading or kind
@@ -118,7 +119,7 @@ def laws_of(reference):
 
 
 def parameters_of(said):
-    """What --help says of a law's parameters: unit, bounds and default by name."""
+    """Return unit, bounds and default of a law's parameters by name, from the output of --help."""
     found = {}
     for name, value, states in PARAMETER.findall(said):
         parts = value.split(", ")[1:]
@@ -130,10 +131,10 @@ def parameters_of(said):
 
 
 def broken_page(program, kind, law):
-    """What is wrong with the page of a law."""
+    """Yield the errors of the page of a law."""
     page = ROOT / "docs" / "laws" / f"{law}.md"
     if not page.exists():
-        yield "there is no such page"
+        yield "the page does not exist"
         return
     text = page.read_text(encoding="utf-8")
     table = {}
@@ -150,16 +151,16 @@ def broken_page(program, kind, law):
     elif picture.exists() and picture.stat().st_size > 60000:
         yield f"its picture has {picture.stat().st_size} bytes, more than 60000"
     if f"](laws/{law}.md)" not in (ROOT / "docs" / GATHERED[kind]).read_text(encoding="utf-8"):
-        yield f"docs/{GATHERED[kind]} does not lead to it"
+        yield f"docs/{GATHERED[kind]} has no link to it"
     deck = ROOT / "input_files" / "laws" / f"{law}.dat"
     with tempfile.TemporaryDirectory() as folder:
         said, code = run(program, "--quiet", "--output", str(pathlib.Path(folder) / "out"), str(deck))
     if code:
-        yield f"{deck.relative_to(ROOT)} does not end well:\n{said}"
+        yield f"{deck.relative_to(ROOT)} fails:\n{said}"
 
 
 def broken_laws(program, reference):
-    """What is wrong with the pages of the laws."""
+    """Yield the errors of the pages of the laws."""
     laws = laws_of(reference)
     for kind, law in laws:
         yield from (f"docs/laws/{law}.md: {problem}" for problem in broken_page(program, kind, law))
@@ -169,14 +170,15 @@ def broken_laws(program, reference):
 
 
 def main():
-    """Exit code 1 and a list of what is wrong."""
+    """Print the errors; exit code 1 if there are any."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True)
     program = parser.parse_args().program
     wrong = []
     printed, _ = run(program, "--help", "markdown")
     if printed != (ROOT / "docs" / "keywords.md").read_text(encoding="utf-8"):
-        wrong.append("docs/keywords.md is not what the program prints; renew it: dd3imp --help markdown >docs/keywords.md")
+        wrong.append("docs/keywords.md differs from the output of the program; update it: "
+                     "dd3imp --help markdown >docs/keywords.md")
     for path in DOCUMENTS:
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:

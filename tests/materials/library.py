@@ -10,17 +10,18 @@
 - r-values in tension and compression are positive every 15 degrees, as those of any sheet.
 """
 import argparse
-import csv
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "input_files" / "materials"
-ALONG, THROUGH = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
-KINDS = {"tension": (ALONG, 1), "compression": (ALONG, -1), "biaxial": (THROUGH, -1), "thickness": (THROUGH, 1),
-         "thickness_compression": (THROUGH, -1)}
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "utils"))
+from results import run_points  # noqa: E402
+
+FOLDER = ROOT / "input_files" / "materials"
+UNIAXIAL, THICKNESS = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
+KINDS = {"tension": (UNIAXIAL, 1), "compression": (UNIAXIAL, -1), "biaxial": (THICKNESS, -1),
+         "thickness": (THICKNESS, 1), "thickness_compression": (THICKNESS, -1)}
 SHEET = [(kind, str(angle), "-", "-") for kind in ("tension", "compression") for angle in range(0, 91, 15)]
 CHECK = re.compile(rf"^#\s+({'|'.join(KINDS)})\s+(?:(\d+)\s+)?([-\d.]+)\s+([-\d.]+)\s*$", re.MULTILINE)
 
@@ -33,7 +34,7 @@ def deck(path, checks):
         lines += [f"*POINT p{i}", f"  material = {path.stem}", f"  angle = {angle or 0}", f"  control = {control}"]
         for strain in (1e-6, 0.05, 0.1):
             values = [0.0] * 6
-            values[0 if control == ALONG else 2] = sign * strain
+            values[0 if control == UNIAXIAL else 2] = sign * strain
             lines.append(f"  target = {' '.join(f'{value:g}' for value in values)} steps=1")
     return "\n".join(lines) + "\n"
 
@@ -41,27 +42,11 @@ def deck(path, checks):
 def measure(kind, rows):
     """Return stress over flow stress and r-value of a path."""
     _, elastic, first, last = rows
-    leading = "s11" if KINDS[kind][0] == ALONG else "s33"
+    leading = "s11" if KINDS[kind][0] == UNIAXIAL else "s33"
     pair = ("e22", "e33") if leading == "s11" else ("e22", "e11")
-    across, through = (last[key] - first[key] - elastic[key] / elastic[leading] * (last[leading] - first[leading])
+    width, thickness = (last[key] - first[key] - elastic[key] / elastic[leading] * (last[leading] - first[leading])
                        for key in pair)
-    return abs(last[leading]) / last["flow_stress"], across / through
-
-
-def run(program, text, *options):
-    """Return exit code, messages and rows by point."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "points.dat"
-        file.write_text(text, encoding="utf-8")
-        out = pathlib.Path(folder) / "out"
-        done = subprocess.run([program, *options, "--quiet", "--output", str(out), str(file)], capture_output=True,
-                              text=True, timeout=60, check=False)
-        points = {}
-        if (out / "history.csv").exists():
-            with open(out / "history.csv", newline="", encoding="utf-8") as stream:
-                for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-                    points.setdefault(row.pop("point"), []).append({key: float(value) for key, value in row.items()})
-    return done.returncode, done.stderr, points
+    return abs(last[leading]) / last["flow_stress"], width / thickness
 
 
 def off(wanted, value):
@@ -74,16 +59,17 @@ def off(wanted, value):
 def check(program, path):
     """Return the errors of a file."""
     text = path.read_text(encoding="utf-8")
-    wrong = [f"no line '# {word}: ...'" for word in ("Reference", "Measured", "Certainty") if f"\n# {word}: " not in text]
+    wrong = [f"no line '# {word}: ...'" for word in ("Reference", "Measured", "Certainty")
+             if f"\n# {word}: " not in text]
     if re.findall(r"^\*MATERIAL (\S+)", text, re.MULTILINE) != [path.stem] or text.count("\n*") != 1:
         return wrong + [f"its only block must be *MATERIAL {path.stem}"]
     checks = CHECK.findall(text)
     if len(checks) < 4:
         wrong.append("fewer than four check values")
     for options in (("--check",), ()):
-        code, said, points = run(program, deck(path, checks + SHEET), *options)
-        if code != 0:
-            return wrong + [f"exit code {code}: {said}"]
+        done, points = run_points(program, deck(path, checks + SHEET), *options, timeout=60)
+        if done.code != 0:
+            return wrong + [f"exit code {done.code}: {done.errors}"]
     for i, (kind, angle, *wanted) in enumerate(checks + SHEET):
         found = measure(kind, points[f"p{i}"])
         if angle and not found[1] > 0:

@@ -6,12 +6,12 @@
 Both materials undergo the same random strain paths, in all six components, with a change of direction.
 """
 import argparse
-import csv
 import pathlib
 import random
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "utils"))
+from results import run_points  # noqa: E402
 
 PATHS = 12
 UNIT = "perfect Y0=100"
@@ -107,19 +107,14 @@ def deck(number, laws):
 
 def stresses(program, text):
     """Return the stresses of both materials of a pair, and messages if the program fails."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "pair.dat"
-        file.write_text(text, encoding="utf-8")
-        out = pathlib.Path(folder) / "out"
-        done = subprocess.run([program, "--quiet", "--output", str(out), str(file)], capture_output=True, text=True,
-                              timeout=60, check=False)
-        if done.returncode != 0:
-            return None, done.stderr
-        found = ([], [])
-        with open(out / "history.csv", newline="", encoding="utf-8") as stream:
-            for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-                found[int(row["point"][1])].extend(float(row[key]) for key in ("s11", "s22", "s12", "s23", "s13"))
-        return found, ""
+    done, points = run_points(program, text, timeout=60)
+    if done.code != 0:
+        return None, done.errors
+    found = ([], [])
+    for name, rows in points.items():
+        for row in rows:
+            found[int(name[1])].extend(row[key] for key in ("s11", "s22", "s12", "s23", "s13"))
+    return found, ""
 
 
 def main():

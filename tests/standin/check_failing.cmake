@@ -1,16 +1,16 @@
 # cmake -DPROGRAM=<executable> -DEXIT_CODE=<n> [-DEXPECTED=<file>] -P check_failing.cmake
 #
-# Runs a suite that must fail: with this exit code, never passing a failed assert, and printing something that matches each
-# line (a regular expression) of the file.
+# Run a suite that must fail: with this exit code, stopping at a failed assert, and with output that matches each line (a
+# regular expression) of the file.
 execute_process(COMMAND "${PROGRAM}" --verbose RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
 if(NOT result STREQUAL EXIT_CODE)
-  message(FATAL_ERROR "exit code ${result} in place of ${EXIT_CODE}\n${output}${errors}")
+  message(FATAL_ERROR "exit code ${result}, expected ${EXIT_CODE}\n${output}${errors}")
 endif()
 if(output MATCHES "NOT REACHED")
-  message(FATAL_ERROR "something ran that must not\n${output}")
+  message(FATAL_ERROR "code after a failed assert was executed\n${output}")
 endif()
 if(EXPECTED)
-  # Square brackets and semicolons would be taken for lists when the lines are gone through.
+  # CMake would take square brackets and semicolons in the lines as list syntax.
   file(READ "${EXPECTED}" lines)
   string(REPLACE "[" "<open>" lines "${lines}")
   string(REPLACE "]" "<close>" lines "${lines}")

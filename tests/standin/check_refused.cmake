@@ -1,10 +1,10 @@
 # cmake -DPREPROCESSOR=<command> -DCOMPILER=<gfortran> -DMODULES=<folders> -DSOURCE=<x.pf> -DWORK=<folder> [-DGENUINE=ON]
 #       -P check_refused.cmake
 #
-# Preprocesses and compiles a test file that must be refused. Its first line says by whom and why:
+# Preprocess and compile a test file that must be refused. Its first line says by whom and why:
 #   ! refused by both: <message>                  pFUnit refuses it too
-#   ! refused by the stand-in alone: <message>    pFUnit would take it, with a meaning that is easily misread
-# The message `compiler` stands for a file that passes the preprocessor and does not compile.
+#   ! refused by the stand-in alone: <message>    pFUnit accepts it, with a meaning that is easily misread
+# The message `compiler` means that the file passes the preprocessor and does not compile.
 file(STRINGS "${SOURCE}" first LIMIT_COUNT 1)
 if(NOT first MATCHES "^! refused by (both|the stand-in alone): (.*)$")
   message(FATAL_ERROR "the first line does not say by whom the file is refused")
@@ -32,14 +32,14 @@ if(result EQUAL 0)
     message(FATAL_ERROR "only the compiler refused it\n${errors}")
   endif()
   if(errors MATCHES "module file .funit[.]mod")
-    message(FATAL_ERROR "it was not tried\n${errors}")
+    message(FATAL_ERROR "the file was not compiled\n${errors}")
   endif()
 elseif(NOT GENUINE)
   string(FIND "${errors}" "${expected}" place)
   if(place EQUAL -1 OR NOT errors MATCHES "${name}.pf:[0-9]+: error: ")
-    message(FATAL_ERROR "the message is not that expected\n${errors}")
+    message(FATAL_ERROR "unexpected message\n${errors}")
   endif()
   if(EXISTS "${WORK}/${name}.F90")
-    message(FATAL_ERROR "a half-written result was left behind")
+    message(FATAL_ERROR "an incomplete result was not removed")
   endif()
 endif()

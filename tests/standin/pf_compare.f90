@@ -9,31 +9,28 @@ module pf_compare
   public :: compare_equal, compare_notequal, compare_lessthan, compare_lessthanorequal
   public :: compare_greaterthan, compare_greaterthanorequal, compare_relativelyequal
 
-  !> What is asked of the two sides.
+  !> Relations between the expected and the actual side.
   integer, parameter :: compare_equal = 1, compare_notequal = 2, compare_lessthan = 3, &
     compare_lessthanorequal = 4, compare_greaterthan = 5, compare_greaterthanorequal = 6, &
     compare_relativelyequal = 7
-  !> The same in words.
+  !> Their names in messages.
   character(len=24), parameter :: operation_name(7) = [character(len=24) :: "assertEqual", &
     "assertNotEqual", "assertLessThan", "assertLessThanOrEqual", "assertGreaterThan", &
     "assertGreaterThanOrEqual", "assertRelativelyEqual"]
 
 contains
 
-  !> Compares real numbers, element by element.
+  !> Compare real numbers element by element.
   subroutine compare_reals(operation, expected, expected_shape, actual, actual_shape, tolerance, &
                            message, location)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The two sides; the expected one may be a single number.
+    !> The expected one may be a single number.
     real(dp), intent(in) :: expected(:), actual(:)
-    !> Their shapes before they were flattened; empty for a scalar.
+    !> Shapes before flattening; empty for a scalar.
     integer, intent(in) :: expected_shape(:), actual_shape(:)
-    !> What the difference may be.
+    !> Largest difference allowed.
     real(dp), intent(in) :: tolerance
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     character(len=100) :: left, right, difference
@@ -54,11 +51,10 @@ contains
     end do
   end subroutine compare_reals
 
-  !> Whether a pair of real numbers is as it should be; a NaN on either side never is.
+  !> Check the relation of a pair of real numbers; it never holds for a NaN.
   logical function reals_hold(operation, expected, actual, tolerance)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The pair, and what its difference may be.
+    !> The pair, and the largest difference allowed.
     real(dp), intent(in) :: expected, actual, tolerance
 
     reals_hold = .false.
@@ -81,9 +77,9 @@ contains
     end select
   end function reals_hold
 
-  !> Whether two finite numbers differ by no more than the tolerance.
+  !> Check that two finite numbers differ by no more than the tolerance.
   logical function near(expected, actual, tolerance)
-    !> The numbers, and what their difference may be.
+    !> The numbers, and the largest difference allowed.
     real(dp), intent(in) :: expected, actual, tolerance
 
     near = .false.
@@ -92,18 +88,15 @@ contains
     end if
   end function near
 
-  !> Compares whole numbers, element by element.
+  !> Compare integers element by element.
   subroutine compare_integers(operation, expected, expected_shape, actual, actual_shape, message, &
                               location)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The two sides; the expected one may be a single number.
+    !> The expected one may be a single number.
     integer(i8), intent(in) :: expected(:), actual(:)
-    !> Their shapes before they were flattened; empty for a scalar.
+    !> Shapes before flattening; empty for a scalar.
     integer, intent(in) :: expected_shape(:), actual_shape(:)
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     character(len=24) :: left, right, difference
@@ -121,11 +114,9 @@ contains
     end do
   end subroutine compare_integers
 
-  !> Whether a pair of whole numbers is as it should be.
+  !> Check the relation of a pair of integers.
   logical function integers_hold(operation, expected, actual)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The pair.
     integer(i8), intent(in) :: expected, actual
 
     integers_hold = .false.
@@ -145,18 +136,16 @@ contains
     end select
   end function integers_hold
 
-  !> Compares logicals, element by element: equal or not equal.
+  !> Compare logicals element by element: equal or not equal.
   subroutine compare_logicals(operation, expected, expected_shape, actual, actual_shape, message, &
                               location)
     !> `compare_equal` or `compare_notequal`.
     integer, intent(in) :: operation
-    !> The two sides; the expected one may be a single logical.
+    !> The expected one may be a single logical.
     logical, intent(in) :: expected(:), actual(:)
-    !> Their shapes before they were flattened; empty for a scalar.
+    !> Shapes before flattening; empty for a scalar.
     integer, intent(in) :: expected_shape(:), actual_shape(:)
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     character(len=1) :: left, right
@@ -173,13 +162,10 @@ contains
     end do
   end subroutine compare_logicals
 
-  !> Compares two texts; blanks at both ends do not count.
+  !> Compare two texts, without blanks at both ends.
   subroutine compare_texts(expected, actual, message, location)
-    !> The two sides.
     character(len=*), intent(in) :: expected, actual
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     integer :: no_shape(0)
@@ -189,15 +175,11 @@ contains
                  no_shape, message, location)
   end subroutine compare_texts
 
-  !> Whether the shapes fit; notes a failure where they do not.
+  !> Check that the shapes conform; record a failure if they do not.
   logical function conformable(operation, expected_shape, actual_shape, message, location)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The two shapes; empty for a scalar.
     integer, intent(in) :: expected_shape(:), actual_shape(:)
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     conformable = size(expected_shape) == 0
@@ -208,19 +190,16 @@ contains
       //new_line("a")//"actual shape:   "//shape_text(actual_shape)), location)
   end function conformable
 
-  !> Notes a failure with both values and the place in the array.
+  !> Record a failure with both values and the position in the array.
   subroutine fail_at(operation, left, right, difference, place, actual_shape, message, location)
-    !> One of the `compare_*` values.
     integer, intent(in) :: operation
-    !> The values as text, and their difference, empty where it means nothing.
+    !> The values as texts, and their difference, empty if it is not defined.
     character(len=*), intent(in) :: left, right, difference
-    !> Which of the flattened elements.
+    !> Index of the flattened element.
     integer, intent(in) :: place
     !> Shape of the actual side.
     integer, intent(in) :: actual_shape(:)
-    !> Message of the test's writer.
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     character(len=:), allocatable :: text
@@ -240,9 +219,8 @@ contains
     call fail(with_message(message, text), location)
   end subroutine fail_at
 
-  !> Whole numbers as `[1, 2, 3]`.
+  !> Return integers as `[1, 2, 3]`.
   function shape_text(numbers) result(text)
-    !> The numbers.
     integer, intent(in) :: numbers(:)
     character(len=:), allocatable :: text
     character(len=12) :: one

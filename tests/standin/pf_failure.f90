@@ -1,37 +1,33 @@
-!> The failures of the test that is running.
+!> Failures of the running test.
 !>
-!> The asserts of a test file name no object to write to, so these must be kept by the module.
+!> They are module variables because the asserts of a test file have no argument for them.
 module pf_failure
   implicit none
   private
   public :: SourceLocation, failure_t, fail, anyExceptions, take_failures, with_message
 
-  !> Where an assert stands.
+  !> Position of an assert.
   type :: SourceLocation
-    !> Name of the test file.
     character(len=72) :: file = ""
     !> Line number, from 1.
     integer :: line = 0
   end type SourceLocation
 
-  !> One assert that did not hold.
+  !> An assert that failed.
   type :: failure_t
-    !> What happened, may hold several lines.
+    !> May contain several lines.
     character(len=:), allocatable :: message
-    !> Where the assert stands.
     type(SourceLocation) :: location
   end type failure_t
 
-  !> The failures since they were last taken.
+  !> Failures since the last call of `take_failures`.
   type(failure_t), allocatable :: failures(:)
 
 contains
 
-  !> Notes a failure.
+  !> Record a failure.
   subroutine fail(text, location)
-    !> What happened.
     character(len=*), intent(in) :: text
-    !> Where the assert stands.
     type(SourceLocation), intent(in) :: location
 
     type(failure_t), allocatable :: longer(:)
@@ -46,14 +42,14 @@ contains
     call move_alloc(longer, failures)
   end subroutine fail
 
-  !> Whether an assert of the running test failed.
+  !> Check whether an assert of the running test failed.
   logical function anyExceptions()
     anyExceptions = allocated(failures)
   end function anyExceptions
 
-  !> Hands the failures over and forgets them.
+  !> Return the failures and clear them.
   subroutine take_failures(taken)
-    !> The failures; empty where there is none.
+    !> Empty if there are none.
     type(failure_t), allocatable, intent(out) :: taken(:)
 
     if (allocated(failures)) then
@@ -63,11 +59,9 @@ contains
     end if
   end subroutine take_failures
 
-  !> The message of the test's writer on a line of its own, then the text.
+  !> Return the message of the test on its own line, then the text.
   function with_message(message, text) result(both)
-    !> The message, if any.
     character(len=*), intent(in), optional :: message
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: both
 

@@ -1,7 +1,7 @@
-!> Turns a test file `x.pf` into `x.F90`: `pf_preprocess x.pf x.F90`.
+!> Convert a test file `x.pf` to `x.F90`: `pf_preprocess x.pf x.F90`.
 !>
 !> Part of the stand-in for pFUnit. It reads line by line, as pFUnit's own preprocessor does, and
-!> refuses with file and line what pFUnit would refuse, or pass on to fail in some later place.
+!> refuses with file and line what pFUnit would refuse, or accept and fail on later.
 program pf_preprocess
   use, intrinsic :: iso_fortran_env, only : error_unit
   implicit none
@@ -12,12 +12,12 @@ program pf_preprocess
   character(len=18), parameter :: assert_name(16) = [character(len=18) :: "true", "false", "fail", &
     "isfinite", "isnan", "all", "any", "none", "sameshape", "equal", "notequal", "lessthan", &
     "lessthanorequal", "greaterthan", "greaterthanorequal", "relativelyequal"]
-  !> How many arguments stand before the keywords.
+  !> Number of arguments before the keywords.
   integer, parameter :: assert_arguments(16) = [1, 1, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2]
-  !> From here on the generated call is `assertEquality(compare_<name>, ...)` or `assertOrder(...)`.
+  !> From this index on the generated call is `assertEquality(compare_<name>, ...)` or `assertOrder(...)`.
   integer, parameter :: first_comparison = 10
 
-  !> What the next line that is no comment has to be.
+  !> What the next line that is not a comment must be.
   integer, parameter :: await_nothing = 0, await_test = 1, await_before = 2, await_after = 3
 
   character(len=512) :: source, target, line
@@ -59,9 +59,9 @@ program pf_preprocess
 
 contains
 
-  !> Checks one line and writes what it becomes.
+  !> Check one line and write its replacement.
   subroutine one_line(line)
-    !> The line as read.
+    !> As read.
     character(len=*), intent(in) :: line
 
     character(len=len(line)) :: word
@@ -83,9 +83,9 @@ contains
     end if
   end subroutine one_line
 
-  !> Takes up `@test`, `@before` and `@after`.
+  !> Read `@test`, `@before` and `@after`.
   subroutine directive_line(word)
-    !> The line in small letters, without leading blanks.
+    !> In small letters, without leading blanks.
     character(len=*), intent(in) :: word
 
     select case (word)
@@ -102,9 +102,9 @@ contains
     end select
   end subroutine directive_line
 
-  !> Takes the name of the subroutine after a directive.
+  !> Read the name of the subroutine after a directive.
   subroutine subroutine_line(text)
-    !> The line, without leading blanks.
+    !> Without leading blanks.
     character(len=*), intent(in) :: text
 
     character(len=64) :: name
@@ -129,9 +129,8 @@ contains
     awaited = await_nothing
   end subroutine subroutine_line
 
-  !> Adds a name to the list of tests.
+  !> Add a name to the list of tests.
   subroutine add_test(name)
-    !> The name.
     character(len=*), intent(in) :: name
     character(len=64), allocatable :: longer(:)
 
@@ -141,9 +140,9 @@ contains
     call move_alloc(longer, test)
   end subroutine add_test
 
-  !> Looks at a line of plain Fortran.
+  !> Check a line of plain Fortran.
   subroutine plain_line(word)
-    !> The line in small letters, without leading blanks.
+    !> In small letters, without leading blanks.
     character(len=*), intent(in) :: word
 
     if (word(1:7) == "module " .and. word(8:17) /= "procedure ") then
@@ -161,9 +160,9 @@ contains
     end if
   end subroutine plain_line
 
-  !> Writes the call that an assert stands for.
+  !> Write the call of an assert.
   subroutine assert_line(text)
-    !> The line, without leading blanks.
+    !> Without leading blanks.
     character(len=*), intent(in) :: text
 
     character(len=:), allocatable :: name, bare, call_name
@@ -198,11 +197,11 @@ contains
     write (unit_out, '(a,i0,3a)') "# ", number + 1, " """, trim(source), """"
   end subroutine assert_line
 
-  !> Counts the arguments of an assert and looks at its keywords.
+  !> Count the arguments of an assert and check its keywords.
   subroutine check_arguments(list, which)
-    !> What stands between the brackets, text constants blanked out.
+    !> The text between the brackets, with text constants blanked out.
     character(len=*), intent(in) :: list
-    !> The assert: a place in `assert_name`.
+    !> Index of the assert in `assert_name`.
     integer, intent(in) :: which
 
     character(len=:), allocatable :: one
@@ -241,9 +240,9 @@ contains
     end select
   end subroutine check_arguments
 
-  !> Whether an argument is given by this keyword.
+  !> Check whether an argument is given by this keyword.
   logical function is_keyword(argument, keyword)
-    !> The argument in small letters, and the keyword.
+    !> The argument is in small letters.
     character(len=*), intent(in) :: argument, keyword
 
     character(len=:), allocatable :: rest
@@ -255,11 +254,10 @@ contains
     if (rest(1:1) == "=") is_keyword = rest(1:2) /= "=="
   end function is_keyword
 
-  !> Last place of the argument that begins at `first`.
+  !> Return the last position of the argument that begins at `first`.
   integer function argument_end(list, first)
-    !> The arguments, text constants blanked out.
+    !> With text constants blanked out.
     character(len=*), intent(in) :: list
-    !> Where this one begins.
     integer, intent(in) :: first
     integer :: depth
 
@@ -277,11 +275,10 @@ contains
     argument_end = argument_end - 1
   end function argument_end
 
-  !> Place of the bracket that closes the one at `opening`; 0 where there is none.
+  !> Return the position of the bracket that closes the one at `opening`; 0 if there is none.
   integer function closing_bracket(text, opening)
-    !> The line, text constants blanked out.
+    !> With text constants blanked out.
     character(len=*), intent(in) :: text
-    !> Place of the opening bracket.
     integer, intent(in) :: opening
     integer :: depth, place
 
@@ -295,9 +292,8 @@ contains
     if (depth == 0) closing_bracket = place
   end function closing_bracket
 
-  !> The line with its text constants filled with x, and its comment cut off where it is plain code.
+  !> Return the line with its text constants filled with x; the comment of plain code is removed.
   function strip_text(text) result(bare)
-    !> The line.
     character(len=*), intent(in) :: text
     character(len=len(text)) :: bare
     character(len=1) :: quote
@@ -320,7 +316,7 @@ contains
     end do
   end function strip_text
 
-  !> Writes the module that runs the tests of the file.
+  !> Write the module that runs the tests of the file.
   subroutine write_suite()
     character(len=:), allocatable :: fixture
 
@@ -343,9 +339,8 @@ contains
     write (unit_out, '(a)') "  end subroutine run_suite", "end module "//trim(suite)//"_suite"
   end subroutine write_suite
 
-  !> The name of a file without its folders and its ending.
+  !> Return the name of a file without folders and extension.
   function base_name(path) result(name)
-    !> The path.
     character(len=*), intent(in) :: path
     character(len=64) :: name
     integer :: dot
@@ -355,9 +350,8 @@ contains
     if (dot > 0) name = name(:dot - 1)
   end function base_name
 
-  !> The text with its capital letters made small.
+  !> Return the text in small letters.
   function lower(text)
-    !> The text.
     character(len=*), intent(in) :: text
     character(len=len(text)) :: lower
     integer :: place
@@ -370,9 +364,8 @@ contains
     end do
   end function lower
 
-  !> Says what is wrong, removes the half-written result and stops.
+  !> Print the error, remove the incomplete result and stop.
   subroutine refuse(message)
-    !> What is wrong.
     character(len=*), intent(in) :: message
     logical :: opened
 

@@ -1,4 +1,4 @@
-!> Runs tests one after the other, counts them and prints what failed.
+!> Run tests in sequence, count them and print the failures.
 module pf_runner
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use pf_failure, only : failure_t, take_failures, anyExceptions
@@ -7,20 +7,20 @@ module pf_runner
   public :: run_t
 
   abstract interface
-    !> A test, or what is done before and after one.
+    !> A test, or a procedure called before or after one.
     subroutine test_interface()
     end subroutine test_interface
   end interface
 
-  !> One run of the tests of an executable.
+  !> A run of the tests of an executable.
   type :: run_t
-    !> Whether each test is named when it starts.
+    !> Print the name of each test at its start.
     logical :: verbose = .false.
-    !> Only tests whose `suite.name` holds this text are run.
+    !> Run only tests whose `suite.name` contains this text.
     character(len=:), allocatable :: filter
-    !> Tests run, and tests that failed.
+    !> Number of tests run, and of those that failed.
     integer :: count = 0, failed = 0
-    !> What failed, ready to be printed.
+    !> The failures, formatted.
     character(len=:), allocatable :: report
   contains
     procedure :: start => run_start
@@ -31,9 +31,8 @@ module pf_runner
 
 contains
 
-  !> Reads the command line.
+  !> Read the command line.
   subroutine run_start(self)
-    !> The run.
     class(run_t), intent(inout) :: self
 
     character(len=256) :: argument
@@ -59,15 +58,13 @@ contains
     end do
   end subroutine run_start
 
-  !> Runs one test; it is skipped where `before` fails, and `after` runs in any case but that.
+  !> Run one test. If `before` fails, test and `after` are skipped; otherwise `after` is always called.
   subroutine run_test(self, suite, name, test, before, after)
-    !> The run.
     class(run_t), intent(inout) :: self
     !> Names of the suite and the test.
     character(len=*), intent(in) :: suite, name
-    !> The test.
     procedure(test_interface) :: test
-    !> What is done before and after it.
+    !> Called before and after it.
     procedure(test_interface), optional :: before, after
 
     if (index(suite//"."//name, self%filter) == 0) return
@@ -85,9 +82,8 @@ contains
     end if
   end subroutine run_test
 
-  !> Adds the failures of a test to the report.
+  !> Add the failures of a test to the report.
   subroutine run_note(self, name)
-    !> The run.
     class(run_t), intent(inout) :: self
     !> Name of the suite and the test.
     character(len=*), intent(in) :: name
@@ -104,9 +100,8 @@ contains
     end do
   end subroutine run_note
 
-  !> Prints the result; stops with exit code 2 where a test failed.
+  !> Print the result; stop with exit code 2 if a test failed.
   subroutine run_finish(self)
-    !> The run.
     class(run_t), intent(in) :: self
 
     if (self%failed > 0) then

@@ -1,4 +1,4 @@
-"""What the scripts say of wrong names, missing files and incomplete results: one plain line, exit code 2."""
+"""Check the messages on wrong names, missing files and incomplete results: one line, exit code 2."""
 
 import subprocess
 import sys
@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def call(script, *arguments, expect=2):
-    """Output of a script."""
+    """Return the output of a script."""
     words = [sys.executable] if script.endswith(".py") else ["bash"]
     words += [ROOT / "utils" / script, *arguments]
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=60, check=False)

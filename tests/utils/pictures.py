@@ -1,4 +1,4 @@
-"""Draws both pictures of a small made-up run and looks at what comes out. Skipped (77) without the packages."""
+"""Draw both pictures of a small made-up run and check them. Skipped (77) without the packages."""
 
 import importlib.util
 import struct
@@ -66,7 +66,7 @@ def call(script, *arguments, expect=0):
 
 
 def check_refusals(run, folder):
-    """What is asked for and cannot be: one plain line each."""
+    """Check that requests that cannot be met give one line each."""
     top = ("--field", "stress", "--view", "top", "--size", 300, 200)
     call("plot_sheet.py", run, "--mirror", "x", "--mirror", "y", *top, "--output", folder / "mirrored.png")
     call("plot_sheet.py", run, "--mirror", "xy", *top, "--output", folder / "both.png")

@@ -1,5 +1,5 @@
-"""Draws materials at a point: what utils/plot_point.py computes and draws, the pictures of the laws, and what both say
-of bad input. Skipped (77) without the packages.
+"""Draw materials at a point: values and pictures of utils/plot_point.py, pictures of the laws, messages on bad input.
+Skipped (77) without the packages.
 
     points.py --program build/release/dd3imp
 """
@@ -21,10 +21,12 @@ if any(importlib.util.find_spec(name) is None for name in ("matplotlib", "numpy"
 
 import law_pictures  # noqa: E402
 import plot_point  # noqa: E402
+import results  # noqa: E402
+from scripts import Problem  # noqa: E402
 
 plt = plot_point.plt
 SHEETS = ROOT / "input_files" / "materials"
-# Hill's criterion and Swift's law, of which all values are known.
+# Hill's criterion and Swift's law, for which all values are known.
 F, G, H, N = 0.284, 0.358, 0.642, 1.289
 STEEL = f"""*MATERIAL Steel
   young = 2.1e5
@@ -40,24 +42,24 @@ def close(value, wanted, tolerance=1e-3):
 
 
 def call(module, *arguments, expect=None):
-    """Runs a script; where it is to end with a message, that is returned, else the figure."""
+    """Run a script and return its figure; with `expect` it must end with a message that contains it."""
     plt.close("all")
     before, sys.argv = sys.argv, ["script", *map(str, arguments)]
     try:
         with contextlib.redirect_stderr(io.StringIO()) as said:
             module.main()
-    except SystemExit as end:
-        message = f"{said.getvalue()}{end.code}"
+    except (Problem, SystemExit) as end:
+        message = f"{said.getvalue()}{end}"
         assert expect and expect in message, f"{arguments}: {message}"
         return None
     finally:
         sys.argv = before
-    assert not expect, f"{arguments} ends without a message, expected: {expect}"
+    assert not expect, f"{arguments}: no message, expected: {expect}"
     return plt.gcf()
 
 
 def check_values(program, file):
-    """Tension, r-values, and surface with normals, against Hill's and Swift's formulas."""
+    """Check tension, r-values, surface and normals against Hill's and Swift's formulas."""
     path, names = plot_point.names_in(f"{file}:STEEL")
     assert (path, names) == (str(file), ["steel"]), (path, names)
     ratios = plot_point.np.radians([0, 30, 80, 200])
@@ -77,7 +79,7 @@ def check_values(program, file):
 
 
 def check_pictures(program, folder):
-    """Two files in one picture, finished runs, pictures of laws."""
+    """Check a picture of two files, of finished runs, and pictures of laws."""
     picture = folder / "both.png"
     files = folder / "steel.dat", folder / "round.dat:round"
     figure = call(plot_point, *files, "--program", program, "--output", picture)
@@ -93,7 +95,7 @@ def check_pictures(program, folder):
 
     deck = folder / "run.dat"
     deck.write_text(STEEL + plot_point.point("pull", "steel", plot_point.TENSION, [([0.1, 0, 0, 0, 0, 0], 10)]) + "\n")
-    plot_point.subprocess.run([program, "--quiet", deck], check=True)
+    assert results.launch([program, "--quiet", deck]).code == 0
     run = folder / "run.out"
     figure = call(plot_point, "--run", run, "--run", run / "history.csv", "--output", folder / "run.svg")
     assert "<svg" in (folder / "run.svg").read_text()
@@ -105,7 +107,7 @@ def check_pictures(program, folder):
 
 
 def check_messages(program, folder):
-    """What is said of bad input: plain messages."""
+    """Check the messages on bad input."""
     (folder / "empty.dat").write_text("*TITLE\n  nothing\n")
     (folder / "wrong.dat").write_text(STEEL.replace("hill48", "hil48"))
     (folder / "binary.dat").write_bytes(b"\xff\xfe\x00*MATERIAL x")
@@ -118,7 +120,7 @@ def check_messages(program, folder):
             ((folder / "empty.dat", *end), "empty.dat: no *MATERIAL"), ((folder / "binary.dat", *end), "not a text"),
             ((f"{steel}:iron", *end), "no *MATERIAL iron; there are: steel"),
             ((folder / "wrong.dat", *end), "did you mean 'hill48'"),
-            ((steel, "--program", folder / "no_program"), "no_program: No such file"),
+            ((steel, "--program", folder / "no_program"), "no_program: no such program"),
             ((steel, "--program", program, "--output", folder / "no" / "none.png"), "No such file"),
             ((steel, "--program", program, "--output", folder / "none.xyz"), "none.xyz: Format 'xyz' is not supported"),
             (("--run", folder / "no.out"), "no.out: No such file"),

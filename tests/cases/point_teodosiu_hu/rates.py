@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Prints reference.csv: the rate equations of Teodosiu and Hu's law, integrated independently of the program.
+"""Print reference.csv: the rate equations of Teodosiu and Hu's law, integrated independently of the program.
 
     rates.py >reference.csv
     rates.py 40 >../point_teodosiu_hu_coarse/reference.csv
 
-The number is that of the program's increments in each part of a path, by which it counts the rows; the values do not
-depend on it.
+The number is that of the program's increments in each part of a path and determines the row numbers only; the values do
+not depend on it.
 
 The equations are those of docs/laws/teodosiu_hu.md as rates, with the whole fourth-order tensor S and with h as
-(1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, held between 0 and 1 (it leaves them only where Xsat falls; without that the
-shear stress of latent_crossed rises by 0.02 MPa, the others stay). The strain is additive, its elastic part Hooke's.
-Runge and Kutta's method of fourth order follows the stress rate of the continuum tangent; the elastic parts of a path
-are taken in one go up to the yield surface; four times as many steps change no printed digit. Needs numpy only; nothing
-of the program is used.
+(1 - X:N/(Xsat n:N))/2, n = dev(T - X)/sb, limited to 0 to 1 (it is outside only if Xsat decreases; without the limit
+the shear stress of latent_crossed is 0.02 MPa higher, the others do not change). The strain is additive, its elastic
+part is Hooke's. The stress rate of the continuum tangent is integrated by the Runge-Kutta method of fourth order; the
+elastic parts of a path are one step up to the yield surface; four times as many steps change no printed digit. Needs
+numpy only; nothing of the program is used.
 """
 import math
 import sys
@@ -164,9 +164,9 @@ class Point:
 
 
 def main():
-    """Prints the table."""
+    """Print the table."""
     increments = int(sys.argv[1]) if len(sys.argv) > 1 else 400
-    print("# Written by rates.py: the equations of the law as rates, integrated by another method than the program's.")
+    print("# Written by rates.py: the rate equations of the law, integrated independently.")
     print("point,increment,s11,s12,eqps")
     for name, (law, form, (given, ends)) in POINTS.items():
         point = Point(law, hill(*form))
