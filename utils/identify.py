@@ -282,21 +282,21 @@ def criterion(options, points, data):
     sought, fixed = sought_parameters(options, data)
     if not any(d.same_test() == ("tension", 0) and d.quantity == "stress" for d in data):
         data.insert(0, Datum("stress", 0.0, 1.0))
-    told = [Datum(key) for key in ("biaxial_stress", "biaxial_r")
+    extra = [Datum(key) for key in ("biaxial_stress", "biaxial_r")
             if not any(d.label() == Datum(key).label() for d in data)]
-    paths = test_paths(data + told)
+    paths = test_paths(data + extra)
     place = {test: i for i, test in enumerate(paths)}
 
     def compute(texts):
         found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], list(paths.values()))
-        return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + told])
+        return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + extra])
                 for rows in found]
 
     def evaluate(sets):
         return [None if values is None or values[ratio] <= 0 else values[:len(data)]
                 for values in compute([law_text(options.criterion, {**one, **fixed}) for one in sets])]
 
-    ratio = next(i for i, d in enumerate(data + told) if d.kind == "equibiaxial" and d.quantity == "r")
+    ratio = next(i for i, d in enumerate(data + extra) if d.kind == "equibiaxial" and d.quantity == "r")
     fit = Fit(evaluate, sought, [d.value for d in data], [d.weight for d in data], PULL)
     if options.criterion == "yld2004":  # not where both transformations are the same: a saddle
         fit.start = fit.start + np.array([0.02 if name[0] == "c" else -0.02 for name in fit.names])
@@ -307,7 +307,7 @@ def criterion(options, points, data):
     notes = fit.left_open(point, "left as in the isotropic case", "the rest stays as near to isotropy as they allow")
     if options.criterion == "cpb06" and "C66" not in {**sought, **fixed}:
         notes.insert(0, "the data do not determine C66: left out, so that it follows the other parameters")
-    return text, criterion_table(data + told, values), notes + fit.at_ends(point) + missed(data, values)
+    return text, criterion_table(data + extra, values), notes + fit.at_ends(point) + missed(data, values)
 
 
 def missed(data, values):
@@ -463,7 +463,7 @@ def block(options, yields, hardens, table, notes):
              f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}{'weight':>8}"]
     lines += [f"# {line}" for line in table]
     if not options.hardening:
-        notes = [*notes, "no hardening was given: the flow stress 100 stands for the unit"]
+        notes = [*notes, "no hardening was given: the flow stress of 100 is only a unit"]
     lines += [f"# Note: {note}" for note in notes]
     lines += [f"*MATERIAL {options.name}", f"  young = {options.young:g}", f"  poisson = {options.poisson:g}"]
     lines += folded("yield", yields)
