@@ -10,7 +10,8 @@ module dd3_base_kinds
   !> Long integers: clocks and hashes.
   integer, parameter :: i8 = int64
   real(wp), parameter :: pi = 3.141592653589793_wp
-  !> Square root of two, and half of it; 1/sqrt2 differs from the latter in the last bit.
+  !> Square root of two, its half and its inverse, which differ in the last bit.
   real(wp), parameter :: sqrt2 = sqrt(2.0_wp), half_sqrt2 = 0.5_wp*sqrt2
+  real(wp), parameter :: inverse_sqrt2 = 1.0_wp/sqrt2
 
 end module dd3_base_kinds

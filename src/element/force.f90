@@ -1,7 +1,7 @@
 !> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean
 !> of the Cauchy stress, g_a the group's mean gradient; sum w j T G_a for points without a group.
 module dd3_element_force
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   implicit none
@@ -54,11 +54,10 @@ contains
     real(wp), intent(in) :: q(3, 3)
     real(wp) :: cauchy(3, 3)
 
-    real(wp), parameter :: half_root = sqrt(0.5_wp)
     real(wp) :: qt(3, 3), s(4:6)
     integer :: j
 
-    s = half_root*stress(4:6)
+    s = half_sqrt2*stress(4:6)
     qt(:, 1) = q(:, 1)*stress(1) + q(:, 2)*s(6) + q(:, 3)*s(5)
     qt(:, 2) = q(:, 1)*s(6) + q(:, 2)*stress(2) + q(:, 3)*s(4)
     qt(:, 3) = q(:, 1)*s(5) + q(:, 2)*s(4) + q(:, 3)*stress(3)

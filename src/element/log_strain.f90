@@ -7,7 +7,7 @@
 !> the limit on |e| the remainder is under 2e-16, and equal stretches need no special case. Larger
 !> stretches use the eigenvalues of C.
 module dd3_element_log_strain
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : sqrt2, wp
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : symmetric_eigen
@@ -17,8 +17,6 @@ module dd3_element_log_strain
 
   !> Largest Frobenius norm of e for the series.
   real(wp), parameter :: series_limit = 0.03_wp
-  !> Factor from a tensor's shear component to the Kelvin vector's.
-  real(wp), parameter :: root2 = sqrt(2.0_wp)
 
 contains
 
@@ -173,9 +171,9 @@ contains
     kelvin(1) = q(1, 1)*eq(1, 1) + q(2, 1)*eq(2, 1) + q(3, 1)*eq(3, 1)
     kelvin(2) = q(1, 2)*eq(1, 2) + q(2, 2)*eq(2, 2) + q(3, 2)*eq(3, 2)
     kelvin(3) = q(1, 3)*eq(1, 3) + q(2, 3)*eq(2, 3) + q(3, 3)*eq(3, 3)
-    kelvin(4) = root2*(q(1, 2)*eq(1, 3) + q(2, 2)*eq(2, 3) + q(3, 2)*eq(3, 3))
-    kelvin(5) = root2*(q(1, 3)*eq(1, 1) + q(2, 3)*eq(2, 1) + q(3, 3)*eq(3, 1))
-    kelvin(6) = root2*(q(1, 1)*eq(1, 2) + q(2, 1)*eq(2, 2) + q(3, 1)*eq(3, 2))
+    kelvin(4) = sqrt2*(q(1, 2)*eq(1, 3) + q(2, 2)*eq(2, 3) + q(3, 2)*eq(3, 3))
+    kelvin(5) = sqrt2*(q(1, 3)*eq(1, 1) + q(2, 3)*eq(2, 1) + q(3, 3)*eq(3, 1))
+    kelvin(6) = sqrt2*(q(1, 1)*eq(1, 2) + q(2, 1)*eq(2, 2) + q(3, 1)*eq(3, 2))
   end subroutine to_material
 
   !> Return R Q, orthonormalised by one step of Q (3 I - Q^T Q)/2 so that round-off does not

@@ -12,7 +12,7 @@
 !> the eigenvectors of E, the k-th of which is the axial vector of the pair (i,j). Rates of U and R:
 !> Hill, Aspects of invariance in solid mechanics, 1978.
 module dd3_element_moduli
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_linalg_tensor, only : kelvin_rotation, symmetric_eigen, tensor_from_kelvin
   implicit none
   private
@@ -20,8 +20,6 @@ module dd3_element_moduli
 
   !> Largest trace of B for the power series; their remainder is under 1e-14 of the moduli.
   real(wp), parameter :: series_limit = 1.0e-3_wp
-  !> Factor from a Kelvin vector's shear component to the tensor's.
-  real(wp), parameter :: half_root = sqrt(0.5_wp)
 
 contains
 
@@ -111,9 +109,9 @@ contains
 
     real(wp) :: e23, e31, e12
 
-    e23 = half_root*kelvin(4)
-    e31 = half_root*kelvin(5)
-    e12 = half_root*kelvin(6)
+    e23 = half_sqrt2*kelvin(4)
+    e31 = half_sqrt2*kelvin(5)
+    e12 = half_sqrt2*kelvin(6)
     z(1, :) = [0.0_wp, kelvin(4), -kelvin(4), kelvin(3) - kelvin(2), -e12, e31]
     z(2, :) = [-kelvin(5), 0.0_wp, kelvin(5), e12, kelvin(1) - kelvin(3), -e23]
     z(3, :) = [kelvin(6), -kelvin(6), 0.0_wp, -e31, e23, kelvin(2) - kelvin(1)]

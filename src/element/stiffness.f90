@@ -12,7 +12,7 @@
 !> group. The sum over points and directions is one product of a (9 n_node) x (3 n_point) by a
 !> (3 n_point) x n_node matrix.
 module dd3_element_stiffness
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_element_moduli, only : point_moduli
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
@@ -22,11 +22,9 @@ module dd3_element_stiffness
 
   !> Index of a tensor component in a Kelvin vector.
   integer, parameter :: kelvin_index(3, 3) = reshape([1, 6, 5, 6, 2, 4, 5, 4, 3], [3, 3])
-  !> Factor from a Kelvin vector's shear component to the tensor's.
-  real(wp), parameter :: half_root = sqrt(0.5_wp)
-  !> The factors of all six components.
-  real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, half_root, half_root, &
-      half_root]
+  !> Factors from the components of a Kelvin vector to those of the tensor.
+  real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, half_sqrt2, &
+      half_sqrt2, half_sqrt2]
 
 contains
 

@@ -5,19 +5,17 @@
 !> product and a rotation of the axes is an orthogonal 6x6 matrix. Eigenvectors are found by Jacobi
 !> rotations (Jacobi 1846; Rutishauser 1966).
 module dd3_linalg_tensor
-  use dd3_base_kinds, only : wp, root2 => sqrt2
+  use dd3_base_kinds, only : inverse_sqrt2, sqrt2, wp
   implicit none
   private
-  public :: root2, half_root, kelvin_factor
+  public :: kelvin_factor
   public :: identity, kelvin_identity, kelvin_deviator_projector
   public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_deviator
   public :: determinant, inverse, symmetric_eigen
   public :: cross, solve_small
 
-  !> Inverse of the square root of two.
-  real(wp), parameter :: half_root = 1.0_wp/root2
   !> Ratio of Kelvin to tensor components, for any order with the shears last.
-  real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, root2, root2, root2]
+  real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, sqrt2, sqrt2, sqrt2]
   real(wp), parameter :: third = 1.0_wp/3.0_wp
 
   !> Unit tensor of second order.
@@ -45,9 +43,9 @@ contains
     v(1) = t(1, 1)
     v(2) = t(2, 2)
     v(3) = t(3, 3)
-    v(4) = half_root*(t(2, 3) + t(3, 2))
-    v(5) = half_root*(t(3, 1) + t(1, 3))
-    v(6) = half_root*(t(1, 2) + t(2, 1))
+    v(4) = inverse_sqrt2*(t(2, 3) + t(3, 2))
+    v(5) = inverse_sqrt2*(t(3, 1) + t(1, 3))
+    v(6) = inverse_sqrt2*(t(1, 2) + t(2, 1))
   end function kelvin_from_tensor
 
   !> Return the symmetric tensor of a Kelvin vector.
@@ -58,9 +56,9 @@ contains
     t(1, 1) = v(1)
     t(2, 2) = v(2)
     t(3, 3) = v(3)
-    t(2, 3) = half_root*v(4)
-    t(3, 1) = half_root*v(5)
-    t(1, 2) = half_root*v(6)
+    t(2, 3) = inverse_sqrt2*v(4)
+    t(3, 1) = inverse_sqrt2*v(5)
+    t(1, 2) = inverse_sqrt2*v(6)
     t(3, 2) = t(2, 3)
     t(1, 3) = t(3, 1)
     t(2, 1) = t(1, 2)
@@ -79,8 +77,8 @@ contains
       do i = 1, 3
         associate (a => first(i), b => second(i), c => first(j), d => second(j))
           r(i, j) = q(i, j)**2
-          r(i, 3 + j) = root2*q(i, c)*q(i, d)
-          r(3 + i, j) = root2*q(a, j)*q(b, j)
+          r(i, 3 + j) = sqrt2*q(i, c)*q(i, d)
+          r(3 + i, j) = sqrt2*q(a, j)*q(b, j)
           r(3 + i, 3 + j) = q(a, c)*q(b, d) + q(a, d)*q(b, c)
         end associate
       end do

@@ -13,7 +13,7 @@
 !> with k6 = ((a1+a3)/6)^3 - c ((b1+b2)/27)^2: sb = Txx in tension along rolling. Drucker's for
 !> a = b = 1. Not convex for all parameters, nor for all published ones.
 module dd3_material_yield_cazacu_barlat2001
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, position_of, value_of
@@ -177,7 +177,7 @@ contains
     call add_cubic(j3, 1, 6, 6, (2*b(10) - b(5))/6)
     call add_cubic(j3, 2, 6, 6, b(5)/6)
     call add_cubic(j3, 3, 6, 6, -b(10)/3)
-    call add_cubic(j3, 4, 5, 6, b(11)/sqrt(2.0_wp))
+    call add_cubic(j3, 4, 5, 6, b(11)/sqrt2)
   end subroutine add_shear_terms
 
 end module dd3_material_yield_cazacu_barlat2001

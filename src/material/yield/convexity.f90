@@ -6,8 +6,7 @@
 !> ball of the additive sequence of M. Roberts (The unreasonable effectiveness of quasirandom
 !> sequences, extremelearning.com.au, 2018).
 module dd3_material_yield_convexity
-  use dd3_base_kinds, only : wp, pi
-  use dd3_linalg_tensor, only : half_root
+  use dd3_base_kinds, only : inverse_sqrt2, sqrt2, wp, pi
   use dd3_material_description, only : description_t, problem_t, add_problem
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
@@ -101,7 +100,7 @@ contains
                     sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
     else
       k = n - angles
-      stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*half_root
+      stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*inverse_sqrt2
     end if
   end function sample
 
@@ -161,7 +160,7 @@ contains
     real(wp) :: component(6)
     integer :: k
 
-    component = [stress(1:3), stress([6, 4, 5])/sqrt(2.0_wp)]
+    component = [stress(1:3), stress([6, 4, 5])/sqrt2]
     text = "(11 22 33 12 23 13) ="
     do k = 1, 6
       write (number, '(f5.2)') component(k)

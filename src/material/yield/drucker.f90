@@ -5,7 +5,7 @@
 !> of the deviator S = T', or, orthotropic, of the transformed stress S = L T of Yld'91, as proposed
 !> by O. Cazacu and F. Barlat (2001). Convex for -27/8 <= c <= 9/4; von Mises for c = 0.
 module dd3_material_yield_drucker
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : inverse_sqrt2, wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
   use dd3_material_description, only : description_t, value_of
   use dd3_material_yield_invariant, only : invariant_criterion_t, add_cubic, transform_forms
@@ -63,7 +63,7 @@ contains
       call add_cubic(self%cubic, i, i + 3, i + 3, -0.5_wp)
     end do
     call add_cubic(self%cubic, 1, 2, 3, 1.0_wp)
-    call add_cubic(self%cubic, 4, 5, 6, 1/sqrt(2.0_wp))
+    call add_cubic(self%cubic, 4, 5, 6, inverse_sqrt2)
     normal = [value_of(values, "C1", 1.0_wp), value_of(values, "C2", 1.0_wp), &
         value_of(values, "C3", 1.0_wp)]
     shear = [value_of(values, "C4", 1.0_wp), value_of(values, "C5", 1.0_wp), &

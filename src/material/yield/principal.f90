@@ -7,8 +7,8 @@
 !> (R. W. Ogden, Non-linear Elastic Deformations, 1984, section 6.1.4, for derivatives of isotropic
 !> functions). The second sum runs over the pairs of the same transformed stress.
 module dd3_material_yield_principal
-  use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : half_root, root2, symmetric_eigen, tensor_from_kelvin
+  use dd3_base_kinds, only : inverse_sqrt2, sqrt2, wp
+  use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_material_flow, only : flow_direction_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   use dd3_material_yield_power, only : exponent_t, function_t, powers
@@ -189,9 +189,9 @@ contains
     real(wp) :: n(6)
 
     n(1:3) = v*v
-    n(4) = root2*v(2)*v(3)
-    n(5) = root2*v(3)*v(1)
-    n(6) = root2*v(1)*v(2)
+    n(4) = sqrt2*v(2)*v(3)
+    n(5) = sqrt2*v(3)*v(1)
+    n(6) = sqrt2*v(1)*v(2)
   end function square_of
 
   !> Return the Kelvin vector of sym(v x w).
@@ -200,9 +200,9 @@ contains
     real(wp) :: n(6)
 
     n(1:3) = v*w
-    n(4) = half_root*(v(2)*w(3) + v(3)*w(2))
-    n(5) = half_root*(v(3)*w(1) + v(1)*w(3))
-    n(6) = half_root*(v(1)*w(2) + v(2)*w(1))
+    n(4) = inverse_sqrt2*(v(2)*w(3) + v(3)*w(2))
+    n(5) = inverse_sqrt2*(v(3)*w(1) + v(1)*w(3))
+    n(6) = inverse_sqrt2*(v(1)*w(2) + v(2)*w(1))
   end function product_of
 
   !> Return t_ij of a pair.
