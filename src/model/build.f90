@@ -13,6 +13,7 @@ module dd3_model_build
   use dd3_input_known_name, only : check_known_name
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
@@ -41,6 +42,7 @@ contains
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
+    call new_variables(model%internal_variable, model%material)
     if (size(case%point) > 0) return
     call new_mesh(mesh, case, errors)
     if (errors%count > 0) return

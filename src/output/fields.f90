@@ -118,7 +118,7 @@ contains
       call h5fcreate_f(path, H5F_ACC_TRUNC_F, self%file, status)
       ok = status >= 0
     end if
-    self%field = field_table()
+    self%field = field_table(model)
     call make_grid(self, model, ok)
     call make_job(self, model, ok)
     call flush_hdf5(self%file, ok)

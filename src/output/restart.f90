@@ -27,7 +27,7 @@ module dd3_output_restart
   character(len=*), parameter :: mark = "dd3imp restart"
   integer, parameter :: format_version = 1
   !> Room on the disk for what is not the values, bytes.
-  integer(i8), parameter :: overhead = 1000000_i8
+  integer(i8), parameter :: overhead = 300000_i8
 
   !> Visitor that writes the components into a group, a dataset each.
   type, extends(state_visitor_t) :: writer_t
