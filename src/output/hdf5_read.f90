@@ -168,7 +168,7 @@ contains
     call h5aget_type_f(attribute, type, status)
     if (status >= 0) call h5tget_size_f(type, length, status)
     if (status >= 0) then
-      text = repeat(" ", int(length))
+      text = repeat(" ", length)
       call h5aread_f(attribute, type, text, [1_hsize_t], status)
       if (status < 0) text = ""
       call h5tclose_f(type, ignored)
