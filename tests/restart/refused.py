@@ -39,7 +39,7 @@ DIFFERENT = {
     "other end of a phase": ((("force punch 400", "force punch 401"),), "phase 'draw'"),
     "other move": ((("punch 0 0 -4", "punch 0 0 -4.5"),), "phase 'draw'"),
     "other name of a phase": ((("*PHASE draw", "*PHASE press"),), "phase 'press' (new), phase 'draw' (missing)"),
-    "a load on other nodes": ((("hold = punch\n", "hold = punch\n  load = corner 0 0 0\n"),), "phase 'clamp'"),
+    "another load": ((("hold = punch\n", "hold = punch\n  load = corner 0 0 0\n"),), "phase 'clamp'"),
     "phase missing": ((("every 0.4 mm", "increments 2"),), "phase 'draw' (missing)"),
 }
 POINT = ROOT / "tests" / "cases" / "point_tension" / "case.dat"
