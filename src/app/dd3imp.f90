@@ -1,5 +1,5 @@
-!> Sheet metal forming with rigid tools: reads a keyword file, runs the process it describes,
-!> writes the results.
+!> Sheet metal forming with rigid tools: reads a keyword file, runs the process it describes, writes
+!> the results.
 program dd3imp
   use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit

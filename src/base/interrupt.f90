@@ -1,6 +1,6 @@
 !> A wish to stop, from the keyboard (SIGINT) or the system (SIGTERM): the run ends after the
-!> current increment with whole results. A second signal of the kind stops at once.
-!> The flag is a variable of the module: a signal handler has no arguments, nothing else reaches it.
+!> current increment with whole results. A second signal of the kind stops at once. The flag is a
+!> variable of the module: a signal handler has no arguments, nothing else reaches it.
 module dd3_base_interrupt
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
@@ -44,6 +44,7 @@ contains
   subroutine remember(number) bind(c)
     !> The signal's number.
     integer(c_int), value :: number
+
     type(c_funptr) :: previous
 
     caught = number

@@ -4,10 +4,10 @@
 !>
 !>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
 !>
-!> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and
-!> its consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
-!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse
-!> of the last iteration gives the last correction and the tangent.
+!> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and its
+!> consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
+!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse of
+!> the last iteration gives the last correction and the tangent.
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small

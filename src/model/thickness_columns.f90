@@ -14,6 +14,7 @@ contains
     type(model_t), intent(in) :: model
     !> The columns; a node of no column is its own bottom and top.
     integer, allocatable, intent(out) :: column(:, :)
+
     integer, allocatable :: next(:, :)
     integer :: e, p, i, below, above
 
@@ -39,6 +40,7 @@ contains
     integer, intent(in) :: next(:)
     !> The node.
     integer, intent(in) :: first
+
     integer :: steps
 
     last_of = first

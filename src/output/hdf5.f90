@@ -65,6 +65,7 @@ contains
   !> be read. Files that failed are not touched again when the program ends.
   subroutine start_hdf5(ok)
     logical, intent(out) :: ok
+
     integer :: status
     integer(c_int) :: set
 
@@ -88,6 +89,7 @@ contains
     integer, intent(in) :: chunk
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space, plist
     integer(hsize_t) :: size_now(2), size_most(2), size_chunk(2)
     integer :: status, rank, ignored
@@ -140,6 +142,7 @@ contains
     real(wp), intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
@@ -157,6 +160,7 @@ contains
     integer, intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
@@ -174,6 +178,7 @@ contains
     integer(i8), intent(in), target :: value
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
@@ -194,6 +199,7 @@ contains
     integer(hid_t), intent(out) :: memory, file
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hsize_t) :: first(2), more(2), extent(2)
     integer :: status, rank
 
@@ -220,6 +226,7 @@ contains
   !> Close two dataspaces.
   subroutine close_spaces(memory, file)
     integer(hid_t), intent(in) :: memory, file
+
     integer :: ignored
 
     call h5sclose_f(memory, ignored)
@@ -261,6 +268,7 @@ contains
   !> Close a dataset.
   subroutine series_close(self)
     class(series_t), intent(inout) :: self
+
     integer :: ignored
 
     if (self%id >= 0) call h5dclose_f(self%id, ignored)
@@ -274,6 +282,7 @@ contains
     integer(hid_t), intent(out) :: group
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     group = -1
@@ -288,6 +297,7 @@ contains
     character(len=*), intent(in) :: name, text
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space, type, attribute
     integer :: status, ignored
 
@@ -318,6 +328,7 @@ contains
     integer(hid_t), intent(out) :: attribute
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space
     integer :: status, ignored
 
@@ -342,6 +353,7 @@ contains
     integer, intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     if (.not. ok) return
@@ -355,6 +367,7 @@ contains
     integer(hid_t), intent(in) :: file
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     if (.not. ok) return

@@ -64,6 +64,7 @@ contains
     class(progress_t), intent(inout) :: self
     !> The model.
     type(model_t), intent(in) :: model
+
     integer :: i, control
 
     if (allocated(self%phase_name)) deallocate (self%phase_name, self%control_name)
@@ -85,6 +86,7 @@ contains
     type(log_t), intent(inout) :: log
     !> The increment.
     type(progress_view_t), intent(in) :: view
+
     real(wp) :: now
     integer :: line
 
@@ -141,6 +143,7 @@ contains
     real(wp), intent(in) :: progress
     !> The time, s.
     real(wp), intent(in) :: now
+
     real(wp) :: share, passed
 
     passed = now - self%looked
@@ -159,6 +162,7 @@ contains
     !> The increment.
     type(progress_view_t), intent(in) :: view
     character(len=:), allocatable :: line
+
     character(len=100) :: buffer
 
     if (self%control_name(view%phase) == "") then
@@ -178,6 +182,7 @@ contains
     !> The increment.
     type(progress_view_t), intent(in) :: view
     character(len=:), allocatable :: line
+
     character(len=12) :: travel, r
 
     if (self%control_name(view%phase) == "") then
@@ -201,6 +206,7 @@ contains
     !> The force, N.
     real(wp), intent(in) :: force
     character(len=:), allocatable :: text
+
     character(len=24) :: buffer
 
     if (abs(force) < 1.0e4_wp) then
@@ -217,6 +223,7 @@ contains
     !> The time, s.
     real(wp), intent(in) :: seconds
     character(len=:), allocatable :: text
+
     integer :: whole
     character(len=24) :: buffer
 

@@ -126,8 +126,8 @@ contains
     type(state_t), intent(in) :: state
     !> Smallest gap, mm; a huge value if no candidate lies before the tool.
     real(wp), intent(out) :: gap
-    !> Largest component of the tool's normals at these candidates along the direction of its
-    !> force; negative if the force points away from the sheet.
+    !> Largest component of the tool's normals at these candidates along the direction of its force;
+    !> negative if the force points away from the sheet.
     real(wp), intent(out) :: facing
 
     type(hint_t) :: hint

@@ -1,6 +1,6 @@
 !> Test the stress update with random strain increments up to 10 % from random admissible states:
-!> every criterion with published and with extreme parameters, the hardening laws, the
-!> back-stresses and their combinations.
+!> every criterion with published and with extreme parameters, the hardening laws, the back-stresses
+!> and their combinations.
 !>
 !>     benchmark_robustness [part of a combination's name]
 !>

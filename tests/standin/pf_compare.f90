@@ -223,6 +223,7 @@ contains
   function shape_text(numbers) result(text)
     integer, intent(in) :: numbers(:)
     character(len=:), allocatable :: text
+
     character(len=12) :: one
     integer :: i
 

@@ -132,6 +132,7 @@ contains
   !> Add a name to the list of tests.
   subroutine add_test(name)
     character(len=*), intent(in) :: name
+
     character(len=64), allocatable :: longer(:)
 
     allocate (longer(size(test) + 1))
@@ -259,6 +260,7 @@ contains
     !> With text constants blanked out.
     character(len=*), intent(in) :: list
     integer, intent(in) :: first
+
     integer :: depth
 
     depth = 0
@@ -280,6 +282,7 @@ contains
     !> With text constants blanked out.
     character(len=*), intent(in) :: text
     integer, intent(in) :: opening
+
     integer :: depth, place
 
     depth = 0
@@ -296,6 +299,7 @@ contains
   function strip_text(text) result(bare)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: bare
+
     character(len=1) :: quote
     integer :: place
 
@@ -343,6 +347,7 @@ contains
   function base_name(path) result(name)
     character(len=*), intent(in) :: path
     character(len=64) :: name
+
     integer :: dot
 
     name = path(index(path, "/", back=.true.) + 1:)
@@ -354,6 +359,7 @@ contains
   function lower(text)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: lower
+
     integer :: place
 
     lower = text
@@ -367,6 +373,7 @@ contains
   !> Print the error, remove the incomplete result and stop.
   subroutine refuse(message)
     character(len=*), intent(in) :: message
+
     logical :: opened
 
     write (error_unit, '(2a,i0,2a)') trim(source), ":", number, ": error: ", message

@@ -60,6 +60,7 @@ contains
     real(wp), intent(in) :: start(6), increment
     type(flow_direction_t), intent(in) :: direction
     real(wp), intent(out) :: p(6), slope, gradient(6)
+
     real(wp) :: n(6), length, decay, tangential(6)
 
     length = norm2(direction%gradient)
@@ -81,6 +82,7 @@ contains
     real(wp), intent(in) :: plastic_strain, start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(flow_response_t), intent(out) :: flow
+
     real(wp) :: p(6), slope, gradient(6)
 
     call polarity(start(1:6), increment, direction, p, slope, gradient)
@@ -95,6 +97,7 @@ contains
     real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(back_response_t), intent(out) :: back
+
     real(wp) :: p(6), slope, gradient(6), normal(6), kept, weight
     integer :: j
 
@@ -116,6 +119,7 @@ contains
     real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     real(wp), intent(out) :: evolved(self%n_internal)
+
     type(back_response_t) :: back
     real(wp) :: slope, gradient(6)
 

@@ -42,6 +42,7 @@ contains
     type(model_t), intent(out) :: model
     !> The initial state.
     type(state_t), intent(out) :: state
+
     type(law_choice_t) :: criterion, hardening, none(0)
     type(error_t), allocatable :: error
     integer :: i, j, k
@@ -99,6 +100,7 @@ contains
   subroutine fresh_folder(folder, name)
     !> The folder, and the file in it.
     character(len=*), intent(in) :: folder, name
+
     type(error_t), allocatable :: error
     integer(c_int) :: ignored
 
@@ -110,6 +112,7 @@ contains
   subroutine lead_to_full_disk(folder, name)
     !> The folder, and the file in it.
     character(len=*), intent(in) :: folder, name
+
     integer(c_int) :: ignored
 
     call fresh_folder(folder, name)
@@ -122,6 +125,7 @@ contains
     character(len=*), intent(in) :: path
     !> The lines; none where it cannot be read.
     type(line_t), allocatable, intent(out) :: line(:)
+
     character(len=2000) :: buffer
     integer :: unit, status, n, pass
 
