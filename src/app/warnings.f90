@@ -68,8 +68,9 @@ contains
     equivalent = model%material(i)%laws%criterion%value(tension)
     if (.not. outside(equivalent, least_tension, largest_tension)) return
     call add(warnings, case%material(i)%yield%at, "material '"//case%material(i)%source%called()// &
-        "' yields in the rolling direction at "//to_text(1/equivalent, 3)//" times the flow stress of its "// &
-        "hardening law", "unusual; are these the parameters of "//case%material(i)%yield%name//"?")
+        "' yields in the rolling direction at "//to_text(1/equivalent, 3)//" times the flow "// &
+        "stress of its hardening law", "unusual; are these the parameters of "// &
+        case%material(i)%yield%name//"?")
   end subroutine check_criterion
 
   !> Warn if the initial flow stress is unusually large or small compared with Young's modulus.

@@ -63,7 +63,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (posix_rename(part_of(path)//c_null_char, path//c_null_char) /= 0) &
-      call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
+        call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
   end subroutine replace_file
 
   !> Wait until the content of an open file is on the disk. Errors are ignored: not all file systems

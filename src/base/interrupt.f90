@@ -23,8 +23,8 @@ module dd3_base_interrupt
 
 contains
 
-  !> Install the handlers and reset the flag. The signal of an exceeded file size is ignored, so that
-  !> the write fails with an ordinary error.
+  !> Install the handlers and reset the flag. The signal of an exceeded file size is ignored, so
+  !> that the write fails with an ordinary error.
   subroutine watch_interrupts()
     type(c_funptr) :: previous
     integer(c_intptr_t), parameter :: ignore = 1
