@@ -35,7 +35,7 @@ module dd3_input_block
     logical :: defaulted = .false.
   end type entry_t
 
-  !> One block.
+  !> Keyword block of the input.
   type :: block_t
     !> Word after the star, in lower case.
     character(len=:), allocatable :: keyword

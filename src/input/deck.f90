@@ -323,8 +323,7 @@ contains
 
     is_assignment = .false.
     if (token%item(1)%text == "=" .and. .not. token%item(1)%quoted) then
-      call errors%push_input(token%item(1)%at, "missing key before the equals sign", &
-          "key = value")
+      call errors%push_input(token%item(1)%at, "missing key before the equals sign", "key = value")
     else if (token%count == 1) then
       call errors%push_input(token%item(1)%at, "this is neither a block nor a key with a value", &
           "*BLOCK name, or key = value")
