@@ -84,8 +84,7 @@ contains
     call visit_hints("hint", size(state%hint), state%hint, visitor)
     call visitor%reals("fading", size(state%fading), state%fading)
     call visitor%integers("fading_tool", size(state%fading_tool), state%fading_tool)
-    call visitor%reals("tool_displacement", size(state%tool_displacement), &
-        state%tool_displacement)
+    call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
     call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
     call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
     call visit_phase_start(state%start, visitor)
@@ -210,7 +209,7 @@ contains
       name = trim(left%name(i))
       if (left%last(i) /= right%last(i)) return
       if (any(transfer(left%value(first:left%last(i)), [0]) /= &
-              transfer(right%value(first:right%last(i)), [0]))) return
+          transfer(right%value(first:right%last(i)), [0]))) return
       first = left%last(i) + 1
     end do
     name = ""

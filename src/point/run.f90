@@ -10,8 +10,8 @@ module dd3_point_run
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_element_log_strain, only : polar_increment
   use dd3_input_case, only : case_t
-  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
-      kelvin_from_tensor, symmetric_eigen
+  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, kelvin_from_tensor, &
+      symmetric_eigen
   use dd3_material_material, only : material_t
   use dd3_material_point, only : apply_strain, drive_to_target, global_stress, material_point_t, &
       new_material_point
@@ -31,7 +31,7 @@ module dd3_point_run
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps made.
     integer :: increment = 0
-    !> A row is written every so many steps.
+    !> Interval of the rows, in steps.
     integer :: every = 1
     !> The last row was not due and is not written yet.
     logical :: waiting = .false.
@@ -39,7 +39,7 @@ module dd3_point_run
 
 contains
 
-  !> Run all material points of a case. The history is whole whether they reach their end or not.
+  !> Run all material points of a case. The history is complete also if a run stops early.
   subroutine run_points(case, material, directory, log, increments, error)
     type(case_t), intent(in) :: case
     !> Materials of the case.
@@ -73,7 +73,7 @@ contains
   subroutine run_point(path, material, every, record, log, steps, error)
     type(path_t), intent(in) :: path
     type(material_t), intent(in) :: material
-    !> A row is written every so many steps.
+    !> Interval of the rows, in steps.
     integer, intent(in) :: every
     type(point_record_t), intent(inout) :: record
     type(log_t), intent(inout) :: log

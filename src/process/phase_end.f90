@@ -74,7 +74,7 @@ contains
     travel = state%progress*phase%length
     if (output%fields_every > 0.0_wp) then
       progress = (aint(travel/output%fields_every + progress_tolerance) + 1) &
-        *output%fields_every/phase%length
+          *output%fields_every/phase%length
     else if (allocated(output%fields_at)) then
       do i = 1, size(output%fields_at)
         if (output%fields_at(i) <= travel + progress_tolerance*phase%length) cycle

@@ -42,7 +42,7 @@ contains
       where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
       call set_tool_loads(phase, state)
       if (phase%until%kind == until_force) start%until_from_below = &
-        abs(until_value(phase, state)) <= phase%until%value
+          abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(phase, state)
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
@@ -73,7 +73,7 @@ contains
       end do
       start%tool_load_end = phase%tool_load_end
       where (spread(phase%pressed .and. phase%keeps_tool_load, 1, 3)) &
-        start%tool_load_end = start%tool_load
+          start%tool_load_end = start%tool_load
     end associate
   end subroutine set_tool_loads
 

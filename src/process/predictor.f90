@@ -123,7 +123,7 @@ contains
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
             *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
-                         phase%direction(:, tool))
+            phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial
@@ -141,8 +141,7 @@ contains
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
           call material%continuum_tangent(committed%stress(:, p, e), &
-              committed%internal_variables(:, p, e), self%plastic(p, e), &
-              system%tangent(:, :, p, e))
+              committed%internal_variables(:, p, e), self%plastic(p, e), system%tangent(:, :, p, e))
         end do
       end associate
     end do

@@ -51,7 +51,7 @@ contains
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
           call update_element(model, committed, trial, e, system%element(thread), &
-                              system%tangent(:, :, :, e), mine)
+              system%tangent(:, :, :, e), mine)
           if (mine%outcome == verdict_converged) then
             if (with_stiffness) call add_stiffness(system, model, e, system%element(thread))
           else
