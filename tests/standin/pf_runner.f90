@@ -58,7 +58,8 @@ contains
     end do
   end subroutine run_start
 
-  !> Run one test. If `before` fails, test and `after` are skipped; otherwise `after` is always called.
+  !> Run one test. If `before` fails, the test and `after` are skipped; otherwise `after` is always
+  !> called.
   subroutine run_test(self, suite, name, test, before, after)
     class(run_t), intent(inout) :: self
     !> Names of the suite and the test.
@@ -96,7 +97,7 @@ contains
     do i = 1, size(failures)
       write (line, '(i0)') failures(i)%location%line
       self%report = self%report//"FAILED "//name//" at "//trim(failures(i)%location%file)//":" &
-                    //trim(line)//new_line("a")//failures(i)%message//new_line("a")
+          //trim(line)//new_line("a")//failures(i)%message//new_line("a")
     end do
   end subroutine run_note
 
