@@ -94,7 +94,7 @@ contains
     type(law_choice_t) :: law
 
     law = choice("hill48", ["F", "G", "H", "L", "M", "N"], &
-                 [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
+        [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
   end function mild_steel
 
   !> Return valid values, each changed at random by up to a fifth (of one, if it is zero). A
@@ -243,8 +243,8 @@ contains
       name = name//" with all back-stresses"
     end if
     call make_material(material, &
-                       law_choice_t(criteria(i)%name, perturbed(law_yield, criteria(i))), &
-                       law_choice_t(hardenings(j)%name, hardenings(j)%example), back)
+        law_choice_t(criteria(i)%name, perturbed(law_yield, criteria(i))), &
+        law_choice_t(hardenings(j)%name, hardenings(j)%example), back)
   end subroutine make_combination
 
   !> Make a material with valid parameters.
