@@ -127,7 +127,7 @@ contains
     call add_defaults(block, key, errors)
   end subroutine check_keys
 
-  !> Return the first line of a block as the user wrote it.
+  !> Return the first line of a block as written.
   pure function title_of(block) result(title)
     type(block_t), intent(in) :: block
     character(len=:), allocatable :: title

@@ -1,5 +1,5 @@
 !> One attempt at an increment: what limited it, how the corrector and the linear solver proceeded,
-!> how it ended. The records and the messages to the user are made from it.
+!> how it ended. Records and messages are made from it.
 module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t

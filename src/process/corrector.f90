@@ -307,7 +307,7 @@ contains
     end do
   end function status_changes
 
-  !> Whether the status of each candidate changed in the iterations remembered.
+  !> Whether the status of each candidate changed in the last iterations.
   pure function unsettled(status) result(changing)
     !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
     integer, intent(in) :: status(:, :)

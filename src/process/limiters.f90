@@ -1,6 +1,6 @@
 !> Limiters of the factor r, the fraction of the trial increment that is made. Each limiter is a
-!> function that returns a bound with the place it comes from, and a row of the table. Source:
-!> Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
+!> function that returns a bound with its location, and a row of the table.
+!> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
   use dd3_contact_operator, only : status_gap

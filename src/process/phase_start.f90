@@ -22,8 +22,8 @@ contains
   !> Begin a phase: forces continue from their present values, released contacts become forces that
   !> fade over the phase, and a pressed tool without contact approaches the sheet.
   !>
-  !> A release is predicted elastic: beyond the largest force that a tool can bear, the tangents of
-  !> loading would continue along the falling branch instead of unloading.
+  !> A release is predicted elastic: beyond the maximum of the force, the tangents of loading would
+  !> continue on the descending branch instead of unloading.
   subroutine begin_phase(model, number, state)
     type(model_t), intent(in) :: model
     !> Number of the phase.
@@ -53,7 +53,7 @@ contains
   end subroutine begin_phase
 
   !> Set the forces pressed on the tools at the start and at the end of a phase. A tool that was
-  !> held or moved until now starts from the force that it bears along its line.
+  !> held or moved until now starts from the contact force on it in the direction of its line.
   subroutine set_tool_loads(phase, state)
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state

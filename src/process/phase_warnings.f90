@@ -1,5 +1,5 @@
-!> Warnings at the start and at the end of a phase: a pressed tool that does not meet the sheet, an
-!> unsupported sheet, yielding during a release.
+!> Warnings at the start and at the end of a phase: a pressed tool without contact, an unsupported
+!> sheet, yielding during a release.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -21,7 +21,7 @@ module dd3_process_phase_warnings
 
 contains
 
-  !> Return a warning if a pressed tool does not come to contact at the start of a phase: its force
+  !> Return a warning if a pressed tool has no contact at the start of a phase because its force
   !> points the wrong way, or no candidate lies ahead of it; empty otherwise.
   function press_warning(model, state) result(text)
     type(model_t), intent(in) :: model

@@ -42,8 +42,7 @@ module dd3_process_predictor
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Number of times that unloading plastic points are made elastic before the prediction is
-  !> accepted as it is.
+  !> Largest number of passes in which unloading plastic points are made elastic.
   integer, parameter :: most_switches = 2
 
 contains

@@ -23,7 +23,7 @@ module dd3_system_internal
 contains
 
   !> Integrate the material from the committed to the trial configuration, and evaluate the internal
-  !> forces and, if wanted, the stiffness.
+  !> forces and, optionally, the stiffness.
   subroutine update_material(system, model, committed, trial, with_stiffness, verdict)
     !> Gets the consistent tangents and the stiffness.
     type(system_t), intent(inout) :: system

@@ -1,7 +1,7 @@
 !> Run tests in sequence, count them and print the failures.
 module pf_runner
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
-  use pf_failure, only : failure_t, take_failures, anyExceptions
+  use pf_failure, only : failure_t, pop_failures, anyExceptions
   implicit none
   private
   public :: run_t
@@ -93,7 +93,7 @@ contains
     character(len=12) :: line
     integer :: i
 
-    call take_failures(failures)
+    call pop_failures(failures)
     do i = 1, size(failures)
       write (line, '(i0)') failures(i)%location%line
       self%report = self%report//"FAILED "//name//" at "//trim(failures(i)%location%file)//":" &

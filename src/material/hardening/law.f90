@@ -23,7 +23,7 @@ module dd3_material_hardening_law
     procedure :: evolve => keep_internal_variables
   end type hardening_t
 
-  !> Holds a hardening law of any kind.
+  !> Container of a hardening law of any type.
   type :: hardening_slot_t
     class(hardening_t), allocatable :: law
   end type hardening_slot_t

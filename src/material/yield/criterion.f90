@@ -21,7 +21,7 @@ module dd3_material_yield_criterion
     procedure :: gradient
   end type yield_criterion_t
 
-  !> Holds a criterion of any kind.
+  !> Container of a criterion of any type.
   type :: yield_slot_t
     class(yield_criterion_t), allocatable :: law
   end type yield_slot_t
