@@ -49,7 +49,7 @@ contains
     call parse_arguments(options, argument, error)
   end subroutine read_command_line
 
-  !> Parse arguments.
+  !> Set the options from the arguments.
   subroutine parse_arguments(options, argument, error)
     type(options_t), intent(out) :: options
     type(text_t), intent(in) :: argument(:)
@@ -159,7 +159,7 @@ contains
   subroutine read_threads(threads, value, error)
     integer, intent(inout) :: threads
     character(len=*), intent(in) :: value
-    !> Set if it is no positive integer.
+    !> Set if it is not a positive integer.
     type(error_t), allocatable, intent(out) :: error
 
     integer :: status
@@ -176,19 +176,16 @@ contains
     character(len=:), allocatable :: text
 
     text = "usage: dd3imp [options] job.dat"//newline// &
-           "  --check              read the input, check it, show all values, stop"//newline// &
-           "  --set name=value     gives a *PARAMETER of the input another value; repeatable"// &
-           newline// &
-           "  --output DIR         folder of the results (default: job.out)"// &
-           newline// &
-           "  --restart FILE       continue the run that wrote the restart file FILE"//newline// &
-           "  --threads N          number of threads (1)"//newline// &
-           "  --quiet              print nothing but errors"//newline// &
-           "  --version            the program's version"//newline// &
-           "  --help [name]        this text, or help on a block, key or law, or markdown"// &
-           newline// &
-           "exit codes: 0 reached the end; 1 usage; 2 input errors; 3 stopped before the end"// &
-           newline
+        "  --check              read the input, check it, show all values, stop"//newline// &
+        "  --set name=value     gives a *PARAMETER of the input another value; repeatable"// &
+        newline// &
+        "  --output DIR         folder of the results (default: job.out)"//newline// &
+        "  --restart FILE       continue the run that wrote the restart file FILE"//newline// &
+        "  --threads N          number of threads (1)"//newline// &
+        "  --quiet              print nothing but errors"//newline// &
+        "  --version            the program's version"//newline// &
+        "  --help [name]        this text, or help on a block, key or law, or markdown"//newline// &
+        "exit codes: 0 reached the end; 1 usage; 2 input errors; 3 stopped before the end"//newline
   end function usage_text
 
 end module dd3_app_command_line

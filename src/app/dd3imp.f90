@@ -1,5 +1,5 @@
-!> Sheet metal forming with rigid tools: reads a keyword file, runs the process it describes,
-!> writes the results.
+!> Sheet metal forming with rigid tools: read a keyword file, run the process that it describes and
+!> write the results.
 program dd3imp
   use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit
@@ -10,10 +10,9 @@ program dd3imp
   implicit none
 
   interface
-    !> exit(3): ends the program with a code and without the words that `stop` adds to it.
+    !> exit(3): end the program with an exit code, without the message of `stop`.
     subroutine c_exit(code) bind(c, name="exit")
       import :: c_int
-      !> The code.
       integer(c_int), value :: code
     end subroutine c_exit
   end interface

@@ -1,4 +1,4 @@
-!> Help on the laws, and the manual's reference of them, printed from the registries.
+!> Help on the laws and their reference in the manual, from the registries.
 module dd3_app_law_help
   use dd3_base_text, only : newline, same_name
   use dd3_input_help, only : describe_key, escaped
@@ -8,17 +8,16 @@ module dd3_app_law_help
   private
   public :: help_laws, help_law, law_reference_markdown
 
-  !> The kinds of laws, and the key each is given with.
+  !> Kinds of laws, and their keys in the input.
   integer, parameter :: kinds(3) = [law_yield, law_hardening, law_backstress]
-  !> See above.
   character(len=10), parameter :: keys(3) = [character(len=10) :: "yield", "hardening", &
       "backstress"]
-  !> Width of the column of names.
+  !> Width of the column of names, in characters.
   integer, parameter :: name_width = 18
 
 contains
 
-  !> The list of all laws.
+  !> Return the list of all laws.
   function help_laws() result(text)
     character(len=:), allocatable :: text
 
@@ -35,9 +34,8 @@ contains
     end do
   end function help_laws
 
-  !> Help on one law; empty if there is none of this name.
+  !> Return the help on a law; empty if its name is unknown.
   function help_law(name) result(text)
-    !> Name of the law.
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: text
 
@@ -50,16 +48,16 @@ contains
       do i = 1, size(law)
         if (.not. same_name(law(i)%name, name)) cycle
         text = text//trim(keys(k))//" = "//trim(law(i)%name)//newline//"  "//trim(law(i)%title)// &
-               newline//"  source: "//trim(law(i)%source)//newline
+            newline//"  source: "//trim(law(i)%source)//newline
         do p = 1, size(law(i)%rows)
           text = text//"  "//describe_key(law(i)%rows(p))//newline//repeat(" ", 6)// &
-                 trim(law(i)%rows(p)%help)//newline
+              trim(law(i)%rows(p)%help)//newline
         end do
       end do
     end do
   end function help_law
 
-  !> The reference of all laws for the manual, in Markdown.
+  !> Return the manual's reference of all laws in Markdown.
   function law_reference_markdown() result(text)
     character(len=:), allocatable :: text
 
@@ -70,7 +68,7 @@ contains
     do k = 1, size(kinds)
       call describe_laws(kinds(k), law)
       text = text//newline//"## `"//trim(keys(k))//" = law key=value ...`"//newline//newline// &
-             "| law | meaning | parameters | source |"//newline//"|---|---|---|---|"//newline
+          "| law | meaning | parameters | source |"//newline//"|---|---|---|---|"//newline
       do i = 1, size(law)
         text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
         do p = 1, size(law(i)%rows)

@@ -9,7 +9,7 @@ module dd3_base_clock
 
   !> Sections that are timed separately.
   integer, parameter :: section_material = 1, section_assembly = 2, section_contact = 3, &
-                        section_factorisation = 4, section_solve = 5, section_output = 6
+      section_factorisation = 4, section_solve = 5, section_output = 6
   character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", &
       "contact", "factorisation", "solve", "output"]
 

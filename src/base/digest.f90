@@ -1,4 +1,4 @@
-!> Check sum of data, to tell whether two sets of data are the same.
+!> Check sum of data, to compare two sets of data.
 !> Source: CRC-32 of ISO 3309, reflected polynomial EDB88320.
 module dd3_base_digest
   use, intrinsic :: iso_fortran_env, only : int8
@@ -18,7 +18,7 @@ module dd3_base_digest
 
 contains
 
-  !> Add a text.
+  !> Add a text to the check sum.
   subroutine add_text(self, text)
     class(digest_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -26,7 +26,7 @@ contains
     call add_bytes(self, transfer(text, [0_int8]))
   end subroutine add_text
 
-  !> Add integers.
+  !> Add integers to the check sum.
   subroutine add_integers(self, values)
     class(digest_t), intent(inout) :: self
     integer, intent(in) :: values(:)
@@ -34,7 +34,7 @@ contains
     call add_bytes(self, transfer(values, [0_int8]))
   end subroutine add_integers
 
-  !> Add real numbers.
+  !> Add real numbers to the check sum.
   subroutine add_reals(self, values)
     class(digest_t), intent(inout) :: self
     real(wp), intent(in) :: values(:)
@@ -42,7 +42,7 @@ contains
     call add_bytes(self, transfer(values, [0_int8]))
   end subroutine add_reals
 
-  !> Add logical values.
+  !> Add logical values to the check sum.
   subroutine add_logicals(self, values)
     class(digest_t), intent(inout) :: self
     logical, intent(in) :: values(:)
@@ -50,7 +50,7 @@ contains
     call self%add(merge(1, 0, values))
   end subroutine add_logicals
 
-  !> Add bytes.
+  !> Add bytes to the check sum.
   subroutine add_bytes(self, bytes)
     type(digest_t), intent(inout) :: self
     integer(int8), intent(in) :: bytes(:)

@@ -102,7 +102,7 @@ contains
       error%message = error%message//newline//"  "//location%text
       if (location%column > 0) then
         error%message = error%message//newline//"  "//caret_indent(location) &
-                        //repeat("^", width)
+            //repeat("^", width)
       end if
     end if
     if (present(expected)) error%message = error%message//newline//"  expected: "//expected

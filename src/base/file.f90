@@ -90,7 +90,7 @@ module dd3_base_file
     end function posix_close
     !> fallocate(2).
     integer(c_int) function linux_fallocate(descriptor, mode, offset, length) &
-      bind(c, name="fallocate")
+        bind(c, name="fallocate")
       import :: c_int, c_long
       integer(c_int), value :: descriptor, mode
       integer(c_long), value :: offset, length
@@ -227,7 +227,7 @@ contains
     first = 1
     do while (first <= self%used)
       n = posix_write(self%descriptor, self%buffer(first:self%used), &
-                      int(self%used - first + 1, c_size_t))
+          int(self%used - first + 1, c_size_t))
       if (n < 0) then
         if (errno() == eintr) cycle
       end if
@@ -303,7 +303,7 @@ contains
     end if
     if (cause == 0) then
       if (linux_fallocate(self%descriptor, keep_size, int(size, c_long), &
-                          int(more, c_long)) /= 0) cause = errno()
+          int(more, c_long)) /= 0) cause = errno()
     end if
     if (cause /= efbig .and. cause /= enospc .and. cause /= edquot) cause = 0
   end subroutine try_to_reserve
@@ -354,7 +354,7 @@ contains
     status = posix_mkdir(path//c_null_char, mode)
     if (status /= 0) then
       if (errno() /= eexist) call fatal_error(error, "cannot create the directory '"//path//"': " &
-                                              //system_message(errno()))
+          //system_message(errno()))
     end if
   end subroutine make_directory
 

@@ -1,4 +1,4 @@
-!> Files as a whole: reading, replacing one by another, waiting until one is on the disk.
+!> Operations on whole files: read, replace by another, synchronise with the disk.
 module dd3_base_file_system
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
   use dd3_base_error, only : error_t, fatal_error
@@ -26,7 +26,7 @@ contains
   !> Read a file.
   subroutine read_file(path, text, error)
     character(len=*), intent(in) :: path
-    !> Content of the file, ends of lines included.
+    !> Content with the line ends.
     character(len=:), allocatable, intent(out) :: text
     !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
@@ -48,7 +48,7 @@ contains
     if (status /= 0) call fatal_error(error, "cannot read '"//path//"': "//trim(message))
   end subroutine read_file
 
-  !> Return the name under which a file is written aside, before it replaces the old one.
+  !> Return the temporary name under which a file is written before it replaces the old one.
   pure function part_of(path) result(part)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: part
@@ -56,18 +56,18 @@ contains
     part = path//".part"
   end function part_of
 
-  !> Replace a file by the one written aside, in one step.
+  !> Replace a file by its temporary one, atomically.
   subroutine replace_file(path, error)
     character(len=*), intent(in) :: path
     !> Set if the file cannot be replaced.
     type(error_t), allocatable, intent(out) :: error
 
     if (posix_rename(part_of(path)//c_null_char, path//c_null_char) /= 0) &
-      call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
+        call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
   end subroutine replace_file
 
-  !> Wait until all that was written to an open file is on the disk. File systems that cannot tell
-  !> are trusted.
+  !> Wait until the content of an open file is on the disk. Errors are ignored: not all file systems
+  !> support this.
   subroutine sync_file(file)
     type(file_t), intent(in) :: file
 

@@ -1,15 +1,15 @@
-!> A wish to stop, from the keyboard (SIGINT) or the system (SIGTERM): the run ends after the
-!> current increment with whole results. A second signal of the kind stops at once.
-!> The flag is a variable of the module: a signal handler has no arguments, nothing else reaches it.
+!> Interruption of a run from the keyboard (SIGINT) or by the system (SIGTERM): the run ends after
+!> the current increment with complete results. A second signal of the same kind stops it at once.
+!> The flag is a module variable because a signal handler has no other arguments.
 module dd3_base_interrupt
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
   public :: watch_interrupts, interrupted
 
-  !> Numbers of the signals: from the keyboard, from the system, a file grown past the allowed size.
+  !> Numbers of the signals: keyboard, system, file size limit exceeded.
   integer(c_int), parameter :: sigint = 2, sigterm = 15, sigxfsz = 25
-  !> The number of the signal that came; 0 for none.
+  !> Number of the signal received; 0 if there was none.
   integer(c_int), volatile, save :: caught = 0
 
   interface
@@ -23,31 +23,31 @@ module dd3_base_interrupt
 
 contains
 
-  !> From now on the signals only raise the flag. A write past an allowed file size is to be an
-  !> ordinary error, so its signal is ignored.
+  !> Install the handlers and reset the flag. The signal of an exceeded file size is ignored, so
+  !> that the write fails with an ordinary error.
   subroutine watch_interrupts()
     type(c_funptr) :: previous
     integer(c_intptr_t), parameter :: ignore = 1
 
     caught = 0
-    previous = c_signal(sigint, c_funloc(remember))
-    previous = c_signal(sigterm, c_funloc(remember))
+    previous = c_signal(sigint, c_funloc(catch_signal))
+    previous = c_signal(sigterm, c_funloc(catch_signal))
     previous = c_signal(sigxfsz, transfer(ignore, c_null_funptr))
   end subroutine watch_interrupts
 
-  !> Whether a signal came.
+  !> Whether a signal was received.
   logical function interrupted()
     interrupted = caught /= 0
   end function interrupted
 
-  !> The handler: raises the flag and leaves the next signal to the system.
-  subroutine remember(number) bind(c)
-    !> The signal's number.
+  !> Set the flag and restore the default action for the next signal.
+  subroutine catch_signal(number) bind(c)
     integer(c_int), value :: number
+
     type(c_funptr) :: previous
 
     caught = number
     previous = c_signal(number, c_null_funptr)
-  end subroutine remember
+  end subroutine catch_signal
 
 end module dd3_base_interrupt

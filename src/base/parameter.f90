@@ -79,7 +79,7 @@ contains
 
   !> Return a row; the arguments are the components of `parameter_t`.
   pure function row(name, kind, unit, default, help, lower, upper, lower_open, upper_open, count, &
-                    may_be_off, repeatable, choices, form, later)
+      may_be_off, repeatable, choices, form, later)
     character(len=*), intent(in) :: name, unit, default, help
     integer, intent(in) :: kind
     real(wp), intent(in), optional :: lower, upper

@@ -173,7 +173,7 @@ contains
       cost(0, 2) = i
       do j = 1, len(b)
         cost(j, 2) = min(cost(j, 1) + 1, cost(j - 1, 2) + 1, &
-                         cost(j - 1, 1) + merge(0, 1, a(i:i) == b(j:j)))
+            cost(j - 1, 1) + merge(0, 1, a(i:i) == b(j:j)))
         if (i == 1 .or. j == 1) cycle
         if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
           cost(j, 2) = min(cost(j, 2), cost(j - 2, 0) + 1)

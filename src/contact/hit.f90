@@ -6,9 +6,9 @@
 !> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
 !> A node beside the outer border of the surface has no contact.
-!> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov
-!> and Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges
-!> Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243-253.
+!> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov and
+!> Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges Baerentzen and Aanaes, IEEE
+!> Trans. Vis. Comput. Graph. 11 (2005) 243-253.
 module dd3_contact_hit
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : patch_t, evaluate, normal_at, unit_normal

@@ -8,8 +8,8 @@
 !> vector (times sqrt 2), B = Z Z^T, Z_T the same for the stress, and C the material's
 !> d stress/d strain. Then
 !>   c = C - (C Z^T P(B) - Z_T^T S(B)) Z,   P(x^2) = (1 - x/sinh x)/x^2,   S(x^2) = tanh(x/2)/x.
-!> B has the eigenvalues h_ij^2. P and S are power series if these are small; otherwise they use
-!> the eigenvectors of E, the k-th of which is the axial vector of the pair (i,j). Rates of U and R:
+!> B has the eigenvalues h_ij^2. P and S are power series if these are small; otherwise they use the
+!> eigenvectors of E, the k-th of which is the axial vector of the pair (i,j). Rates of U and R:
 !> Hill, Aspects of invariance in solid mechanics, 1978.
 module dd3_element_moduli
   use dd3_base_kinds, only : half_sqrt2, wp

@@ -162,7 +162,6 @@ contains
     type(reading_t), intent(inout) :: self
     !> Words of the line.
     type(token_list_t), intent(in) :: token
-    !> The line.
     type(location_t), intent(in) :: here
 
     logical :: ok
@@ -204,7 +203,6 @@ contains
     type(reading_t), intent(inout) :: self
     !> Words of the line.
     type(token_list_t), intent(in) :: token
-    !> The line.
     type(location_t), intent(in) :: here
 
     character(len=:), allocatable :: expected

@@ -35,7 +35,7 @@ module dd3_input_block
     logical :: defaulted = .false.
   end type entry_t
 
-  !> One block.
+  !> Keyword block of the input.
   type :: block_t
     !> Word after the star, in lower case.
     character(len=:), allocatable :: keyword
@@ -157,7 +157,7 @@ contains
     if (size(self%entry(i)%value) > 0) at = self%entry(i)%value(1)%at
   end function at
 
-  !> Return the block's own name as the user wrote it.
+  !> Return the block's own name as written.
   pure function called(self)
     class(block_t), intent(in) :: self
     character(len=:), allocatable :: called

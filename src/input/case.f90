@@ -92,7 +92,7 @@ module dd3_input_case
     type(law_parameter_t), allocatable :: parameter(:)
   end type law_spec_t
 
-  !> A material.
+  !> Material as written, with its axes.
   type :: material_spec_t
     character(len=:), allocatable :: name
     !> Young's modulus (MPa) and Poisson's ratio.
@@ -137,7 +137,7 @@ module dd3_input_case
     type(block_t) :: source
   end type boundary_spec_t
 
-  !> A limit that may be off.
+  !> Limit with a switch.
   type :: limit_spec_t
     logical :: active = .false.
     !> If not active, a value that never limits.
@@ -307,7 +307,7 @@ module dd3_input_case
     type(block_t) :: source
   end type point_spec_t
 
-  !> The whole job.
+  !> Input of a job.
   type :: case_t
     !> Name of the input file as given.
     character(len=:), allocatable :: file

@@ -96,7 +96,7 @@ contains
     character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
 
     is_name = text /= "" .and. len(text) <= longest_name &
-              .and. verify(text, letters//"0123456789_-.") == 0
+        .and. verify(text, letters//"0123456789_-.") == 0
     if (is_name) is_name = index(letters, text(1:1)) > 0
   end function is_name
 
@@ -127,7 +127,7 @@ contains
     call add_defaults(block, key, errors)
   end subroutine check_keys
 
-  !> Return the first line of a block as the user wrote it.
+  !> Return the first line of a block as written.
   pure function title_of(block) result(title)
     type(block_t), intent(in) :: block
     character(len=:), allocatable :: title
@@ -195,7 +195,7 @@ contains
           " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help))
     end do
     if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. &
-               has_block(deck, "point"))) then
+        has_block(deck, "point"))) then
       call errors%push_input(whole_file, "the block *BLANK is missing", &
           "*BLANK name for a sheet, or *POINT name for a single material point")
     end if

@@ -114,7 +114,7 @@ contains
     integer :: i, n
 
     n = count([set%source%has("plane"), set%source%has("box"), set%source%has("nodes"), &
-               set%source%has("near")])
+        set%source%has("near")])
     if (n /= 1) then
       call errors%push_input(set%source%opened, "set '"//set%source%called()// &
           "': expected 1 definition, got "//to_text(n), &

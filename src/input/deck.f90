@@ -85,7 +85,7 @@ contains
     line%file = path
     i = 0
     do while (i < size(text))
-      call take_line(self, line, text, i)
+      call advance_line(self, line, text, i)
       if (self%mode == into_title .and. index(adjustl(untabbed(line%text)), "*") /= 1) then
         call add_title_line(self, line)
       else
@@ -96,7 +96,7 @@ contains
   end subroutine read_file
 
   !> Advance to the next line.
-  subroutine take_line(self, line, text, i)
+  subroutine advance_line(self, line, text, i)
     type(reader_t), intent(inout) :: self
     type(line_t), intent(inout) :: line
     !> All lines of the file.
@@ -109,7 +109,7 @@ contains
     line%number = i
     line%order = self%order
     line%text = text(i)%s
-  end subroutine take_line
+  end subroutine advance_line
 
   !> Return the text with tabs replaced by blanks.
   pure function untabbed(text)
@@ -169,7 +169,7 @@ contains
             "continuation beyond the end of the file", "a line after the ampersand")
         exit
       end if
-      call take_line(self, line, text, i)
+      call advance_line(self, line, text, i)
       call split_line(line, token, continues, errors)
     end do
     if (token%count == 0) return
@@ -323,8 +323,7 @@ contains
 
     is_assignment = .false.
     if (token%item(1)%text == "=" .and. .not. token%item(1)%quoted) then
-      call errors%push_input(token%item(1)%at, "missing key before the equals sign", &
-          "key = value")
+      call errors%push_input(token%item(1)%at, "missing key before the equals sign", "key = value")
     else if (token%count == 1) then
       call errors%push_input(token%item(1)%at, "this is neither a block nor a key with a value", &
           "*BLOCK name, or key = value")

@@ -1,4 +1,4 @@
-!> What a keyword's row expects, in words, and the splitting of the word lists in its members.
+!> Description of the values that a keyword's row expects, and splitting of its word lists.
 module dd3_input_describe
   use dd3_base_parameter, only : parameter_t, range_text, kind_real, kind_integer, kind_logical, &
       kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law

@@ -83,6 +83,7 @@ contains
     integer, intent(inout) :: k
 
     parameter%key_at = entry%value(k)%at
+
     if (is_pair(entry%value(k))) then
       parameter%key = pair_name
       parameter%text = entry%value(k)%text

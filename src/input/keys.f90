@@ -6,8 +6,8 @@ module dd3_input_keys
   implicit none
   private
   public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, contact_keys, &
-      boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, &
-      output_keys, point_keys
+      boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, output_keys, &
+      point_keys
 
   !> Bound of the numbers that must not be negative.
   real(wp), parameter :: zero = 0.0_wp
@@ -240,8 +240,7 @@ contains
           "angle of x from the rolling direction, in the plane of the sheet"), &
       row("control", kind_names, "", "-", &
           "prescribed components, logarithmic strain e or Cauchy stress s: e11 s22 s33 s12 s23 "// &
-          "s13", &
-          count=6), &
+          "s13", count=6), &
       row("target", kind_other, "", "-", &
           "strains (tensorial shear) and stresses (MPa), reached linearly in the number of steps", &
           repeatable=.true., form="number number number number number number steps = count"), &

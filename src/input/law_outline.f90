@@ -44,7 +44,7 @@ contains
             "' is not followed by =value", describe(row))
         i = next_parameter(entry, i + 1)
       else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
-               equals_at(entry, i + 3)) then
+          equals_at(entry, i + 3)) then
         call add_words(word, entry, i, i + 1)
         call add_token(word, "", .false., entry%value(i)%at)
         i = i + 2

@@ -40,7 +40,7 @@ contains
   !> Check the number of values in an entry.
   subroutine check_count(entry, wanted, expected, errors)
     type(entry_t), intent(in) :: entry
-    !> Number of values wanted; 0 for any number.
+    !> Number of values required; 0 for any number.
     integer, intent(in) :: wanted
     character(len=*), intent(in) :: expected
     type(error_list_t), intent(inout) :: errors

@@ -116,12 +116,10 @@ contains
     if (norm2(press%vector) > 0.0_wp) force(:, press%tool) = press%vector
     if (.not. norm2(press%vector) > 0.0_wp) then
       if (norm2(before) > 0.0_wp) return
-      call errors%push_input(press%at, "a zero force has no direction", &
-          "press = tool fx fy fz")
+      call errors%push_input(press%at, "a zero force has no direction", "press = tool fx fy fz")
     else if (norm2(before) > 0.0_wp) then
       if (norm2(press%vector/norm2(press%vector) - before/norm2(before)) <= 1.0e-6_wp) return
-      call errors%push_input(press%at, &
-          "the force on a pressed tool cannot change its direction", &
+      call errors%push_input(press%at, "the force on a pressed tool cannot change its direction", &
           "a force in the direction of the last one, or a phase in between that holds the tool")
     end if
   end subroutine check_press

@@ -161,7 +161,7 @@ contains
     real(wp), intent(in) :: f(gradient_values)
 
     volume = f(1)*(f(5)*f(9) - f(6)*f(8)) - f(2)*(f(4)*f(9) - f(6)*f(7)) &
-             + f(3)*(f(4)*f(8) - f(5)*f(7))
+        + f(3)*(f(4)*f(8) - f(5)*f(7))
   end function volume
 
 end module dd3_input_point_check

@@ -52,8 +52,7 @@ contains
           "another name")
     end if
     if (block%keyword == "tool" .and. block%name == "load") then
-      call errors%push_input(block%named, &
-          "'load' is reserved for control = load", "another name")
+      call errors%push_input(block%named, "'load' is reserved for control = load", "another name")
     end if
   end subroutine check_reserved_name
 

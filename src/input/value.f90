@@ -33,7 +33,7 @@ contains
     if (row%later == "*") then
       call errors%push_input(entry%at, "'"//trim(row%name)//"' "//not_available)
     else if (row%may_be_off .and. size(entry%value) == 1 .and. &
-             same_name(entry%value(1)%text, "off")) then
+        same_name(entry%value(1)%text, "off")) then
       entry%is_off = .true.
     else
       select case (row%kind)

@@ -55,7 +55,7 @@ module dd3_linalg_solver
     character(len=160) :: description = ""
     !> Solver that the present matrix is factorised for; empty if there is none.
     character(len=24) :: method = ""
-    !> What the solver remembers from matrix to matrix and what changes its results. Reset by
+    !> Data that the solver keeps from matrix to matrix and that change its results. Reset by
     !> `setup`, size 0 for solvers without memory; a restart sets it after `setup`.
     integer, allocatable :: memory(:)
     !> Renumbered and scaled copy of the system.

@@ -102,8 +102,7 @@ contains
     real(wp), intent(in) :: a(3, 3)
 
     determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) &
-        - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
-        + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+        - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
   end function determinant
 
   !> Invert a 3x3 matrix by its cofactors.

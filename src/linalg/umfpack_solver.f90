@@ -14,7 +14,7 @@ module dd3_linalg_umfpack_solver
   !> Relative residual accepted where the tolerance asks for less.
   real(wp), parameter :: residual_limit = 1.0e-6_wp
 
-  !> UMFPACK.
+  !> Direct solver of the library UMFPACK.
   type, extends(linear_solver_t) :: umfpack_solver_t
     type(direct_factors_t) :: factors
     !> Solution and residual, `(3n)`.

@@ -42,7 +42,7 @@ contains
     self%last = self%first + self%hardening%n_internal - 1
     self%n_internal = self%last
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
-    self%symmetric = .not. (self%kinematic .or. self%hardening%follows_path)
+    self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent)
   end subroutine complete
 
   !> Describe the internal variables of a point in their order, the equivalent plastic strain first.
@@ -112,7 +112,7 @@ contains
     end do
     if (self%hardening%owns_back_stress) then
       call self%hardening%back_stress(internal_variables(self%first:self%last), 0.0_wp, &
-                                      no_direction(), back)
+          no_direction(), back)
       back_stress = back_stress + back%value
     end if
   end function back_stress_of
@@ -126,10 +126,9 @@ contains
     type(flow_direction_t) :: direction
 
     ! Other laws ignore the direction, and filling it takes longer than their flow stress.
-    if (self%hardening%follows_path) direction = no_direction()
+    if (self%hardening%path_dependent) direction = no_direction()
     call self%hardening%flow_stress(internal_variables(1), &
-                                    internal_variables(self%first:self%last), 0.0_wp, &
-                                    direction, flow)
+        internal_variables(self%first:self%last), 0.0_wp, direction, flow)
   end subroutine flow_response_of
 
   !> Evaluate the sum of the back-stresses at the end of a plastic increment.
@@ -175,7 +174,7 @@ contains
     end do
     if (self%hardening%n_internal > 0) then
       call self%hardening%evolve(start(self%first:self%last), increment, direction, &
-                                 evolved(self%first:self%last))
+          evolved(self%first:self%last))
     end if
   end subroutine evolve_internal_variables
 

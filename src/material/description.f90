@@ -10,7 +10,7 @@ module dd3_material_description
   public :: description_t, internal_variable_t, problem_t, law_choice_t
   public :: position_of, value_of, is_given, add_problem
 
-  !> A law as the user sees it.
+  !> Description of a law in help and messages.
   type :: description_t
     !> Name as written in the input.
     character(len=24) :: name = ""

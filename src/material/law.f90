@@ -1,5 +1,4 @@
-!> The parent of yield criteria, hardening laws and back-stress laws: what a law tells of itself and
-!> how it takes its parameters.
+!> Base of the yield criteria, hardening laws and back-stress laws: description, parameters, checks.
 module dd3_material_law
   use dd3_base_parameter, only : law_value_t
   use dd3_material_description, only : description_t, internal_variable_t, problem_t
@@ -7,13 +6,12 @@ module dd3_material_law
   private
   public :: law_t
 
-  !> A material law.
   type, abstract :: law_t
   contains
     !> Describe the law: name, source, parameters.
     procedure(describe_interface), deferred, nopass :: describe
     !> Describe the internal variables that the law adds to the equivalent plastic strain, in the
-    !> order of its own part of them; none by default.
+    !> order in which the law stores them; by default there are none.
     procedure, nopass :: describe_internal_variables => describe_none
     !> Set the parameters, which have been checked.
     procedure(set_interface), deferred :: set

@@ -20,7 +20,7 @@ module dd3_material_material
   private
   public :: material_t, new_material
 
-  !> A material.
+  !> Elasticity, yield criterion, hardening law and back-stress laws with their parameters.
   type :: material_t
     !> Young's modulus, MPa.
     real(wp) :: young = 0.0_wp
@@ -80,7 +80,7 @@ contains
   !> Integrate stress and internal variables over a strain increment in one step or, if that fails,
   !> in 2, 4 ... 64 substeps. If all fail, return the initial state with the elastic tangent.
   pure subroutine update(self, stress_committed, internal_committed, strain, stress, &
-                         internal_variables, tangent, plastic, verdict)
+      internal_variables, tangent, plastic, verdict)
     class(material_t), intent(in) :: self
     !> Committed stress, MPa, and internal variables.
     real(wp), intent(in) :: stress_committed(6), internal_committed(self%n_internal)
@@ -113,7 +113,7 @@ contains
       substeps%count = self%least_substeps
       do while (substeps%count <= substep_limit)
         call integrate(self%laws, substeps, stress_committed, internal_committed, strain, &
-                       internal_variables, step)
+            internal_variables, step)
         stress = step%stress
         if (step%converged) call differentiate(self%laws, substeps, stress_committed, &
             internal_committed, strain, step, tangent)
@@ -154,7 +154,7 @@ contains
     tangent = self%laws%elasticity%stiffness
     if (.not. plastic) return
     call self%laws%criterion%second_derivative(stress - self%back_stress(internal_variables), &
-                                               direction)
+        direction)
     call self%laws%hardening%flow_stress(internal_variables(1), &
         internal_variables(self%laws%first:self%laws%last), 0.0_wp, direction, flow)
     rate = elastic_stress(self%laws%elasticity, direction%gradient)
@@ -179,7 +179,7 @@ contains
     real(wp) :: value
 
     call self%laws%criterion%gradient(stress - self%back_stress(internal_variables), value, &
-                                      direction)
+        direction)
   end function plastic_direction
 
   !> Return the equivalent stress sb(T - X) of a state, MPa.

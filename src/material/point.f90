@@ -118,8 +118,7 @@ contains
       change = merge(target - stress, target - self%strain - increment, by_stress)
       stress_error = norm2(merge(change, 0.0_wp, by_stress))
       if (stress_error <= tolerance*max(norm2(stress), norm2(merge(target, 0.0_wp, by_stress))) &
-          + smallest*material%young .and. &
-          norm2(merge(0.0_wp, change, by_stress)) <= smallest) then
+          + smallest*material%young .and. norm2(merge(0.0_wp, change, by_stress)) <= smallest) then
         within = .not. any(by_stress .and. abs(self%strain + increment) > largest_strain)
         if (.not. within) exit
         trial%strain = self%strain + increment

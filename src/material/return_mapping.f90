@@ -4,10 +4,10 @@
 !>
 !>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
 !>
-!> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and
-!> its consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
-!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse
-!> of the last iteration gives the last correction and the tangent.
+!> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and its
+!> consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
+!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse of
+!> the last iteration gives the last correction and the tangent.
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
@@ -174,7 +174,7 @@ contains
 
     call laws%criterion%second_derivative(stress, step%direction)
     call laws%hardening%flow_stress(start(1), start(laws%first:laws%last), increment, &
-                                    step%direction, step%flow)
+        step%direction, step%flow)
     step%increment = increment
     step%stress = stress
     if (laws%kinematic) then
@@ -182,10 +182,10 @@ contains
       step%stress = stress + step%back%value
     end if
     step%residual = elastic_strain(laws%elasticity, step%stress - step%trial) &
-                    + increment*step%direction%gradient
+        + increment*step%direction%gradient
     step%excess = step%direction%equivalent - step%flow%value
     step%norm = sqrt(dot_product(step%residual, step%residual)/strain_weight**2 &
-                     + (step%excess/step%flow%value)**2)
+        + (step%excess/step%flow%value)**2)
   end subroutine evaluate
 
   !> Apply the longest of the repeatedly halved changes that reduces the residual.
@@ -208,7 +208,7 @@ contains
     fraction = 1.0_wp
     do halving = 0, halving_limit
       call evaluate(laws, start, stress + fraction*change, &
-                    max(0.0_wp, increment + fraction*change_of_increment), step)
+          max(0.0_wp, increment + fraction*change_of_increment), step)
       accepted = step%norm < norm
       if (accepted) return
       fraction = 0.5_wp*fraction
@@ -229,7 +229,7 @@ contains
       step%increment = max(0.0_wp, step%increment + change_of_increment)
     else
       call evaluate(laws, start, step%direction%stress + change, &
-                    max(0.0_wp, step%increment + change_of_increment), step)
+          max(0.0_wp, step%increment + change_of_increment), step)
     end if
     step%converged = .true.
   end subroutine finish

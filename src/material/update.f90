@@ -47,7 +47,7 @@ contains
 
   !> Integrate a strain increment in several substeps; stop at the first that fails.
   pure subroutine integrate_substeps(laws, substeps, stress, start, strain, internal_variables, &
-                                     step)
+      step)
     type(composition_t), intent(in) :: laws
     type(substeps_t), intent(inout) :: substeps
     real(wp), intent(in) :: stress(6), start(laws%n_internal), strain(6)
@@ -152,7 +152,6 @@ contains
   !> Carry the derivatives of stress and plastic strain over one substep.
   pure subroutine chain(laws, step, substeps)
     type(composition_t), intent(in) :: laws
-    !> The substep.
     type(step_t), intent(in) :: step
     type(substeps_t), intent(inout) :: substeps
 
@@ -192,7 +191,7 @@ contains
     end do
     do i = 1, size(internal_variables)
       if (iand(transfer(internal_variables(i), 0_i8), exponent_bits) == exponent_bits) &
-        all_finite = .false.
+          all_finite = .false.
     end do
   end function all_finite
 

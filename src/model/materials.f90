@@ -1,5 +1,5 @@
-!> Materials from the case: the laws as written, checked against the registries, every problem shown
-!> where it stands.
+!> Materials from the case: the laws as written, checked against the registries, with the location
+!> of every problem.
 module dd3_model_materials
   use dd3_base_digest, only : digest_t
   use dd3_base_error, only : error_list_t, location_t
@@ -16,10 +16,10 @@ module dd3_model_materials
   private
   public :: new_materials, law_sources
 
-  !> What the kinds of laws are called in a message.
+  !> Names of the kinds of laws in messages.
   character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", &
       "hardening law", "back-stress law"]
-  !> What may be given in place of a back-stress.
+  !> Input word for no back-stress.
   character(len=24), parameter :: no_law = "none"
 
 contains
@@ -123,11 +123,11 @@ contains
     end do
   end subroutine choose
 
-  !> Return the location of the value that a problem concerns; that of the law's name if it concerns
-  !> the whole law or a default.
+  !> Return the location of the value that a problem concerns; if it concerns the whole law or a
+  !> default, that of the law's name.
   pure function problem_place(spec, origin, index) result(place)
     type(law_spec_t), intent(in) :: spec
-    !> Position among the parameters as written of each value; 0 for a default.
+    !> Position of each value among the parameters as written; 0 for a default.
     integer, intent(in) :: origin(:)
     !> Position among the values, or 0.
     integer, intent(in) :: index
@@ -138,7 +138,7 @@ contains
     if (origin(index) > 0) place = spec%parameter(origin(index))%at
   end function problem_place
 
-  !> Return the laws of a material with their sources, a line each.
+  !> Return the laws of a material with their sources, one per line.
   function law_sources(name, material) result(text)
     character(len=*), intent(in) :: name
     type(material_t), intent(in) :: material
@@ -163,8 +163,8 @@ contains
     type(description_t), intent(in) :: description
     character(len=:), allocatable :: text
 
-    text = newline//"  "//trim(description%name)//": "//trim(description%title)//"; " &
-        //trim(description%source)
+    text = newline//"  "//trim(description%name)//": "//trim(description%title)//"; "// &
+        trim(description%source)
   end function source_line
 
 end module dd3_model_materials

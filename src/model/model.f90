@@ -1,5 +1,5 @@
-!> What stays constant in a run: mesh, element table, materials, tools, contact candidates, supports
-!> and phases.
+!> Constant data of a run: mesh, element table, materials, tools, contact candidates, supports and
+!> phases.
 module dd3_model_model
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -12,27 +12,27 @@ module dd3_model_model
   private
   public :: model_t, history_set_t, output_t
 
-  !> A node set whose quantities go into history.csv.
+  !> Node set with quantities in history.csv.
   type :: history_set_t
-    !> Name of the block, the prefix of its columns.
+    !> Name of the block, prefix of its columns.
     character(len=:), allocatable :: name
     integer, allocatable :: node(:)
     !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false.
   end type history_set_t
 
-  !> What is written, and how often.
+  !> Output and its intervals.
   type :: output_t
-    !> A row of history.csv every so many increments.
+    !> Interval of the rows of history.csv, in increments.
     integer :: history_every = 1
-    !> Fields every so many mm of travel of the controlling tool in its phase; 0 for not so.
+    !> Interval of the fields in the travel within a phase, mm; 0: off.
     real(wp) :: fields_every = 0.0_wp
-    !> Fields at these travels in the phase, mm, growing.
+    !> Travels within a phase at which fields are written, mm, ascending.
     real(wp), allocatable :: fields_at(:)
-    !> Fields every so many increments; 0 for not so.
+    !> Interval of the fields, in increments; 0: off.
     integer :: fields_increments = 0
-    !> restart.h5 is written at the end of each phase and when a run stops, and every so many
-    !> increments; 0 for not so.
+    !> Whether restart.h5 is written at the end of each phase and when a run stops, and the interval
+    !> between, in increments; 0: off.
     logical :: restart = .true.
     integer :: restart_every = 0
   end type output_t
@@ -45,7 +45,7 @@ module dd3_model_model
     real(wp), allocatable :: x0(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
-    !> The element all of the sheet is made of.
+    !> Element type of the sheet.
     type(element_t) :: element
     type(material_t), allocatable :: material(:)
     character(len=24), allocatable :: material_name(:)
@@ -66,17 +66,17 @@ module dd3_model_model
     integer, allocatable :: contact_node(:)
     !> Number of each node among the candidates, `(n_node)`; 0 for none.
     integer, allocatable :: candidate_of(:)
-    !> Which tools a candidate may touch, `(n_tool, n_contact)`.
+    !> Tools that a candidate can touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
-    !> Block row of each tool behind the nodes' in the reduced system; 0 where the tool is never
-    !> pressed, `(n_tool)`.
+    !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
+    !> tool is never pressed.
     integer, allocatable :: tool_row(:)
     !> Degrees of freedom held in every phase, `(3, n_node)`.
     logical, allocatable :: fixed(:, :)
     !> Sets that carry a load in some phase.
     type(load_set_t), allocatable :: load_set(:)
     type(phase_t), allocatable :: phase(:)
-    !> Node sets followed in history.csv.
+    !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
     type(output_t) :: output
   end type model_t

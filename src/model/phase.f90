@@ -1,5 +1,5 @@
-!> A phase of the process as the input gives it, with all names resolved: which tools move or are
-!> pressed, which nodes are displaced or loaded, when it ends. It never changes in a run.
+!> Phase of the process as in the input, with all names resolved: tools moved and pressed, nodes
+!> displaced and loaded, early end. It never changes in a run.
 module dd3_model_phase
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
@@ -7,18 +7,18 @@ module dd3_model_phase
   private
   public :: phase_t
 
-  !> A phase. All moves and loads are linear in its progress, 0 to 1.
+  !> Phase in which all displacements and loads are linear in the progress, 0 to 1.
   type :: phase_t
     character(len=:), allocatable :: name
-    !> Controlling tool; 0 where loads control.
+    !> Controlling tool; 0 if loads control.
     integer :: control = 0
     !> Trial increment as a fraction of the phase.
     real(wp) :: trial = 0.0_wp
-    !> Path of the controlling tool over the phase, mm; 0 where loads control.
+    !> Path of the controlling tool over the phase, mm; 0 if loads control.
     real(wp) :: length = 0.0_wp
     !> Displacement of the tools over the phase, `(3, n_tool)`, mm.
     real(wp), allocatable :: move(:, :)
-    !> A force acts on the tool, which is free to follow it along its line, `(n_tool)`.
+    !> Tools under a prescribed force, which move freely along their lines, `(n_tool)`.
     logical, allocatable :: pressed(:)
     !> Force on the pressed tools at the end of the phase, `(3, n_tool)`, N; without meaning for
     !> those whose force the phase leaves unchanged, `(n_tool)`.
@@ -26,7 +26,7 @@ module dd3_model_phase
     logical, allocatable :: keeps_tool_load(:)
     !> Unit vector along the line of motion of a pressed or moved tool, `(3, n_tool)`.
     real(wp), allocatable :: direction(:, :)
-    !> Contact with the tool is on, `(n_tool)`.
+    !> Tools with contact, `(n_tool)`.
     logical, allocatable :: active(:)
     !> Degrees of freedom with prescribed displacement, supports included, `(3, n_node)`.
     logical, allocatable :: prescribed(:, :)

@@ -1,5 +1,5 @@
-!> The phases with all names resolved. What a phase does not name stays as it is: tools held, forces
-!> and loads kept.
+!> Phases of the case with all names resolved. What a phase does not name stays unchanged: tools are
+!> held, forces and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t, until_never
@@ -56,7 +56,7 @@ contains
     phase%prescribed = model%fixed
   end subroutine new_idle_phase
 
-  !> Make a phase that changes nothing of what the phase before it left.
+  !> Make a phase that keeps everything as the phase before it left it.
   subroutine new_phase_after(before, phase)
     type(phase_t), intent(in) :: before
     type(phase_t), intent(out) :: phase

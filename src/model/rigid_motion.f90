@@ -1,6 +1,6 @@
-!> Which motions of the sheet as a rigid body nothing holds. A node held along a direction d takes
-!> from u = t + w x (x - c) the motions with u . d /= 0; those left are the null space of the sum of
-!> the products of all such conditions, found by elimination with pivots on the diagonal,
+!> Rigid-body motions of the sheet that the supports leave free. A node held in a direction d
+!> excludes the motions u = t + w x (x - c) with u . d /= 0. The free motions are the null space of
+!> the sum of the dyadic products of all such conditions, found by elimination with diagonal pivots,
 !> translations first.
 module dd3_model_rigid_motion
   use dd3_base_kinds, only : wp
@@ -10,20 +10,19 @@ module dd3_model_rigid_motion
   private
   public :: rigid_motion_t, new_rigid_motion
 
-  !> A pivot below this part of the trace is round-off.
+  !> Pivots below this fraction of the trace are round-off.
   real(wp), parameter :: round_off = 1.0e-12_wp
-  !> A component of a direction below this counts as none.
+  !> Components of a unit vector below this count as zero.
   real(wp), parameter :: aligned = 1.0e-4_wp
-  !> Names of the axes.
   character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
-  !> What holds a body.
+  !> Conditions that hold a body.
   type :: rigid_motion_t
-    !> The middle of its nodes, mm.
+    !> Mean position of the nodes, mm.
     real(wp) :: centre(3) = 0.0_wp
-    !> The distance of the farthest node from it, mm.
+    !> Distance of the farthest node from the centre, mm.
     real(wp) :: size = 1.0_wp
-    !> Sum of the products of the conditions on translation and rotation times size, `(6, 6)`.
+    !> Sum of the dyadic products of the conditions on translation and rotation times size.
     real(wp) :: product(6, 6) = 0.0_wp
   contains
     procedure :: hold
@@ -33,11 +32,10 @@ module dd3_model_rigid_motion
 
 contains
 
-  !> A body that nothing holds.
+  !> Make a body without supports.
   pure subroutine new_rigid_motion(self, x)
-    !> The body.
     type(rigid_motion_t), intent(out) :: self
-    !> Positions of its nodes, `(3, n_node)`, mm.
+    !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
 
     integer :: n
@@ -46,13 +44,11 @@ contains
     self%size = maxval([(norm2(x(:, n) - self%centre), n=1, size(x, 2))])
   end subroutine new_rigid_motion
 
-  !> Holds a point along a direction.
+  !> Hold a point in a direction.
   pure subroutine hold(self, x, direction)
-    !> The body.
     class(rigid_motion_t), intent(inout) :: self
-    !> The point, mm.
+    !> Position of the point, mm.
     real(wp), intent(in) :: x(3)
-    !> The direction.
     real(wp), intent(in) :: direction(3)
 
     real(wp) :: condition(6)
@@ -62,13 +58,12 @@ contains
     self%product = self%product + spread(condition, 2, 6)*spread(condition, 1, 6)
   end subroutine hold
 
-  !> Holds the nodes where their displacement is prescribed.
+  !> Hold the nodes at which a displacement is prescribed.
   pure subroutine hold_prescribed(self, x, prescribed)
-    !> The body.
     class(rigid_motion_t), intent(inout) :: self
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Whether a displacement is prescribed, `(3, n_node)`.
+    !> Components with a prescribed displacement, `(3, n_node)`.
     logical, intent(in) :: prescribed(:, :)
 
     real(wp) :: direction(3)
@@ -84,9 +79,8 @@ contains
     end do
   end subroutine hold_prescribed
 
-  !> The motions left, in words: `move along y, turn about x`; empty where there is none.
+  !> Return the free motions as text, `move along y, turn about x`; empty if there are none.
   pure function free_motion(self) result(text)
-    !> The body.
     class(rigid_motion_t), intent(in) :: self
     character(len=:), allocatable :: text
 
@@ -107,20 +101,17 @@ contains
     if (len(turns) > 0) call add(text, turns)
   end function free_motion
 
-  !> Adds words to others.
+  !> Append words to a list separated by commas.
   pure subroutine add(text, words)
-    !> The others.
     character(len=:), allocatable, intent(inout) :: text
-    !> The words.
     character(len=*), intent(in) :: words
 
     if (len(text) > 0) text = text//", "
     text = text//words
   end subroutine add
 
-  !> A direction in words: the axis, or its components.
+  !> Return a direction as text: the axis, or the components.
   pure function name_of(direction) result(name)
-    !> The direction.
     real(wp), intent(in) :: direction(3)
     character(len=:), allocatable :: name
 
@@ -135,32 +126,31 @@ contains
     name = "("//to_text(unit(1), 3)//" "//to_text(unit(2), 3)//" "//to_text(unit(3), 3)//")"
   end function name_of
 
-  !> The null space of a symmetric matrix without negative eigenvalues (Gauss and Jordan).
+  !> Find the null space of a symmetric positive semi-definite matrix by Gauss-Jordan elimination.
   pure subroutine null_space(matrix, motion, n)
-    !> The matrix.
     real(wp), intent(in) :: matrix(6, 6)
     !> Vectors that span the null space, `motion(:, 1:n)`.
     real(wp), intent(out) :: motion(6, 6)
-    !> Their number.
+    !> Dimension of the null space.
     integer, intent(out) :: n
 
     real(wp) :: a(6, 6), smallest
-    logical :: taken(6)
+    logical :: eliminated(6)
     integer :: step, last, k, i
 
     a = matrix
     smallest = round_off*sum([(a(i, i), i=1, 6)])
-    taken = .false.
+    eliminated = .false.
     last = 3
     do step = 1, 7
-      k = maxloc([(a(i, i), i=1, last)], dim=1, mask=.not. taken(:last))
+      k = maxloc([(a(i, i), i=1, last)], dim=1, mask=.not. eliminated(:last))
       if (k > 0) then
         if (a(k, k) <= smallest) k = 0
       end if
       if (k == 0 .and. last == 6) exit
       last = merge(6, last, k == 0)
       if (k == 0) cycle
-      taken(k) = .true.
+      eliminated(k) = .true.
       a(k, :) = a(k, :)/a(k, k)
       do i = 1, 6
         if (i /= k) a(i, :) = a(i, :) - a(i, k)*a(k, :)
@@ -169,9 +159,9 @@ contains
     n = 0
     motion = 0.0_wp
     do k = 1, 6
-      if (taken(k)) cycle
+      if (eliminated(k)) cycle
       n = n + 1
-      where (taken) motion(:, n) = -a(:, k)
+      where (eliminated) motion(:, n) = -a(:, k)
       motion(k, n) = 1.0_wp
     end do
   end subroutine null_space

@@ -10,8 +10,7 @@ module dd3_model_state
   private
   public :: state_t, phase_start_t, new_state
 
-  !> Values that a phase fixes when it begins: what it starts from, and the targets of quantities
-  !> that it leaves unchanged.
+  !> Values set at the start of a phase: initial values, and final values of the loads.
   type :: phase_start_t
     !> Displacement of the tools, `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_displacement(:, :)
@@ -24,7 +23,7 @@ module dd3_model_state
     real(wp), allocatable :: fading(:, :)
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
-    !> The force of `until` is met from below.
+    !> Whether the force of `until` is approached from below.
     logical :: until_from_below = .true.
   end type phase_start_t
 
@@ -34,7 +33,7 @@ module dd3_model_state
     integer :: increment = 0
     !> Running phase, from 1.
     integer :: phase = 1
-    !> The running phase has begun; false before the first one only.
+    !> Whether the running phase has begun; false only before the first one.
     logical :: begun = .false.
     !> Progress within the phase, 0 to 1.
     real(wp) :: progress = 0.0_wp
@@ -44,7 +43,7 @@ module dd3_model_state
     real(wp) :: r_cap = huge(1.0_wp)
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
-    !> What the linear solver remembers from matrix to matrix.
+    !> Data that the linear solver keeps from matrix to matrix.
     integer, allocatable :: solver_memory(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
@@ -61,7 +60,7 @@ module dd3_model_state
     real(wp), allocatable :: internal_variables(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
-    !> The last increment was plastic, `(n_point, n_element)`.
+    !> Whether the last increment was plastic, `(n_point, n_element)`.
     logical, allocatable :: plastic(:, :)
     !> Contact forces of the candidates, sheet on tool, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
@@ -87,7 +86,7 @@ module dd3_model_state
 
 contains
 
-  !> Make the initial state: a virgin sheet on the mesh, the tools at their initial positions.
+  !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
   subroutine new_state(self, model)
     type(state_t), intent(out) :: self
     type(model_t), intent(in) :: model

@@ -1,5 +1,5 @@
-!> Walk over the components of a state: `visit_state` hands every component with its name to a
-!> visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
+!> Walk over the components of a state: `visit_state` passes every component with its name to
+!> a visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
 !> component is named in one place only.
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp
@@ -9,7 +9,7 @@ module dd3_model_state_walk
   private
   public :: state_visitor_t, visit_state, first_difference
 
-  !> Operation on the components of a state; it may change them.
+  !> Operation on the components of a state; it can change them.
   type, abstract :: state_visitor_t
   contains
     procedure(visit_reals_interface), deferred :: reals
@@ -31,7 +31,7 @@ module dd3_model_state_walk
       real(wp), intent(inout) :: values(n)
     end subroutine visit_reals_interface
 
-    !> Visit a component of integers; logical components come as 0 and 1.
+    !> Visit a component of integers; logical components are passed as 0 and 1.
     subroutine visit_integers_interface(self, name, n, values)
       import :: state_visitor_t
       class(state_visitor_t), intent(inout) :: self
@@ -55,7 +55,7 @@ module dd3_model_state_walk
 
 contains
 
-  !> Hand every component of a state to a visitor, always in the same order.
+  !> Pass every component of a state to a visitor, always in the same order.
   subroutine visit_state(state, visitor)
     type(state_t), intent(inout) :: state
     class(state_visitor_t), intent(inout) :: visitor
@@ -84,14 +84,13 @@ contains
     call visit_hints("hint", size(state%hint), state%hint, visitor)
     call visitor%reals("fading", size(state%fading), state%fading)
     call visitor%integers("fading_tool", size(state%fading_tool), state%fading_tool)
-    call visitor%reals("tool_displacement", size(state%tool_displacement), &
-        state%tool_displacement)
+    call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
     call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
     call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 
-  !> Hand every component of the values at the start of a phase to a visitor.
+  !> Pass every component of the values at the start of a phase to a visitor.
   subroutine visit_phase_start(start, visitor)
     type(phase_start_t), intent(inout) :: start
     class(state_visitor_t), intent(inout) :: visitor
@@ -107,7 +106,7 @@ contains
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
 
-  !> Hand every component of the closest points to a visitor.
+  !> Pass every component of the closest points to a visitor.
   subroutine visit_hints(name, n, hint, visitor)
     character(len=*), intent(in) :: name
     integer, intent(in) :: n
@@ -210,7 +209,7 @@ contains
       name = trim(left%name(i))
       if (left%last(i) /= right%last(i)) return
       if (any(transfer(left%value(first:left%last(i)), [0]) /= &
-              transfer(right%value(first:right%last(i)), [0]))) return
+          transfer(right%value(first:right%last(i)), [0]))) return
       first = left%last(i) + 1
     end do
     name = ""

@@ -1,5 +1,5 @@
-!> Columns of nodes through the thickness of the sheet, found from the pairs of nodes that face each
-!> other in the elements.
+!> Columns of nodes through the thickness of the sheet, from the pairs of opposite nodes of the
+!> elements.
 module dd3_model_thickness_columns
   use dd3_model_model, only : model_t
   implicit none
@@ -8,12 +8,13 @@ module dd3_model_thickness_columns
 
 contains
 
-  !> Bottom and top node of the column in which each node lies: `column(2, n_node)`.
+  !> Find the column in which each node lies.
   subroutine thickness_columns(model, column)
-    !> The model.
     type(model_t), intent(in) :: model
-    !> The columns; a node of no column is its own bottom and top.
+    !> Bottom and top node of the column of each node, `(2, n_node)`; a node that is in no column is
+    !> its own bottom and top.
     integer, allocatable, intent(out) :: column(:, :)
+
     integer, allocatable :: next(:, :)
     integer :: e, p, i, below, above
 
@@ -33,12 +34,12 @@ contains
     end do
   end subroutine thickness_columns
 
-  !> The last node of the chain that begins at a node.
+  !> Return the last node of a chain.
   pure integer function last_of(next, first)
-    !> The node that follows each node; 0 for none.
+    !> Next node of each node, 0 at the end.
     integer, intent(in) :: next(:)
-    !> The node.
     integer, intent(in) :: first
+
     integer :: steps
 
     last_of = first

@@ -1,4 +1,4 @@
-!> Lengths and directions that count as zero, or as far, all in one place.
+!> Tolerances of lengths and directions, and search distances.
 module dd3_model_tolerances
   use dd3_base_kinds, only : wp
   implicit none
@@ -10,8 +10,8 @@ module dd3_model_tolerances
   real(wp), parameter :: start_depth = 1.0e-3_wp
   !> Distance up to which a tool is looked for at the start, mm.
   real(wp), parameter :: start_search = 1.0e4_wp
-  !> Depth up to which a start inside the sheet is reported, in thicknesses: a node farther behind a
-  !> surface may lie beyond its border.
+  !> Depth up to which a start inside the sheet is reported, divided by the thickness: a node deeper
+  !> behind a surface can lie beyond its border.
   real(wp), parameter :: wrong_side_depth = 10.0_wp
   !> Gap up to which a tool without contact counts as touching, mm.
   real(wp), parameter :: touch = 1.0e-4_wp

@@ -4,14 +4,12 @@ module dd3_output_hdf5
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_null_char
   use dd3_base_kinds, only : wp, i8
   use hdf5, only : hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5screate_simple_f, &
-                   h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, &
-                   h5dwrite_f, h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, &
-                   h5pclose_f, h5acreate_f, h5awrite_f, h5aclose_f, h5tcopy_f, h5tset_size_f, &
-                   h5tclose_f, h5gcreate_f, h5fflush_f, h5iget_name_f, H5S_SELECT_SET_F, &
-                   H5S_UNLIMITED_F, H5S_SCALAR_F, H5P_DATASET_CREATE_F, H5T_FORTRAN_S1, &
-                   H5T_NATIVE_DOUBLE, &
-                   H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, H5T_STD_I64LE, H5T_STD_I32LE, &
-                   H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
+      h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, h5dwrite_f, &
+      h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, h5pclose_f, h5acreate_f, &
+      h5awrite_f, h5aclose_f, h5tcopy_f, h5tset_size_f, h5tclose_f, h5gcreate_f, h5fflush_f, &
+      h5iget_name_f, H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5S_SCALAR_F, H5P_DATASET_CREATE_F, &
+      H5T_FORTRAN_S1, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, H5T_STD_I64LE, &
+      H5T_STD_I32LE, H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
   implicit none
   private
   public :: series_t, start_hdf5, make_group, flush_hdf5
@@ -65,6 +63,7 @@ contains
   !> be read. Files that failed are not touched again when the program ends.
   subroutine start_hdf5(ok)
     logical, intent(out) :: ok
+
     integer :: status
     integer(c_int) :: set
 
@@ -88,6 +87,7 @@ contains
     integer, intent(in) :: chunk
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space, plist
     integer(hsize_t) :: size_now(2), size_most(2), size_chunk(2)
     integer :: status, rank, ignored
@@ -140,13 +140,14 @@ contains
     real(wp), intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
     call grow(self, size(values), memory, file, ok)
     if (.not. ok) return
     call h5dwrite_f(self%id, H5T_NATIVE_DOUBLE, values, [size(values, kind=hsize_t)], status, &
-                    memory, file)
+        memory, file)
     ok = status >= 0
     call close_spaces(memory, file)
   end subroutine series_append_reals
@@ -157,13 +158,14 @@ contains
     integer, intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
     call grow(self, size(values), memory, file, ok)
     if (.not. ok) return
     call h5dwrite_f(self%id, H5T_NATIVE_INTEGER, values, [size(values, kind=hsize_t)], status, &
-                    memory, file)
+        memory, file)
     ok = status >= 0
     call close_spaces(memory, file)
   end subroutine series_append_integers
@@ -174,13 +176,14 @@ contains
     integer(i8), intent(in), target :: value
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: memory, file
     integer :: status
 
     call grow(self, 1, memory, file, ok)
     if (.not. ok) return
     call h5dwrite_f(self%id, h5kind_to_type(i8, H5_INTEGER_KIND), c_loc(value), status, memory, &
-                    file)
+        file)
     ok = status >= 0
     call close_spaces(memory, file)
   end subroutine series_append_long
@@ -194,6 +197,7 @@ contains
     integer(hid_t), intent(out) :: memory, file
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hsize_t) :: first(2), more(2), extent(2)
     integer :: status, rank
 
@@ -220,6 +224,7 @@ contains
   !> Close two dataspaces.
   subroutine close_spaces(memory, file)
     integer(hid_t), intent(in) :: memory, file
+
     integer :: ignored
 
     call h5sclose_f(memory, ignored)
@@ -261,6 +266,7 @@ contains
   !> Close a dataset.
   subroutine series_close(self)
     class(series_t), intent(inout) :: self
+
     integer :: ignored
 
     if (self%id >= 0) call h5dclose_f(self%id, ignored)
@@ -274,6 +280,7 @@ contains
     integer(hid_t), intent(out) :: group
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     group = -1
@@ -288,6 +295,7 @@ contains
     character(len=*), intent(in) :: name, text
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space, type, attribute
     integer :: status, ignored
 
@@ -301,7 +309,7 @@ contains
     if (ok) call h5acreate_f(object, name, type, space, attribute, status)
     ok = ok .and. status >= 0
     if (ok) call h5awrite_f(attribute, type, text//repeat(" ", merge(1_i8, 0_i8, len(text) == 0)), &
-                            [1_hsize_t], status)
+        [1_hsize_t], status)
     ok = ok .and. status >= 0
     if (.not. ok) return
     call h5aclose_f(attribute, ignored)
@@ -318,6 +326,7 @@ contains
     integer(hid_t), intent(out) :: attribute
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer(hid_t) :: space
     integer :: status, ignored
 
@@ -342,6 +351,7 @@ contains
     integer, intent(in) :: values(:)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     if (.not. ok) return
@@ -351,10 +361,10 @@ contains
 
   !> Write all that is buffered of a file.
   subroutine flush_hdf5(file, ok)
-    !> The file.
     integer(hid_t), intent(in) :: file
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
+
     integer :: status
 
     if (.not. ok) return

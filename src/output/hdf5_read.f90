@@ -3,11 +3,10 @@ module dd3_output_hdf5_read
   use dd3_base_kinds, only : wp, i8
   use dd3_output_hdf5, only : start_hdf5
   use hdf5, only : hid_t, hsize_t, size_t, h5aclose_f, h5aget_type_f, h5aopen_f, h5aread_f, &
-                   h5dclose_f, h5dget_space_f, h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, &
-                   h5screate_simple_f, h5sclose_f, h5sget_simple_extent_dims_f, &
-                   h5sget_simple_extent_ndims_f, &
-                   h5sselect_hyperslab_f, h5tclose_f, h5tget_size_f, H5F_ACC_RDONLY_F, &
-                   H5S_SELECT_SET_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER
+      h5dclose_f, h5dget_space_f, h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, h5screate_simple_f, &
+      h5sclose_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
+      h5sselect_hyperslab_f, h5tclose_f, h5tget_size_f, H5F_ACC_RDONLY_F, H5S_SELECT_SET_F, &
+      H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER
   implicit none
   private
   public :: open_hdf5, close_hdf5, dataset_size, read_reals, read_integers, read_rows
@@ -22,7 +21,7 @@ contains
   subroutine open_hdf5(path, file, ok)
     character(len=*), intent(in) :: path
     integer(hid_t), intent(out) :: file
-    !> False if it is no HDF5 file, or truncated.
+    !> False if it is not an HDF5 file, or truncated.
     logical, intent(out) :: ok
 
     integer :: status

@@ -1,6 +1,6 @@
-!> How far the run is: on a terminal one line, rewritten in place at most ten times a second; else,
-!> and always in job.log, a plain line for every twentieth of a phase. The last state of a phase
-!> stays on a terminal too.
+!> Display of the progress of a run: on a terminal one line, rewritten in place at most ten times a
+!> second; otherwise, and always in job.log, a plain line for every twentieth of a phase. The last
+!> line of a phase stays on the terminal too.
 module dd3_output_progress
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : wall_time
@@ -11,14 +11,14 @@ module dd3_output_progress
   private
   public :: progress_t, progress_view_t, duration_text
 
-  !> Shortest time between two rewritings of the line, s.
+  !> Shortest time between two updates of the live line, s.
   real(wp), parameter :: pause = 0.1_wp
   !> Plain lines in a phase.
   integer, parameter :: lines_per_phase = 20
-  !> Shortest time over which the speed is averaged, s.
-  real(wp), parameter :: shortest_memory = 5.0_wp
+  !> Shortest time over which the rate is averaged, s.
+  real(wp), parameter :: shortest_average = 5.0_wp
 
-  !> What is shown of an accepted increment.
+  !> Data of an accepted increment that are displayed.
   type :: progress_view_t
     !> Running phase, from 1.
     integer :: phase = 1
@@ -26,11 +26,9 @@ module dd3_output_progress
     real(wp) :: progress = 0.0_wp
     !> Path of the controlling tools since the job's start, mm.
     real(wp) :: travel = 0.0_wp
-    !> Number of the increment.
     integer :: increment = 0
-    !> Factor on the trial increment, and the limit that set it.
+    !> Factor on the trial increment, and the limiter that set it.
     real(wp) :: r = 0.0_wp
-    !> The limit that set the factor.
     character(len=16) :: limiter = ""
     !> Iterations of the corrector.
     integer :: iterations = 0
@@ -38,18 +36,17 @@ module dd3_output_progress
     real(wp) :: force = 0.0_wp
   end type progress_view_t
 
-  !> The display of a run.
+  !> Display of a run.
   type :: progress_t
-    !> Names of the phases, and their controlling tools' paths, mm.
     character(len=24), allocatable, private :: phase_name(:)
-    !> Names of the controlling tools; blank where loads control.
+    !> Controlling tool of each phase; blank if loads control it.
     character(len=24), allocatable, private :: control_name(:)
-    !> Phase of the last view, and its plain lines so far.
+    !> Phase displayed last, and its plain lines so far.
     integer, private :: phase = 0, lines = 0
-    !> When the line was rewritten last, and when the speed was looked at, s.
-    real(wp), private :: shown = 0.0_wp, looked = 0.0_wp, phase_began = 0.0_wp
-    !> Progress when the speed was looked at; the speed, 1/s.
-    real(wp), private :: last_progress = 0.0_wp, speed = 0.0_wp
+    !> Times of the last live line, of the last update of the rate and of the start of the phase, s.
+    real(wp), private :: shown = 0.0_wp, rate_updated = 0.0_wp, phase_began = 0.0_wp
+    !> Progress at the last update of the rate; rate of progress, 1/s.
+    real(wp), private :: last_progress = 0.0_wp, rate = 0.0_wp
   contains
     procedure :: start => progress_start
     procedure :: update => progress_update
@@ -58,12 +55,11 @@ module dd3_output_progress
 
 contains
 
-  !> Begins the display.
+  !> Start the display.
   subroutine progress_start(self, model)
-    !> The display.
     class(progress_t), intent(inout) :: self
-    !> The model.
     type(model_t), intent(in) :: model
+
     integer :: i, control
 
     if (allocated(self%phase_name)) deallocate (self%phase_name, self%control_name)
@@ -77,14 +73,12 @@ contains
     self%phase = 0
   end subroutine progress_start
 
-  !> Shows an accepted increment, where it is time to.
+  !> Show an accepted increment if a line is due.
   subroutine progress_update(self, log, view)
-    !> The display.
     class(progress_t), intent(inout) :: self
-    !> Where it is shown.
     type(log_t), intent(inout) :: log
-    !> The increment.
     type(progress_view_t), intent(in) :: view
+
     real(wp) :: now
     integer :: line
 
@@ -100,28 +94,25 @@ contains
       end if
     end if
     if (.not. log%terminal .or. now - self%shown < pause) return
-    call look_at_speed(self, view%progress, now)
+    call update_rate(self, view%progress, now)
     call log%live(live_line(self, view))
     self%shown = now
   end subroutine progress_update
 
-  !> Says that a phase begins.
+  !> Write the heading of a phase.
   subroutine begin_phase(self, log, view, now)
-    !> The display.
     type(progress_t), intent(inout) :: self
-    !> Where it is shown.
     type(log_t), intent(inout) :: log
-    !> The increment.
     type(progress_view_t), intent(in) :: view
-    !> The time, s.
+    !> Present time, s.
     real(wp), intent(in) :: now
 
     self%phase = view%phase
     self%lines = 0
     self%phase_began = now
-    self%looked = now
+    self%rate_updated = now
     self%last_progress = 0.0_wp
-    self%speed = 0.0_wp
+    self%rate = 0.0_wp
     call log%say("phase "//to_text(view%phase)//" of "//to_text(size(self%phase_name))//": "// &
         trim(self%phase_name(view%phase)))
     if (self%control_name(view%phase) == "") then
@@ -133,51 +124,49 @@ contains
     end if
   end subroutine begin_phase
 
-  !> Averages the speed over a time that grows with the phase.
-  subroutine look_at_speed(self, progress, now)
-    !> The display.
+  !> Average the rate of progress over a time that grows with the phase.
+  subroutine update_rate(self, progress, now)
     type(progress_t), intent(inout) :: self
-    !> Progress in the phase.
+    !> Progress in the phase, 0 to 1.
     real(wp), intent(in) :: progress
-    !> The time, s.
+    !> Present time, s.
     real(wp), intent(in) :: now
-    real(wp) :: share, passed
 
-    passed = now - self%looked
+    real(wp) :: weight, passed
+
+    passed = now - self%rate_updated
     if (passed <= 0.0_wp) return
-    share = min(1.0_wp, passed/max(shortest_memory, 0.2_wp*(now - self%phase_began)))
-    if (self%speed <= 0.0_wp) share = 1.0_wp
-    self%speed = (1.0_wp - share)*self%speed + share*(progress - self%last_progress)/passed
-    self%looked = now
+    weight = min(1.0_wp, passed/max(shortest_average, 0.2_wp*(now - self%phase_began)))
+    if (self%rate <= 0.0_wp) weight = 1.0_wp
+    self%rate = (1.0_wp - weight)*self%rate + weight*(progress - self%last_progress)/passed
+    self%rate_updated = now
     self%last_progress = progress
-  end subroutine look_at_speed
+  end subroutine update_rate
 
-  !> The plain line.
+  !> Return a line of the table of a phase.
   function plain_line(self, view) result(line)
-    !> The display.
     type(progress_t), intent(in) :: self
-    !> The increment.
     type(progress_view_t), intent(in) :: view
     character(len=:), allocatable :: line
+
     character(len=100) :: buffer
 
     if (self%control_name(view%phase) == "") then
       write (buffer, '(f8.1, " %", i12, f13.5, 2x, a16, i12)') 100.0_wp*view%progress, &
-        view%increment, view%r, view%limiter, view%iterations
+          view%increment, view%r, view%limiter, view%iterations
     else
       write (buffer, '(f10.4, i12, f13.5, 2x, a16, i12, f14.1)') view%travel, view%increment, &
-        view%r, view%limiter, view%iterations, view%force
+          view%r, view%limiter, view%iterations, view%force
     end if
     line = trim(buffer)
   end function plain_line
 
-  !> The line that is rewritten in place.
+  !> Return the line that is rewritten in place.
   function live_line(self, view) result(line)
-    !> The display.
     type(progress_t), intent(in) :: self
-    !> The increment.
     type(progress_view_t), intent(in) :: view
     character(len=:), allocatable :: line
+
     character(len=12) :: travel, r
 
     if (self%control_name(view%phase) == "") then
@@ -187,20 +176,21 @@ contains
     end if
     write (r, '(f10.4)') view%r
     line = trim(self%phase_name(view%phase))//" "//trim(adjustl(travel))//", inc "// &
-           to_text(view%increment)//", r "//trim(adjustl(r))//" ("//trim(view%limiter)//"), "// &
-           to_text(view%iterations)//" it"
+        to_text(view%increment)//", r "//trim(adjustl(r))//" ("//trim(view%limiter)//"), "// &
+        to_text(view%iterations)//" it"
     if (self%control_name(view%phase) /= "") line = line//", "//force_text(view%force)
-    if (self%speed > 0.0_wp) then
-      line = line//", "//duration_text((1.0_wp - view%progress)/self%speed)//" left"
+    if (self%rate > 0.0_wp) then
+      line = line//", "//duration_text((1.0_wp - view%progress)/self%rate)//" left"
       if (view%phase < size(self%phase_name)) line = line//" in phase"
     end if
   end function live_line
 
-  !> A force with its unit.
+  !> Format a force with its unit.
   function force_text(force) result(text)
-    !> The force, N.
+    !> N.
     real(wp), intent(in) :: force
     character(len=:), allocatable :: text
+
     character(len=24) :: buffer
 
     if (abs(force) < 1.0e4_wp) then
@@ -212,11 +202,11 @@ contains
     if (text(1:1) == ".") text = "0"//text
   end function force_text
 
-  !> A time in words: seconds, minutes or hours.
+  !> Format a time in seconds, minutes or hours.
   pure function duration_text(seconds) result(text)
-    !> The time, s.
     real(wp), intent(in) :: seconds
     character(len=:), allocatable :: text
+
     integer :: whole
     character(len=24) :: buffer
 
@@ -231,11 +221,9 @@ contains
     text = trim(buffer)
   end function duration_text
 
-  !> Wipes the line.
+  !> Clear the live line.
   subroutine progress_finish(self, log)
-    !> The display.
     class(progress_t), intent(inout) :: self
-    !> Where it is shown.
     type(log_t), intent(inout) :: log
 
     call log%live("")

@@ -10,8 +10,8 @@ module dd3_point_run
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_element_log_strain, only : polar_increment
   use dd3_input_case, only : case_t
-  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, &
-      kelvin_from_tensor, symmetric_eigen
+  use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, kelvin_from_tensor, &
+      symmetric_eigen
   use dd3_material_material, only : material_t
   use dd3_material_point, only : apply_strain, drive_to_target, global_stress, material_point_t, &
       new_material_point
@@ -27,17 +27,17 @@ module dd3_point_run
   real(wp), parameter :: notable_strain = 2.0_wp
 
   !> A material point during its run.
-  type :: walker_t
+  type :: point_run_t
     type(material_point_t) :: state
     !> Deformation gradient, if it is prescribed.
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps made.
     integer :: increment = 0
-    !> A row is written every so many steps.
+    !> Interval of the rows, in steps.
     integer :: every = 1
     !> The last row was not due and is not written yet.
     logical :: waiting = .false.
-  end type walker_t
+  end type point_run_t
 
 contains
 
@@ -56,7 +56,7 @@ contains
 
     type(point_record_t) :: record
     type(path_t) :: path
-    type(walker_t) :: walker
+    type(point_run_t) :: run
     type(error_t), allocatable :: late
     integer :: i
 
@@ -65,18 +65,18 @@ contains
     do i = 1, size(case%point)
       if (allocated(error)) exit
       call new_path(path, case%point(i))
-      walker = walker_t(every=max(1, case%output%history))
-      call run_point(walker, path, model, record, log, error)
-      increments = increments + walker%increment
+      run = point_run_t(every=max(1, case%output%history))
+      call run_point(run, path, model, record, log, error)
+      increments = increments + run%increment
     end do
     call record%close(late)
     call keep_first(error, late)
   end subroutine run_points
 
   !> Run one material point.
-  subroutine run_point(walker, path, model, record, log, error)
+  subroutine run_point(run, path, model, record, log, error)
     !> New on entry.
-    type(walker_t), intent(inout) :: walker
+    type(point_run_t), intent(inout) :: run
     type(path_t), intent(in) :: path
     type(model_t), intent(in) :: model
     type(point_record_t), intent(inout) :: record
@@ -89,25 +89,25 @@ contains
     integer :: i
 
     strain = 0.0_wp
-    call new_material_point(walker%state, model%material(path%material), path%axes)
-    walker%gradient = identity
-    call write_row(walker, model, path, record, error)
+    call new_material_point(run%state, model%material(path%material), path%axes)
+    run%gradient = identity
+    call write_row(run, model, path, record, error)
     do i = 1, size(path%segment)
       if (allocated(error)) exit
-      call run_segment(walker, model, path, path%segment(i), record, error)
-      strain = max(strain, maxval(abs(walker%state%strain/kelvin_factor)))
+      call run_segment(run, model, path, path%segment(i), record, error)
+      strain = max(strain, maxval(abs(run%state%strain/kelvin_factor)))
     end do
     if (.not. allocated(error)) &
-      call log%say("point "//path%name//": "//to_text(walker%increment)//" steps")
+      call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
     if (strain > notable_strain) call log%say("warning: point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
-    if (walker%waiting) call write_row(walker, model, path, record, late)
+    if (run%waiting) call write_row(run, model, path, record, late)
     call keep_first(error, late)
   end subroutine run_point
 
   !> Run one segment of a path.
-  subroutine run_segment(walker, model, path, segment, record, error)
-    type(walker_t), intent(inout) :: walker
+  subroutine run_segment(run, model, path, segment, record, error)
+    type(point_run_t), intent(inout) :: run
     type(model_t), intent(in) :: model
     type(path_t), intent(in) :: path
     type(segment_t), intent(in) :: segment
@@ -119,37 +119,37 @@ contains
     real(wp) :: start(6), gradient(3, 3), fraction
     integer :: k
 
-    start = merge(global_stress(walker%state), walker%state%strain, path%by_stress)
-    gradient = walker%gradient
+    start = merge(global_stress(run%state), run%state%strain, path%by_stress)
+    gradient = run%gradient
     do k = 1, segment%steps
       fraction = real(k, wp)/real(segment%steps, wp)
       if (path%by_gradient) then
-        call apply_gradient(walker, model%material(path%material), &
+        call apply_gradient(run, model%material(path%material), &
             gradient + fraction*(segment%gradient - gradient), verdict)
       else
-        call drive_to_target(walker%state, model%material(path%material), path%by_stress, &
+        call drive_to_target(run%state, model%material(path%material), path%by_stress, &
             start + fraction*(segment%target - start), verdict)
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//path%name//", step "// &
-            to_text(walker%increment + 1)//": "//trim(verdict%reason))
+            to_text(run%increment + 1)//": "//trim(verdict%reason))
         return
       end if
-      walker%increment = walker%increment + 1
-      walker%waiting = mod(walker%increment, walker%every) /= 0
-      if (.not. walker%waiting) call write_row(walker, model, path, record, error)
+      run%increment = run%increment + 1
+      run%waiting = mod(run%increment, run%every) /= 0
+      if (.not. run%waiting) call write_row(run, model, path, record, error)
       if (allocated(error)) return
       if (interrupted()) then
         call fatal_error(error, "interrupted by the user in point "//path%name//", step "// &
-            to_text(walker%increment))
+            to_text(run%increment))
         return
       end if
     end do
   end subroutine run_segment
 
   !> Bring a material point to a deformation gradient.
-  subroutine apply_gradient(walker, material, gradient, verdict)
-    type(walker_t), intent(inout) :: walker
+  subroutine apply_gradient(run, material, gradient, verdict)
+    type(point_run_t), intent(inout) :: run
     type(material_t), intent(in) :: material
     !> Relative to the start.
     real(wp), intent(in) :: gradient(3, 3)
@@ -158,15 +158,15 @@ contains
     real(wp) :: inverse_before(3, 3), strain(6), rotation(3, 3)
     logical :: regular
 
-    call inverse(walker%gradient, inverse_before, regular)
+    call inverse(run%gradient, inverse_before, regular)
     regular = regular .and. determinant(gradient) > 0.0_wp
     if (.not. regular) verdict%reason = "det F is not positive"
     if (.not. regular) return
     call polar_increment(matmul(gradient, inverse_before), strain, rotation)
-    call apply_strain(walker%state, material, kelvin_factor*strain, rotation, verdict)
+    call apply_strain(run%state, material, kelvin_factor*strain, rotation, verdict)
     if (verdict%outcome /= verdict_converged) return
-    walker%gradient = gradient
-    walker%state%strain = left_strain(gradient)
+    run%gradient = gradient
+    run%state%strain = left_strain(gradient)
   end subroutine apply_gradient
 
   !> Return the logarithm of the left stretch, ln V of F = V R, Kelvin: the strain in the axes of
@@ -187,8 +187,8 @@ contains
   end function left_strain
 
   !> Write the row of a state.
-  subroutine write_row(walker, model, path, record, error)
-    type(walker_t), intent(inout) :: walker
+  subroutine write_row(run, model, path, record, error)
+    type(point_run_t), intent(inout) :: run
     type(model_t), intent(in) :: model
     type(path_t), intent(in) :: path
     type(point_record_t), intent(inout) :: record
@@ -198,20 +198,20 @@ contains
     type(point_row_t) :: row
     integer :: i
 
-    row%increment = walker%increment
+    row%increment = run%increment
     row%point = path%name
-    row%strain = walker%state%strain
-    row%stress = global_stress(walker%state)
-    row%plastic = walker%state%internal_variables(1)
-    row%flow_stress = model%material(path%material)%flow_stress(walker%state%internal_variables)
+    row%strain = run%state%strain
+    row%stress = global_stress(run%state)
+    row%plastic = run%state%internal_variables(1)
+    row%flow_stress = model%material(path%material)%flow_stress(run%state%internal_variables)
     row%internal_variables = [real(wp) ::]
     do i = 1, size(model%internal_variable)
       row%internal_variables = [row%internal_variables, &
           global_components(model%internal_variable(i), path%material, &
-              walker%state%internal_variables, walker%state%axes)]
+              run%state%internal_variables, run%state%axes)]
     end do
     call record%write(row, error)
-    walker%waiting = .false.
+    run%waiting = .false.
   end subroutine write_row
 
 end module dd3_point_run

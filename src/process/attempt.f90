@@ -1,5 +1,5 @@
 !> One attempt at an increment: what limited it, how the corrector and the linear solver proceeded,
-!> how it ended. The records and the messages to the user are made from it.
+!> how it ended. Records and messages are made from it.
 module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
@@ -11,7 +11,7 @@ module dd3_process_attempt
   !> Number of iterations whose contact status is kept, to detect cycles.
   integer, parameter :: status_memory = 3
 
-  !> Upper bound of the factor r, and where it comes from; 0 for what has no meaning.
+  !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
   type :: limit_t
     real(wp) :: r = huge(1.0_wp)
     !> Name of the limiter.
@@ -35,7 +35,7 @@ module dd3_process_attempt
     real(wp), allocatable :: lambda_increment(:, :)
   end type correction_t
 
-  !> An attempt.
+  !> Limit, course and outcome of an attempt.
   type :: attempt_t
     !> Number of the attempt at this increment, from 1.
     integer :: number = 1
@@ -71,7 +71,7 @@ contains
 
     self%criterion = [real(wp) ::]
     if (.not. allocated(self%status)) &
-      allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
+        allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
     self%status = -1
     self%lambda_increment = 0.0_wp
     self%worst_node = 0

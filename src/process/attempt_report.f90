@@ -61,7 +61,7 @@ contains
     associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
       if (size(correction%criterion) > 0) &
-        row%criterion = correction%criterion(size(correction%criterion))
+          row%criterion = correction%criterion(size(correction%criterion))
       if (verdict%element > 0) then
         row%worst_element = verdict%element
         row%worst_point = verdict%point
@@ -82,7 +82,7 @@ contains
     if (tool > 0) name = model%tool(tool)%name
   end function tool_name
 
-  !> Return what the user is told if an increment fails: where, and why.
+  !> Return the message on a failed increment: its location and the reason.
   function failure_message(model, committed, stepper) result(message)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
@@ -93,21 +93,21 @@ contains
 
     associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       message = "increment "//to_text(committed%increment + 1)//" of phase '" &
-        //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel) &
-        //" mm) did not converge"
+          //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel) &
+          //" mm) did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
       message = message//": "//trim(verdict%reason)
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
-        //" point "//to_text(verdict%point)
+          //" point "//to_text(verdict%point)
       if (verdict%node == 0) return
       associate (x => committed%x(:, verdict%node))
         message = message//", node "//to_text(verdict%node)//" at "//to_text(x(1), 5)//" " &
-          //to_text(x(2), 5)//" "//to_text(x(3), 5)
+            //to_text(x(2), 5)//" "//to_text(x(3), 5)
       end associate
       c = model%candidate_of(verdict%node)
       if (c == 0) return
       if (stepper%system%contact%tool(c) > 0) message = message//", tool " &
-        //model%tool(stepper%system%contact%tool(c))%name
+          //model%tool(stepper%system%contact%tool(c))%name
     end associate
   end function failure_message
 

@@ -42,9 +42,9 @@ contains
         do tool = 1, model%n_tool
           if (.not. phase%pressed(tool)) cycle
           associate (residual => abs(system%problem%tool_residual(tool)), &
-                     force => pressed_force(trial, tool))
+              force => pressed_force(trial, tool))
             if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
-              distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
+                distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
           end associate
         end do
         if (all(abs(distance) <= 0.0_wp)) exit

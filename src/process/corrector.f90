@@ -23,9 +23,9 @@ module dd3_process_corrector
 
   !> Fraction of the tolerance of the criterion below which all but the tool forces has converged.
   real(wp), parameter :: settled = 0.1_wp
-  !> Largest displacement in an iteration, in thicknesses of the sheet.
+  !> Largest displacement in an iteration, divided by the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Strain whose force on the square of the thickness is the least scale of the criterion: in a
+  !> Strain whose force on the square of the thickness is the smallest scale of the criterion: in a
   !> free sheet at rest all forces are round-off.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Largest number of nodes listed in a message.
@@ -72,7 +72,7 @@ contains
     system%problem%prescribed = 0.0_wp
     system%problem%tool_prescribed = 0.0_wp
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
-               correction => attempt%correction)
+        correction => attempt%correction)
       do j = 1, phase%newton%iterations
         verdict%iterations = j
         call evaluate(model, committed, trial, system, attempt)
@@ -103,8 +103,8 @@ contains
     end associate
   end subroutine iterate
 
-  !> Give the reason why the last iteration did not converge: a pressed tool without contact, the
-  !> force on a tool, or the residual of a node; none if the status of nodes has not settled.
+  !> Set the reason why the last iteration did not converge: a pressed tool without contact, the
+  !> force on a tool, or the residual of a node; empty if the contact status has not settled.
   subroutine explain(model, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -115,7 +115,7 @@ contains
     integer :: tool
 
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
-               correction => attempt%correction)
+        correction => attempt%correction)
       verdict%tool = lost_tool(model, trial, system%contact)
       if (verdict%tool > 0) then
         verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
@@ -124,11 +124,11 @@ contains
       verdict%node = correction%worst_node
       if (any(unsettled(correction%status))) return
       reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
-               //to_text(correction%worst_node)
+          //to_text(correction%worst_node)
       if (verdict%norm < phase%newton%tolerance) then
         tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
         if (tool > 0) reason = "force on the pressed tool "//model%tool(tool)%name//" off by " &
-          //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
+            //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
         verdict%node = 0
       end if
       verdict%reason = reason//" after "//to_text(phase%newton%iterations)//" iterations"
@@ -172,8 +172,8 @@ contains
 
     call residual_norm(model, trial, system, attempt%correction, sum_of_squares)
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
-               correction => attempt%correction, contact => system%contact, &
-               tool_residual => system%problem%tool_residual)
+        correction => attempt%correction, contact => system%contact, &
+        tool_residual => system%problem%tool_residual)
       forces_met = .true.
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
@@ -196,7 +196,7 @@ contains
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
       if (j > 1 .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
-        verdict%outcome = verdict_converged
+          verdict%outcome = verdict_converged
     end associate
   end subroutine check_convergence
 
@@ -247,7 +247,7 @@ contains
     integer :: node, worst, tool, row
 
     associate (solution => system%problem%solution, verdict => attempt%verdict, &
-               increment => attempt%correction%lambda_increment)
+        increment => attempt%correction%lambda_increment)
       largest = 0.0_wp
       worst = 0
       do node = 1, model%n_node
@@ -274,7 +274,7 @@ contains
     end associate
   end subroutine advance
 
-  !> Return a text with the nodes whose status did not settle in the last iterations, empty if there
+  !> Return a list of the nodes whose status did not settle in the last iterations; empty if there
   !> are none.
   function status_changes(model, correction, room) result(text)
     type(model_t), intent(in) :: model
@@ -307,7 +307,7 @@ contains
     end do
   end function status_changes
 
-  !> Whether the status of each candidate changed in the iterations remembered.
+  !> Whether the status of each candidate changed in the last iterations.
   pure function unsettled(status) result(changing)
     !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
     integer, intent(in) :: status(:, :)

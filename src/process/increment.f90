@@ -18,13 +18,12 @@ module dd3_process_increment
   private
   public :: prepare_increment, try_increment, shrink_increment, accept_increment
 
-  !> Growth of r_cap with every accepted increment, and the r_cap from which it is no bound any
-  !> more.
-  real(wp), parameter :: r_cap_growth = 1.5_wp, largest_r_cap = 1.0e3_wp
+  !> Factor on r_cap after an accepted increment; value of r_cap above which the bound is removed.
+  real(wp), parameter :: r_cap_factor = 1.5_wp, largest_r_cap = 1.0e3_wp
 
 contains
 
-  !> Predict the increment and set its factor r; the verdict of the attempt tells whether there is a
+  !> Predict the increment and set its factor r. The verdict of the attempt is that of the
   !> prediction.
   subroutine prepare_increment(model, committed, stepper)
     type(model_t), intent(in) :: model
@@ -48,7 +47,7 @@ contains
 
     trial = committed
     associate (prediction => stepper%prediction, r => stepper%attempt%limit%r, &
-               start => committed%start, phase => model%phase(committed%phase))
+        start => committed%start, phase => model%phase(committed%phase))
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
@@ -71,7 +70,7 @@ contains
   subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
-    !> Another attempt is allowed.
+    !> Whether another attempt is allowed.
     logical, intent(out) :: again
 
     again = .false.
@@ -95,8 +94,7 @@ contains
 
     committed = trial
     if (stepper%attempt%number > 1) committed%r_cap = stepper%attempt%limit%r
-    if (committed%r_cap < huge(1.0_wp)/r_cap_growth) &
-      committed%r_cap = committed%r_cap*r_cap_growth
+    if (committed%r_cap < huge(1.0_wp)/r_cap_factor) committed%r_cap = committed%r_cap*r_cap_factor
     if (committed%r_cap > largest_r_cap) committed%r_cap = huge(1.0_wp)
     committed%solver_memory = stepper%system%solver%memory
   end subroutine accept_increment

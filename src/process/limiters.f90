@@ -1,6 +1,6 @@
-!> Limiters of the factor r, the part of the trial increment that is made. Each limiter is a
-!> function that returns a bound with the place it comes from, and a row of the table. Source:
-!> Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
+!> Limiters of the factor r, the fraction of the trial increment that is made. Each limiter is a
+!> function that returns a bound with its location, and a row of the table.
+!> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
   use dd3_contact_operator, only : status_gap
@@ -45,12 +45,12 @@ contains
     type(limiter_t), allocatable :: table(:)
 
     table = [limiter_t("strain", strain_limit, above_r_min=.true.), &
-             limiter_t("rotation", rotation_limit, above_r_min=.true.), &
-             limiter_t("stress", stress_limit, above_r_min=.true.), &
-             limiter_t("force", force_limit, above_r_min=.true.), &
-             limiter_t("gap", gap_limit), &
-             limiter_t("until", until_limit), &
-             limiter_t("output", output_limit)]
+        limiter_t("rotation", rotation_limit, above_r_min=.true.), &
+        limiter_t("stress", stress_limit, above_r_min=.true.), &
+        limiter_t("force", force_limit, above_r_min=.true.), &
+        limiter_t("gap", gap_limit), &
+        limiter_t("until", until_limit), &
+        limiter_t("output", output_limit)]
   end function limiter_table
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
@@ -172,8 +172,7 @@ contains
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
-          change = matmul(stepper%system%tangent(:, :, p, e), &
-              stepper%prediction%strain(:, p, e))
+          change = matmul(stepper%system%tangent(:, :, p, e), stepper%prediction%strain(:, p, e))
           magnitude = norm2(change)
           if (magnitude <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
           direction = material%plastic_direction(state%stress(:, p, e), &
@@ -212,7 +211,7 @@ contains
             limits%force%value)
         if (ellipsoid <= 0.0_wp) cycle
         if (b/ellipsoid < limit%r) limit = limit_t(r=b/ellipsoid, node=model%contact_node(c), &
-          tool=contact%tool(c), force_size=b)
+            tool=contact%tool(c), force_size=b)
       end do
     end associate
   end function force_limit
@@ -235,9 +234,9 @@ contains
     ellipsoid_norm = sqrt((f_normal/axes(1))**2 + (f_first/axes(2))**2 + (f_second/axes(3))**2)
   end function ellipsoid_norm
 
-  !> Limit the approach of candidates and tools. A tool without contact comes to contact and no
-  !> further: the predictor closes no gap and would not see its resistance. A tool in contact passes
-  !> no candidate so deep that it would be lost on the wrong side.
+  !> Limit the approach of candidates and tools. A tool without contact advances to contact and no
+  !> further, because the predictor ignores the resistance behind a gap. Below a tool in contact no
+  !> candidate penetrates so deep that it would be lost on the wrong side.
   function gap_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -264,7 +263,7 @@ contains
         depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
-          name=merge("gap          ", "first contact", touching(tool)))
+            name=merge("gap          ", "first contact", touching(tool)))
       end do
     end associate
   end function gap_limit
@@ -290,7 +289,7 @@ contains
         rate = 0.0_wp
         do c = 1, model%n_contact
           if (state%contact_tool(c) == tool) &
-            rate = rate + dot_product(line, stepper%prediction%lambda(:, c))
+              rate = rate + dot_product(line, stepper%prediction%lambda(:, c))
         end do
       end if
       target = merge(1.0_wp, -1.0_wp, state%start%until_from_below)*phase%until%value

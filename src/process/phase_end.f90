@@ -9,14 +9,14 @@ module dd3_process_phase_end
   private
   public :: phase_is_over, next_output_progress, until_value, progress_tolerance
 
-  !> Fraction of a phase within which its end, or an output, is met.
+  !> Tolerance of the progress at the end of a phase and at outputs.
   real(wp), parameter :: progress_tolerance = 1.0e-9_wp
   !> Relative tolerances of an early end by displacement and by force.
   real(wp), parameter :: displacement_tolerance = 1.0e-6_wp, force_tolerance = 1.0e-3_wp
 
 contains
 
-  !> Whether the running phase of a state has come to its end, or to its early end.
+  !> Whether the running phase of a state is at its end or its early end.
   logical function phase_is_over(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -27,7 +27,7 @@ contains
     end associate
   end function phase_is_over
 
-  !> Whether the early end is met.
+  !> Whether the condition of the early end is satisfied.
   logical function until_met(phase, state)
     type(phase_t), intent(in) :: phase
     type(state_t), intent(in) :: state
@@ -74,7 +74,7 @@ contains
     travel = state%progress*phase%length
     if (output%fields_every > 0.0_wp) then
       progress = (aint(travel/output%fields_every + progress_tolerance) + 1) &
-        *output%fields_every/phase%length
+          *output%fields_every/phase%length
     else if (allocated(output%fields_at)) then
       do i = 1, size(output%fields_at)
         if (output%fields_at(i) <= travel + progress_tolerance*phase%length) cycle

@@ -22,8 +22,8 @@ contains
   !> Begin a phase: forces continue from their present values, released contacts become forces that
   !> fade over the phase, and a pressed tool without contact approaches the sheet.
   !>
-  !> A release is predicted elastic: beyond the largest force that a tool can bear, the tangents of
-  !> loading would continue along the falling branch instead of unloading.
+  !> A release is predicted elastic: beyond the maximum of the force, the tangents of loading would
+  !> continue on the descending branch instead of unloading.
   subroutine begin_phase(model, number, state)
     type(model_t), intent(in) :: model
     !> Number of the phase.
@@ -42,7 +42,7 @@ contains
       where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
       call set_tool_loads(phase, state)
       if (phase%until%kind == until_force) start%until_from_below = &
-        abs(until_value(phase, state)) <= phase%until%value
+          abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(phase, state)
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
@@ -53,7 +53,7 @@ contains
   end subroutine begin_phase
 
   !> Set the forces pressed on the tools at the start and at the end of a phase. A tool that was
-  !> held or moved until now starts from the force that it bears along its line.
+  !> held or moved until now starts from the contact force on it in the direction of its line.
   subroutine set_tool_loads(phase, state)
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state
@@ -73,7 +73,7 @@ contains
       end do
       start%tool_load_end = phase%tool_load_end
       where (spread(phase%pressed .and. phase%keeps_tool_load, 1, 3)) &
-        start%tool_load_end = start%tool_load
+          start%tool_load_end = start%tool_load
     end associate
   end subroutine set_tool_loads
 
@@ -126,8 +126,8 @@ contains
     type(state_t), intent(in) :: state
     !> Smallest gap, mm; a huge value if no candidate lies before the tool.
     real(wp), intent(out) :: gap
-    !> Largest component of the tool's normals at these candidates along the direction of its
-    !> force; negative if the force points away from the sheet.
+    !> Largest component of the tool's normals at these candidates along the direction of its force;
+    !> negative if the force points away from the sheet.
     real(wp), intent(out) :: facing
 
     type(hint_t) :: hint

@@ -1,5 +1,5 @@
-!> Warnings at the start and at the end of a phase: a pressed tool that does not meet the sheet, an
-!> unsupported sheet, yielding during a release.
+!> Warnings at the start and at the end of a phase: a pressed tool without contact, an unsupported
+!> sheet, yielding during a release.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -21,8 +21,8 @@ module dd3_process_phase_warnings
 
 contains
 
-  !> Return a warning if a pressed tool does not come to contact at the start of a phase: its force
-  !> points the wrong way, or no candidate lies ahead of it. Empty otherwise.
+  !> Return a warning if a pressed tool has no contact at the start of a phase because its force
+  !> points the wrong way, or no candidate lies ahead of it; empty otherwise.
   function press_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.
@@ -40,17 +40,17 @@ contains
         call gap_of_tool(model, tool, state, gap, facing)
         if (facing > tangential .and. gap <= touch) cycle
         text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
-          "' does not meet the sheet along its force"
+            "' does not meet the sheet along its force"
         if (gap <= tool_search .and. facing < -tangential) text = "warning: in phase '"// &
-          phase%name//"' the force on tool '"//model%tool(tool)%name// &
-          "' points away from the sheet; is its sign wrong?"
+            phase%name//"' the force on tool '"//model%tool(tool)%name// &
+            "' points away from the sheet; is its sign wrong?"
         return
       end do
     end associate
   end function press_warning
 
   !> Return a warning if neither supports nor tools in contact hold the sheet at the start of a
-  !> phase. Empty otherwise.
+  !> phase; empty otherwise.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.
@@ -69,9 +69,9 @@ contains
         if (phase%active(tool)) call hold_in_contact(body, model, phase, state, tool)
       end do
       text = body%free_motion()
-      if (len(text) > 0) text = "warning: at the start of phase '"//phase%name// &
-        "' nothing holds the sheet: it is free to "//text//"; supports are missing, or a tool "// &
-        "in contact from the start"
+      if (len(text) > 0) text = "warning: at the start of phase '"//phase%name//"' nothing "// &
+          "holds the sheet: it is free to "//text//"; supports are missing, or a tool in "// &
+          "contact from the start"
     end associate
   end function support_warning
 
@@ -100,7 +100,7 @@ contains
           direction = hit%normal
           if (d > 0) direction = model%tool(tool)%friction*identity(:, d)
           if (phase%pressed(tool)) direction = direction &
-            - dot_product(direction, phase%direction(:, tool))*phase%direction(:, tool)
+              - dot_product(direction, phase%direction(:, tool))*phase%direction(:, tool)
           call body%hold(x, direction)
         end do
       end associate
@@ -108,7 +108,7 @@ contains
   end subroutine hold_in_contact
 
   !> Return a warning if the sheet yields while forces of released tools fade: as loads of constant
-  !> direction they may deform it where withdrawn tools would not. Empty otherwise.
+  !> direction they can deform it where withdrawn tools would not; empty otherwise.
   function release_warning(phase, state) result(text)
     type(phase_t), intent(in) :: phase
     !> State at the end of the phase.
@@ -123,9 +123,9 @@ contains
     increase = state%internal_variables(1, :, :) - state%start%plastic_strain
     place = maxloc(increase)
     if (increase(place(1), place(2)) > notable_strain) text = "warning: in phase '"// &
-      phase%name//"' the plastic strain of element "//to_text(place(2))//" increased by "// &
-      to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
-      "compare with tools withdrawn by `move`"
+        phase%name//"' the plastic strain of element "//to_text(place(2))//" increased by "// &
+        to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
+        "compare with tools withdrawn by `move`"
   end function release_warning
 
 end module dd3_process_phase_warnings

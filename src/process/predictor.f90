@@ -42,8 +42,7 @@ module dd3_process_predictor
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Number of times that unloading plastic points are made elastic before the prediction is
-  !> accepted as it is.
+  !> Largest number of passes in which unloading plastic points are made elastic.
   integer, parameter :: most_switches = 2
 
 contains
@@ -123,7 +122,7 @@ contains
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
             *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
-                         phase%direction(:, tool))
+            phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial
@@ -141,8 +140,7 @@ contains
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
           call material%continuum_tangent(committed%stress(:, p, e), &
-              committed%internal_variables(:, p, e), self%plastic(p, e), &
-              system%tangent(:, :, p, e))
+              committed%internal_variables(:, p, e), self%plastic(p, e), system%tangent(:, :, p, e))
         end do
       end associate
     end do

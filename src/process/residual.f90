@@ -32,7 +32,7 @@ contains
 
     call evaluate_contact(system%contact, model, committed, trial)
     associate (problem => system%problem, contact => system%contact, &
-               phase => model%phase(trial%phase))
+        phase => model%phase(trial%phase))
       problem%residual = trial%internal_force - trial%external_force
       do c = 1, model%n_contact
         node = model%contact_node(c)
@@ -42,11 +42,9 @@ contains
       trial%tool_force = 0.0_wp
       do c = 1, model%n_contact
         tool = contact%tool(c)
-        if (tool > 0) &
-          trial%tool_force(:, tool) = trial%tool_force(:, tool) + contact%force(:, c)
+        if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + contact%force(:, c)
         tool = trial%fading_tool(c)
-        if (tool > 0) &
-          trial%tool_force(:, tool) = trial%tool_force(:, tool) + trial%fading(:, c)
+        if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + trial%fading(:, c)
       end do
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &

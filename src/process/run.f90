@@ -27,7 +27,7 @@ module dd3_process_run
   private
   public :: run_model, run_start_t, run_summary_t
 
-  !> What a run starts from.
+  !> Initial data of a run.
   type :: run_start_t
     !> Initial state, or that of a restart.
     type(state_t) :: state
@@ -49,7 +49,7 @@ module dd3_process_run
     type(profile_t) :: profile
   end type run_summary_t
 
-  !> All that a run holds.
+  !> Data of a run.
   type :: run_t
     type(state_t) :: committed, trial
     type(stepper_t) :: stepper
@@ -60,8 +60,8 @@ module dd3_process_run
 
 contains
 
-  !> Run a model from a state to the end of its last phase. The records are whole whether it gets
-  !> there or not.
+  !> Run a model from a state to the end of its last phase. The records are complete also if the run
+  !> stops before.
   subroutine run_model(model, start, log, summary, error)
     type(model_t), intent(in) :: model
     type(run_start_t), intent(in) :: start
@@ -120,7 +120,7 @@ contains
 
     if (allocated(start%source)) then
       if (size(start%state%solver_memory) == size(run%stepper%system%solver%memory)) &
-        run%stepper%system%solver%memory = start%state%solver_memory
+          run%stepper%system%solver%memory = start%state%solver_memory
       call run%records%resume(model, start%source, start%directory, run%committed, lost, error)
       call log%say("restart after increment "//to_text(run%committed%increment)//" of phase '"// &
           model%phase(run%committed%phase)%name//"'")
@@ -195,7 +195,7 @@ contains
     logical :: predicted, again
 
     associate (stepper => run%stepper, attempt => run%stepper%attempt, &
-               phase => model%phase(run%committed%phase))
+        phase => model%phase(run%committed%phase))
       began = wall_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
@@ -206,7 +206,7 @@ contains
         began = wall_time()
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
-          call shrink_increment(phase, stepper, again)
+            call shrink_increment(phase, stepper, again)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
@@ -223,7 +223,7 @@ contains
     end associate
   end subroutine run_increment
 
-  !> Write an accepted increment into the records and show it.
+  !> Write an accepted increment to the records and show it.
   subroutine write_increment(run, model, next_output, log, error)
     type(run_t), intent(inout) :: run
     type(model_t), intent(in) :: model
@@ -237,7 +237,7 @@ contains
 
     call run%stepper%system%profile%start()
     associate (state => run%committed, phase => model%phase(run%committed%phase), &
-               attempt => run%stepper%attempt)
+        attempt => run%stepper%attempt)
       call run%records%write_increment(model, state, &
           state%progress >= next_output - progress_tolerance, error)
       if (allocated(error)) return
@@ -249,7 +249,7 @@ contains
       view%limiter = attempt%limit%name
       view%iterations = size(attempt%correction%criterion)
       if (phase%control > 0) view%force = &
-        dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
+          dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
       call run%progress%update(log, view)
     end associate
     call run%stepper%system%profile%add(section_output)

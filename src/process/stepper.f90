@@ -1,4 +1,4 @@
-!> What increments are made with: the system of equations, the prediction and the present attempt.
+!> Work data of the increments: system of equations, prediction and present attempt.
 module dd3_process_stepper
   use dd3_process_attempt, only : attempt_t
   use dd3_process_predictor, only : prediction_t
@@ -7,7 +7,7 @@ module dd3_process_stepper
   private
   public :: stepper_t
 
-  !> Work data of the increments; nothing in it outlives an increment but the solver's memory.
+  !> Only the memory of the solver is kept from one increment to the next.
   type :: stepper_t
     type(system_t) :: system
     type(prediction_t) :: prediction

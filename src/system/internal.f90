@@ -23,7 +23,7 @@ module dd3_system_internal
 contains
 
   !> Integrate the material from the committed to the trial configuration, and evaluate the internal
-  !> forces and, if wanted, the stiffness.
+  !> forces and, optionally, the stiffness.
   subroutine update_material(system, model, committed, trial, with_stiffness, verdict)
     !> Gets the consistent tangents and the stiffness.
     type(system_t), intent(inout) :: system
@@ -51,7 +51,7 @@ contains
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
           call update_element(model, committed, trial, e, system%element(thread), &
-                              system%tangent(:, :, :, e), mine)
+              system%tangent(:, :, :, e), mine)
           if (mine%outcome == verdict_converged) then
             if (with_stiffness) call add_stiffness(system, model, e, system%element(thread))
           else

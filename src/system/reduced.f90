@@ -111,11 +111,11 @@ contains
     problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
     if (.not. pressed) then
       problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
-                                       + matmul(d, problem%tool_prescribed(:, tool))
+          + matmul(d, problem%tool_prescribed(:, tool))
     else
       row = force_row(phase%direction(:, tool))
       problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
-        + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
+          + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
     end if
     weight = -matmul(phase%direction(:, tool), contact%e(:, :, c))
     do k = 1, 3
@@ -175,7 +175,7 @@ contains
 
     do j = 1, 3
       sum(row, j) = sum(row, j) &
-        + (weight(1)*block(1, j) + weight(2)*block(2, j) + weight(3)*block(3, j))
+          + (weight(1)*block(1, j) + weight(2)*block(2, j) + weight(3)*block(3, j))
     end do
   end subroutine add_weighted_rows
 
@@ -315,8 +315,8 @@ contains
         if (stiffness%column(k) > model%n_node) exit
         first = 3*stiffness%column(k) - 2
         change = change + (stiffness%value(:, 1, k)*problem%solution(first) &
-                           + stiffness%value(:, 2, k)*problem%solution(first + 1) &
-                           + stiffness%value(:, 3, k)*problem%solution(first + 2))
+            + stiffness%value(:, 2, k)*problem%solution(first + 1) &
+            + stiffness%value(:, 3, k)*problem%solution(first + 2))
       end do
       where (phase%prescribed(:, node)) change = 0.0_wp
       increment(:, c) = -node_residual(phase, problem, node, c) - change

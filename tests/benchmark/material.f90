@@ -98,9 +98,10 @@ contains
     !> Time per update, ns, and mean number of iterations.
     real(wp), intent(out) :: time, iterations
 
-    real(wp) :: stress(6, states), internal(material%n_internal, states), strain(6, states)
+    real(wp) :: stress(6, states), strain(6, states)
+    real(wp) :: internal_variables(material%n_internal, states)
     real(wp) :: zero(6), zeros(material%n_internal), direction(6)
-    real(wp) :: end_stress(6), end_internal(material%n_internal), tangent(6, 6), start
+    real(wp) :: stress_trial(6), internal_trial(material%n_internal), tangent(6, 6), start
     type(verdict_t) :: verdict
     logical :: plastic
     integer :: n, r, total
@@ -109,11 +110,11 @@ contains
     zeros = 0.0_wp
     do n = 1, states
       strain(:, n) = 0.02_wp*random_vector()
-      call material%update(zero, zeros, strain(:, n), stress(:, n), internal(:, n), tangent, &
-          plastic, verdict)
+      call material%update(zero, zeros, strain(:, n), stress(:, n), &
+          internal_variables(:, n), tangent, plastic, verdict)
       strain(:, n) = length*random_vector()
       strain(:, n) = kelvin_deviator(strain(:, n))
-      direction = material%plastic_direction(stress(:, n), internal(:, n))
+      direction = material%plastic_direction(stress(:, n), internal_variables(:, n))
       if (dot_product(strain(:, n), direction) > 0.0_wp .neqv. load) strain(:, n) = -strain(:, n)
     end do
     time = huge(1.0_wp)
@@ -121,8 +122,8 @@ contains
       total = 0
       start = wall_time()
       do n = 1, states
-        call material%update(stress(:, n), internal(:, n), strain(:, n), end_stress, end_internal, &
-            tangent, plastic, verdict)
+        call material%update(stress(:, n), internal_variables(:, n), strain(:, n), stress_trial, &
+            internal_trial, tangent, plastic, verdict)
         total = total + verdict%iterations
       end do
       time = min(time, 1.0e9_wp*(wall_time() - start)/states)

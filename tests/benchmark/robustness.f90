@@ -1,6 +1,6 @@
 !> Test the stress update with random strain increments up to 10 % from random admissible states:
-!> every criterion with published and with extreme parameters, the hardening laws, the
-!> back-stresses and their combinations.
+!> every criterion with published and with extreme parameters, the hardening laws, the back-stresses
+!> and their combinations.
 !>
 !>     benchmark_robustness [part of a combination's name]
 !>
@@ -132,17 +132,17 @@ contains
     integer, intent(in) :: increments
     type(tally_t), intent(inout) :: tally
 
-    real(wp) :: stress(6), internal(material%n_internal), chance(4), strain(6)
+    real(wp) :: stress(6), internal_variables(material%n_internal), chance(4), strain(6)
     integer :: n
 
     do n = 1, increments
       if (modulo(n, walk) == 1) then
         stress = 0.0_wp
-        internal = 0.0_wp
+        internal_variables = 0.0_wp
       end if
       call random_number(chance)
       if (chance(1) < 0.5_wp) then
-        stress = chance(2)*stress + (1 - chance(2))*material%back_stress(internal)
+        stress = chance(2)*stress + (1 - chance(2))*material%back_stress(internal_variables)
       end if
       stress(1:3) = stress(1:3) - sum(stress(1:3))/3 + 600*chance(3) - 300
       ! Norms: half of them uniform, half log-uniform over four decades.
@@ -151,44 +151,44 @@ contains
       else
         strain = largest*10.0_wp**(-4*chance(4))*random_direction()
       end if
-      call try_increment(material, stress, internal, strain, tally)
+      call try_increment(material, stress, internal_variables, strain, tally)
     end do
   end subroutine walk_randomly
 
   !> Update a state by a strain increment and add the result to the tally.
-  subroutine try_increment(material, stress, internal, strain, tally)
+  subroutine try_increment(material, stress, internal_variables, strain, tally)
     type(material_t), intent(in) :: material
-    real(wp), intent(inout) :: stress(6), internal(material%n_internal)
+    real(wp), intent(inout) :: stress(6), internal_variables(material%n_internal)
     real(wp), intent(in) :: strain(6)
     type(tally_t), intent(inout) :: tally
 
-    real(wp) :: new_stress(6), new_internal(material%n_internal), tangent(6, 6), flow, excess
+    real(wp) :: stress_trial(6), internal_trial(material%n_internal), tangent(6, 6), flow, excess
     type(verdict_t) :: verdict
     logical :: plastic
     integer :: parts
 
-    call material%update(stress, internal, strain, new_stress, new_internal, tangent, plastic, &
-        verdict)
+    call material%update(stress, internal_variables, strain, stress_trial, internal_trial, &
+        tangent, plastic, verdict)
     if (verdict%outcome /= verdict_converged) then
       if (tally%failed == 0) tally%reason = verdict%reason
       tally%failed = tally%failed + 1
       return
     end if
-    call count_parts(material, stress, internal, strain, tally%iterations, parts)
+    call count_parts(material, stress, internal_variables, strain, tally%iterations, parts)
     if (parts > 1) tally%cut = tally%cut + 1
     tally%parts = max(tally%parts, parts)
-    flow = material%flow_stress(new_internal)
-    excess = (material%equivalent_stress(new_stress, new_internal) - flow)/flow
+    flow = material%flow_stress(internal_trial)
+    excess = (material%equivalent_stress(stress_trial, internal_trial) - flow)/flow
     if (plastic) excess = abs(excess)
     tally%distance = max(tally%distance, excess)
-    stress = new_stress
-    internal = new_internal
+    stress = stress_trial
+    internal_variables = internal_trial
   end subroutine try_increment
 
   !> Count the parts into which the update cuts an increment.
-  subroutine count_parts(material, stress, internal, strain, iterations, parts)
+  subroutine count_parts(material, stress, internal_variables, strain, iterations, parts)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: stress(6), internal(material%n_internal), strain(6)
+    real(wp), intent(in) :: stress(6), internal_variables(material%n_internal), strain(6)
     !> Raised to the largest number of iterations of a part that converged.
     integer, intent(inout) :: iterations
     !> Number of parts.
@@ -201,7 +201,7 @@ contains
     parts = 1
     do while (parts <= part_limit)
       start = stress
-      after = internal
+      after = internal_variables
       do part = 1, parts
         before = after
         call integrate_step(material%laws, start, before, strain/real(parts, wp), step)

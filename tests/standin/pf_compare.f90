@@ -11,18 +11,18 @@ module pf_compare
 
   !> Relations between the expected and the actual side.
   integer, parameter :: compare_equal = 1, compare_notequal = 2, compare_lessthan = 3, &
-    compare_lessthanorequal = 4, compare_greaterthan = 5, compare_greaterthanorequal = 6, &
-    compare_relativelyequal = 7
+      compare_lessthanorequal = 4, compare_greaterthan = 5, compare_greaterthanorequal = 6, &
+      compare_relativelyequal = 7
   !> Their names in messages.
   character(len=24), parameter :: operation_name(7) = [character(len=24) :: "assertEqual", &
-    "assertNotEqual", "assertLessThan", "assertLessThanOrEqual", "assertGreaterThan", &
-    "assertGreaterThanOrEqual", "assertRelativelyEqual"]
+      "assertNotEqual", "assertLessThan", "assertLessThanOrEqual", "assertGreaterThan", &
+      "assertGreaterThanOrEqual", "assertRelativelyEqual"]
 
 contains
 
   !> Compare real numbers element by element.
   subroutine compare_reals(operation, expected, expected_shape, actual, actual_shape, tolerance, &
-                           message, location)
+      message, location)
     integer, intent(in) :: operation
     !> The expected one may be a single number.
     real(dp), intent(in) :: expected(:), actual(:)
@@ -90,7 +90,7 @@ contains
 
   !> Compare integers element by element.
   subroutine compare_integers(operation, expected, expected_shape, actual, actual_shape, message, &
-                              location)
+      location)
     integer, intent(in) :: operation
     !> The expected one may be a single number.
     integer(i8), intent(in) :: expected(:), actual(:)
@@ -138,7 +138,7 @@ contains
 
   !> Compare logicals element by element: equal or not equal.
   subroutine compare_logicals(operation, expected, expected_shape, actual, actual_shape, message, &
-                              location)
+      location)
     !> `compare_equal` or `compare_notequal`.
     integer, intent(in) :: operation
     !> The expected one may be a single logical.
@@ -172,7 +172,7 @@ contains
 
     if (trim(adjustl(expected)) == trim(adjustl(actual))) return
     call fail_at(compare_equal, """"//trim(expected)//"""", """"//trim(actual)//"""", "", 1, &
-                 no_shape, message, location)
+        no_shape, message, location)
   end subroutine compare_texts
 
   !> Check that the shapes conform; record a failure if they do not.
@@ -186,8 +186,8 @@ contains
     if (conformable) return
     conformable = all(expected_shape == actual_shape)
     if (.not. conformable) call fail(with_message(message, trim(operation_name(operation)) &
-      //": the shapes differ"//new_line("a")//"expected shape: "//shape_text(expected_shape) &
-      //new_line("a")//"actual shape:   "//shape_text(actual_shape)), location)
+        //": the shapes differ"//new_line("a")//"expected shape: "//shape_text(expected_shape) &
+        //new_line("a")//"actual shape:   "//shape_text(actual_shape)), location)
   end function conformable
 
   !> Record a failure with both values and the position in the array.
@@ -206,7 +206,7 @@ contains
     integer :: index(size(actual_shape)), rest, k
 
     text = trim(operation_name(operation))//" failed"//new_line("a")//"expected:   "//trim(left) &
-           //new_line("a")//"actual:     "//trim(right)
+        //new_line("a")//"actual:     "//trim(right)
     if (difference /= "") text = text//new_line("a")//"difference: "//trim(difference)
     if (size(actual_shape) > 0) then
       rest = place - 1
@@ -223,6 +223,7 @@ contains
   function shape_text(numbers) result(text)
     integer, intent(in) :: numbers(:)
     character(len=:), allocatable :: text
+
     character(len=12) :: one
     integer :: i
 

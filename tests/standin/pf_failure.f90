@@ -4,7 +4,7 @@
 module pf_failure
   implicit none
   private
-  public :: SourceLocation, failure_t, fail, anyExceptions, take_failures, with_message
+  public :: SourceLocation, failure_t, fail, anyExceptions, pop_failures, with_message
 
   !> Position of an assert.
   type :: SourceLocation
@@ -20,7 +20,7 @@ module pf_failure
     type(SourceLocation) :: location
   end type failure_t
 
-  !> Failures since the last call of `take_failures`.
+  !> Failures since the last call of `pop_failures`.
   type(failure_t), allocatable :: failures(:)
 
 contains
@@ -48,7 +48,7 @@ contains
   end function anyExceptions
 
   !> Return the failures and clear them.
-  subroutine take_failures(taken)
+  subroutine pop_failures(taken)
     !> Empty if there are none.
     type(failure_t), allocatable, intent(out) :: taken(:)
 
@@ -57,7 +57,7 @@ contains
     else
       allocate (taken(0))
     end if
-  end subroutine take_failures
+  end subroutine pop_failures
 
   !> Return the message of the test on its own line, then the text.
   function with_message(message, text) result(both)

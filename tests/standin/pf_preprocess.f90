@@ -10,11 +10,12 @@ program pf_preprocess
   integer, parameter :: max_columns = 100
   !> Names of the asserts, in small letters.
   character(len=18), parameter :: assert_name(16) = [character(len=18) :: "true", "false", "fail", &
-    "isfinite", "isnan", "all", "any", "none", "sameshape", "equal", "notequal", "lessthan", &
-    "lessthanorequal", "greaterthan", "greaterthanorequal", "relativelyequal"]
+      "isfinite", "isnan", "all", "any", "none", "sameshape", "equal", "notequal", "lessthan", &
+      "lessthanorequal", "greaterthan", "greaterthanorequal", "relativelyequal"]
   !> Number of arguments before the keywords.
   integer, parameter :: assert_arguments(16) = [1, 1, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2]
-  !> From this index on the generated call is `assertEquality(compare_<name>, ...)` or `assertOrder(...)`.
+  !> First index for which the generated call is `assertEquality(compare_<name>, ...)` or
+  !> `assertOrder(...)`.
   integer, parameter :: first_comparison = 10
 
   !> What the next line that is not a comment must be.
@@ -132,6 +133,7 @@ contains
   !> Add a name to the list of tests.
   subroutine add_test(name)
     character(len=*), intent(in) :: name
+
     character(len=64), allocatable :: longer(:)
 
     allocate (longer(size(test) + 1))
@@ -149,7 +151,7 @@ contains
       if (module_name /= "") call refuse("a second module")
       module_name = adjustl(word(8:))
       if (module_name /= lower(suite)) call refuse( &
-        "the line must be `module "//trim(suite)//"`, the name of the file, and nothing else")
+          "the line must be `module "//trim(suite)//"`, the name of the file, and nothing else")
     else if (word(1:4) == "use " .and. index(word, "funit") > 0) then
       if (adjustl(word(5:)) /= "funit") call refuse("the line must be `use funit`")
       uses_funit = .true.
@@ -192,7 +194,7 @@ contains
     write (unit_out, '(4a)') "  call ", call_name, text(opening + 1:closing - 1), ", &"
     write (unit_out, '(a,i0,3a)') "# ", number, " """, trim(source), """"
     write (unit_out, '(3a,i0,a)') "    location=SourceLocation('", trim(suite), ".pf', ", &
-      number, "))"
+        number, "))"
     write (unit_out, '(a)') "  if (anyExceptions()) return"
     write (unit_out, '(a,i0,3a)') "# ", number + 1, " """, trim(source), """"
   end subroutine assert_line
@@ -229,7 +231,7 @@ contains
     if (which == 3 .and. plain == 1 .and. .not. message) return
     if (which == 3 .and. .not. message) call refuse("@assertFail needs a message")
     if (plain /= assert_arguments(which)) call refuse( &
-      "wrong number of arguments; the tolerance and the message are given by keyword")
+        "wrong number of arguments; the tolerance and the message are given by keyword")
     select case (assert_name(which))
     case ("relativelyequal")
       if (.not. tolerance) call refuse("@assertRelativelyEqual needs a tolerance")
@@ -259,6 +261,7 @@ contains
     !> With text constants blanked out.
     character(len=*), intent(in) :: list
     integer, intent(in) :: first
+
     integer :: depth
 
     depth = 0
@@ -280,6 +283,7 @@ contains
     !> With text constants blanked out.
     character(len=*), intent(in) :: text
     integer, intent(in) :: opening
+
     integer :: depth, place
 
     depth = 0
@@ -296,6 +300,7 @@ contains
   function strip_text(text) result(bare)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: bare
+
     character(len=1) :: quote
     integer :: place
 
@@ -331,10 +336,10 @@ contains
       write (unit_out, '(a)') "  use "//trim(suite)//", only : "//trim(test(i))
     end do
     write (unit_out, '(a)') "  implicit none", "contains", "  subroutine run_suite(run)", &
-      "    type(run_t), intent(inout) :: run"
+        "    type(run_t), intent(inout) :: run"
     do i = 1, size(test)
       write (unit_out, '(a)') "    call run%test('"//trim(suite)//"', '"//trim(test(i))//"', &", &
-        "      "//trim(test(i))//fixture//")"
+          "      "//trim(test(i))//fixture//")"
     end do
     write (unit_out, '(a)') "  end subroutine run_suite", "end module "//trim(suite)//"_suite"
   end subroutine write_suite
@@ -343,6 +348,7 @@ contains
   function base_name(path) result(name)
     character(len=*), intent(in) :: path
     character(len=64) :: name
+
     integer :: dot
 
     name = path(index(path, "/", back=.true.) + 1:)
@@ -354,6 +360,7 @@ contains
   function lower(text)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: lower
+
     integer :: place
 
     lower = text
@@ -367,6 +374,7 @@ contains
   !> Print the error, remove the incomplete result and stop.
   subroutine refuse(message)
     character(len=*), intent(in) :: message
+
     logical :: opened
 
     write (error_unit, '(2a,i0,2a)') trim(source), ":", number, ": error: ", message

@@ -1,7 +1,7 @@
 !> Run tests in sequence, count them and print the failures.
 module pf_runner
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
-  use pf_failure, only : failure_t, take_failures, anyExceptions
+  use pf_failure, only : failure_t, pop_failures, anyExceptions
   implicit none
   private
   public :: run_t
@@ -58,7 +58,8 @@ contains
     end do
   end subroutine run_start
 
-  !> Run one test. If `before` fails, test and `after` are skipped; otherwise `after` is always called.
+  !> Run one test. If `before` fails, the test and `after` are skipped; otherwise `after` is always
+  !> called.
   subroutine run_test(self, suite, name, test, before, after)
     class(run_t), intent(inout) :: self
     !> Names of the suite and the test.
@@ -92,11 +93,11 @@ contains
     character(len=12) :: line
     integer :: i
 
-    call take_failures(failures)
+    call pop_failures(failures)
     do i = 1, size(failures)
       write (line, '(i0)') failures(i)%location%line
       self%report = self%report//"FAILED "//name//" at "//trim(failures(i)%location%file)//":" &
-                    //trim(line)//new_line("a")//failures(i)%message//new_line("a")
+          //trim(line)//new_line("a")//failures(i)%message//new_line("a")
     end do
   end subroutine run_note
 

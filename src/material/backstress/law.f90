@@ -16,7 +16,7 @@ module dd3_material_backstress_law
     procedure(back_stress_interface), deferred :: back_stress
   end type backstress_t
 
-  !> Holds a back-stress law of any kind.
+  !> Container of a back-stress law of any type.
   type :: backstress_slot_t
     class(backstress_t), allocatable :: law
   end type backstress_slot_t

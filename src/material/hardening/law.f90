@@ -1,6 +1,6 @@
 !> Hardening laws: the flow stress at the end of a plastic increment, with its derivatives in the
-!> increment and in the stress. A law that depends on the strain path has internal variables, and
-!> may have a back-stress, of its own.
+!> increment and in the stress. A law that depends on the strain path has internal variables of its
+!> own, and possibly a back-stress.
 module dd3_material_hardening_law
   use dd3_base_kinds, only : wp
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
@@ -9,21 +9,21 @@ module dd3_material_hardening_law
   private
   public :: hardening_t, hardening_slot_t
 
-  !> A hardening law.
+  !> Base of the hardening laws.
   type, abstract, extends(law_t) :: hardening_t
     !> Number of internal variables besides the equivalent plastic strain.
     integer :: n_internal = 0
     !> Whether the law has a back-stress of its own.
     logical :: owns_back_stress = .false.
     !> Whether the flow stress depends on the direction of flow.
-    logical :: follows_path = .false.
+    logical :: path_dependent = .false.
   contains
     procedure(flow_stress_interface), deferred :: flow_stress
     procedure :: back_stress => no_back_stress
-    procedure :: evolve => evolve_nothing
+    procedure :: evolve => keep_internal_variables
   end type hardening_t
 
-  !> Holds a hardening law of any kind.
+  !> Container of a hardening law of any type.
   type :: hardening_slot_t
     class(hardening_t), allocatable :: law
   end type hardening_slot_t
@@ -67,7 +67,7 @@ contains
   end subroutine no_back_stress
 
   !> Evolve the law's own internal variables over an increment: unchanged.
-  pure subroutine evolve_nothing(self, start, increment, direction, evolved)
+  pure subroutine keep_internal_variables(self, start, increment, direction, evolved)
     class(hardening_t), intent(in) :: self
     !> Own internal variables at the start.
     real(wp), intent(in) :: start(self%n_internal)
@@ -81,6 +81,6 @@ contains
     evolved = start
     associate (no_increment => increment, no_direction => direction)
     end associate
-  end subroutine evolve_nothing
+  end subroutine keep_internal_variables
 
 end module dd3_material_hardening_law

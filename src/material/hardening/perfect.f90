@@ -26,7 +26,7 @@ contains
     description%name = "perfect"
     description%title = "constant flow stress"
     description%source = "L. Prandtl, Proc. 1st Int. Congr. Appl. Mech., Delft "// &
-                         "(1924) 43-54; A. Reuss, Z. angew. Math. Mech. 10 (1930) 266-274"
+        "(1924) 43-54; A. Reuss, Z. angew. Math. Mech. 10 (1930) 266-274"
     allocate (description%rows, source=[ &
       row("Y0", kind_real, "MPa", "", "flow stress", 0.0_wp, lower_open=.true.)])
     allocate (description%example, source=[ &

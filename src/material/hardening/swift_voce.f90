@@ -33,7 +33,7 @@ contains
     description%name = "swift_voce"
     description%title = "Y = alpha (Y0 + Rsat (1 - exp(-CR p))) + (1 - alpha) K (e0 + p)^n"
     description%source = "J. H. Sung, J. H. Kim, R. H. Wagoner, Int. J. Plasticity 26 "// &
-                         "(2010) 1746-1771"
+        "(2010) 1746-1771"
     allocate (description%rows, source=[ &
       row("alpha", kind_real, "", "", "weight of Voce's law, the rest is Swift's", &
           0.0_wp, 1.0_wp), &

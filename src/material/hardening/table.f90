@@ -141,7 +141,7 @@ contains
     else
       n = interval(self%strain, strain)
       call cubic(strain, self%strain(n:n + 1), self%stress(n:n + 1), self%slope(n:n + 1), &
-                 stress, slope)
+          stress, slope)
     end if
   end subroutine hardening_curve
 

@@ -81,7 +81,7 @@ contains
     description%name = "teodosiu_hu"
     description%title = "Y = Y0 + R + f |S|, follows changes of the strain path; owns a back-stress"
     description%source = "C. Teodosiu, Z. Hu (1998), 19th Riso Symposium; H. Haddadi et al., "// &
-                         "Int. J. Plasticity 22 (2006) 2226-2271"
+        "Int. J. Plasticity 22 (2006) 2226-2271"
     allocate (description%rows, source=[ &
       row("Y0", kind_real, "MPa", "", "initial flow stress", 0.0_wp, lower_open=.true.), &
       row("CR", kind_real, "", "", "rate of R", 0.0_wp), &
@@ -112,10 +112,10 @@ contains
 
     allocate (rows(3))
     rows(1) = internal_variable_t("polarity", "", "polarity P of the dislocation structures, "// &
-                                  "Kelvin vector", 6)
+        "Kelvin vector", 6)
     rows(2) = internal_variable_t("back_stress", "MPa", "back-stress X, Kelvin vector", 6)
     rows(3) = internal_variable_t("strength", "MPa", "strength S of the structures, upper "// &
-                                  "triangle of a 6x6 Kelvin matrix by columns", 21)
+        "triangle of a 6x6 Kelvin matrix by columns", 21)
   end subroutine describe_internal_variables
 
   subroutine set(self, values)
@@ -124,7 +124,7 @@ contains
 
     self%n_internal = n_own
     self%owns_back_stress = .true.
-    self%follows_path = .true.
+    self%path_dependent = .true.
     self%y0 = value_of(values, "Y0")
     self%c_r = value_of(values, "CR")
     self%r_sat = value_of(values, "Rsat")
@@ -174,7 +174,7 @@ contains
     call evolve_structure(self, start, increment, direction, structure)
     strength = root_of(structure, self%r, self%s_sat)
     call relax_back_stress(self%c_x*(self%x0 + (1 - self%f)*strength%value), self%c_x, &
-                           start(7:12), increment, direction, back)
+        start(7:12), increment, direction, back)
     if (.not. direction%equivalent > 0.0_wp) return
     call relax(self%c_x, increment, kept, weight)
     normal = weight*self%c_x*(1 - self%f)*kelvin_deviator(direction%stress)/direction%equivalent
@@ -359,9 +359,9 @@ contains
     slope = self%s_sat/(1 - step*(by_s*(1 - s) - g - release%value))
     directed%value = self%s_sat*s
     directed%slope = slope*(self%c_sd*(g*(1 - s) - release%value*s) &
-                            + step*(by_p*(1 - s)*polarity%slope - s*release%slope))
+        + step*(by_p*(1 - s)*polarity%slope - s*release%slope))
     directed%by_n = slope*(start%by_n/self%s_sat + step*by_p*(1 - s)*polarity%by_n &
-                           - step*s*release%by_n)
+        - step*s*release%by_n)
     directed%by_v = -slope*step*s*release%by_v
   end subroutine evolve_directed
 

@@ -97,7 +97,7 @@ contains
     if (n <= angles) then
       angle = 2*pi*real(n, wp)/angles
       stress(1:3) = cos(angle)*[0.5_wp, -0.5_wp, 0.0_wp] + &
-                    sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
+          sin(angle)*[1.0_wp, 1.0_wp, -2.0_wp]/sqrt(12.0_wp)
     else
       k = n - angles
       stress(4 + (k - 1)/2) = merge(1.0_wp, -1.0_wp, modulo(k, 2) == 1)*inverse_sqrt2

@@ -25,7 +25,6 @@ module dd3_material_yield_cpb06
     private
     !> m.
     type(exponent_t) :: exponent
-    !> k.
     real(wp) :: k = 0.0_wp
     !> Factor of the root.
     real(wp) :: normalisation = 1.0_wp

@@ -9,7 +9,7 @@ module dd3_material_yield_criterion
   private
   public :: yield_criterion_t, yield_slot_t
 
-  !> A yield criterion.
+  !> Base of the yield criteria.
   type, abstract, extends(law_t) :: yield_criterion_t
     !> Whether all parameters within their bounds give a convex surface; assigned by `set`.
     logical :: always_convex = .false.
@@ -21,7 +21,7 @@ module dd3_material_yield_criterion
     procedure :: gradient
   end type yield_criterion_t
 
-  !> Holds a criterion of any kind.
+  !> Container of a criterion of any type.
   type :: yield_slot_t
     class(yield_criterion_t), allocatable :: law
   end type yield_slot_t

@@ -174,8 +174,7 @@ contains
     w(4) = p(4, 4)*t(4)
     w(5) = p(5, 5)*t(5)
     w(6) = p(6, 6)*t(6)
-    square = w(4)*t(4) + w(5)*t(5) + w(6)*t(6) &
-             - p(2, 1)*d21**2 - p(3, 1)*d31**2 - p(3, 2)*d32**2
+    square = w(4)*t(4) + w(5)*t(5) + w(6)*t(6) - p(2, 1)*d21**2 - p(3, 1)*d31**2 - p(3, 2)*d32**2
     square = max(0.0_wp, square)
   end subroutine apply
 

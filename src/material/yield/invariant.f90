@@ -21,7 +21,6 @@ module dd3_material_yield_invariant
     real(wp) :: quadratic(6, 6) = 0.0_wp
     !> A.
     real(wp) :: cubic(6, 6, 6) = 0.0_wp
-    !> c.
     real(wp) :: c = 0.0_wp
     !> Sixth power of the factor.
     real(wp) :: factor = 1.0_wp
@@ -91,8 +90,7 @@ contains
       second = second + s(k)*self%cubic(:, :, k)
     end do
     first = matmul(second, s)
-    f = (0.5_wp*dot_product(s, matmul(self%quadratic, s)))**3 &
-        - self%c*(dot_product(first, s)/6)**2
+    f = (0.5_wp*dot_product(s, matmul(self%quadratic, s)))**3 - self%c*(dot_product(first, s)/6)**2
     value = scale*(self%factor*max(f, 0.0_wp))**(1/6.0_wp)
   end function value
 
@@ -129,7 +127,7 @@ contains
     f%first = (3*j2**2)*d2 - (2*self%c*j3)*d3
     do k = 1, 6
       f%second(:, k) = (6*j2*d2(k))*d2 + (3*j2**2)*self%quadratic(:, k) &
-                       - (2*self%c)*(d3(k)*d3 + j3*dd3(:, k))
+          - (2*self%c)*(d3(k)*d3 + j3*dd3(:, k))
     end do
     call root_of(6, 6.0_wp, scale, self%factor, f, q)
     direction%equivalent = q%value

@@ -71,7 +71,7 @@ contains
     normal(:, 2) = [beta(1), alpha(1), beta(3)]
     normal(:, 3) = [beta(2), beta(3), alpha(2)]
     shear = [value_of(values, "gamma1", 1.5_wp), value_of(values, "gamma2", 1.5_wp), &
-             value_of(values, "gamma3", 1.5_wp)]
+        value_of(values, "gamma3", 1.5_wp)]
     call new_transformation(self%transformation(1), scale*normal, scale*shear)
     call new_exponent(self%exponent, 2*value_of(values, "k"))
     self%mixture = value_of(values, "c")

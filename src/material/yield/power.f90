@@ -40,8 +40,7 @@ contains
   !> Return the parameter m of criteria of a high exponent.
   type(parameter_t) function exponent_row()
     exponent_row = row("m", kind_real, "", "", &
-                       "exponent: 6 for body-centred, 8 for face-centred cubic metals", &
-                       2.0_wp, 100.0_wp)
+        "exponent: 6 for body-centred, 8 for face-centred cubic metals", 2.0_wp, 100.0_wp)
   end function exponent_row
 
   !> Evaluate |x|^m with first and second derivatives.

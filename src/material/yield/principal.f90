@@ -98,7 +98,7 @@ contains
     e = 0.0_wp
     do n = 1, self%count
       call symmetric_eigen(tensor_from_kelvin(transform(self%transformation(n), s)), &
-                           e(3*n - 2:3*n), vectors)
+          e(3*n - 2:3*n), vectors)
     end do
     if (.not. any(abs(e) > 0.0_wp)) return
     call self%principal_function(e, q)
@@ -174,7 +174,7 @@ contains
     if (.not. any(abs(s) > 0.0_wp)) return
     do n = 1, self%count
       call symmetric_eigen(tensor_from_kelvin(transform(self%transformation(n), s)), &
-                           at%e(3*n - 2:3*n), v)
+          at%e(3*n - 2:3*n), v)
       do i = 1, 3
         m = 3*n - 3 + i
         at%own(:, m) = pull_back(self%transformation(n), square_of(v(:, i)))

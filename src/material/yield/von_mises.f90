@@ -82,7 +82,7 @@ contains
     if (direction%equivalent > 0.0_wp) factor = 1/direction%equivalent
     do j = 1, 6
       direction%second(:, j) = factor*(1.5_wp*kelvin_deviator_projector(:, j) &
-                                       - direction%gradient(j)*direction%gradient)
+          - direction%gradient(j)*direction%gradient)
     end do
   end subroutine second_derivative
 

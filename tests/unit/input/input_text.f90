@@ -9,15 +9,15 @@ module input_text
   public :: write_file, remove_file, read_text, messages, newline, good_sheet, good_pull, good_tool
 
   character(len=1), parameter :: newline = achar(10)
-  !> A good sheet with its material.
+  !> A valid sheet with its material.
   character(len=*), parameter :: good_sheet = "*BLANK sheet"//newline//"size = 20 10 1"//newline// &
-    "divisions = 4 2 2"//newline//"material = steel"//newline//"*MATERIAL steel"//newline// &
-    "young = 2.1e5"//newline//"poisson = 0.3"//newline//"yield = von_mises"//newline// &
-    "hardening = swift K=565 e0=0.007 n = 0.26"//newline
-  !> A good phase without tools.
+      "divisions = 4 2 2"//newline//"material = steel"//newline//"*MATERIAL steel"//newline// &
+      "young = 2.1e5"//newline//"poisson = 0.3"//newline//"yield = von_mises"//newline// &
+      "hardening = swift K=565 e0=0.007 n = 0.26"//newline
+  !> A valid phase without tools.
   character(len=*), parameter :: good_pull = "*PHASE pull"//newline//"control = load"//newline// &
-    "trial = 0.1"//newline//"displace = x_max x 0.1"//newline
-  !> A good tool and its contact.
+      "trial = 0.1"//newline//"displace = x_max x 0.1"//newline
+  !> A valid tool and its contact.
   character(len=*), parameter :: good_tool = "*TOOL punch"//newline//"patches = 'my punch.bez'"// &
       newline//"contact = z_max"//newline//"friction = 0.1"//newline//"*CONTACT"//newline// &
       "penalty = 1d3"//newline

@@ -79,6 +79,7 @@ contains
     character(len=*), intent(in) :: name, keys(:)
     real(wp), intent(in) :: values(:)
     type(law_choice_t) :: law
+
     integer :: i
 
     law%name = name
@@ -93,7 +94,7 @@ contains
     type(law_choice_t) :: law
 
     law = choice("hill48", ["F", "G", "H", "L", "M", "N"], &
-                 [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
+        [0.284_wp, 0.358_wp, 0.642_wp, 1.289_wp, 1.289_wp, 1.289_wp])
   end function mild_steel
 
   !> Return valid values, each changed at random by up to a fifth (of one, if it is zero). A
@@ -105,6 +106,7 @@ contains
     type(description_t), intent(in) :: description
     real(wp), intent(in), optional :: multiple
     type(law_value_t), allocatable :: values(:)
+
     type(problem_t), allocatable :: problems(:)
     type(parameter_t) :: row
     real(wp) :: change
@@ -137,6 +139,7 @@ contains
   type(parameter_t) function row_of(description, name)
     type(description_t), intent(in) :: description
     character(len=*), intent(in) :: name
+
     integer :: i
 
     do i = 1, size(description%rows)
@@ -150,6 +153,7 @@ contains
   subroutine make_criteria(criteria, isotropic)
     type(yield_slot_t), allocatable, intent(out) :: criteria(:)
     logical, allocatable, intent(out) :: isotropic(:)
+
     type(yield_slot_t), allocatable :: entries(:)
     type(description_t) :: description
     integer :: i, k
@@ -172,6 +176,7 @@ contains
   !> Make every hardening law of the registry.
   subroutine make_hardenings(laws)
     type(hardening_slot_t), allocatable, intent(out) :: laws(:)
+
     type(description_t) :: description
     integer :: i
 
@@ -185,6 +190,7 @@ contains
   !> Make every back-stress law of the registry.
   subroutine make_backstresses(laws)
     type(backstress_slot_t), allocatable, intent(out) :: laws(:)
+
     type(description_t) :: description
     integer :: i
 
@@ -210,6 +216,7 @@ contains
     integer, intent(in) :: number
     type(material_t), intent(out) :: material
     character(len=:), allocatable, intent(out) :: name
+
     type(description_t), allocatable :: criteria(:), hardenings(:), backstresses(:)
     type(law_choice_t), allocatable :: back(:)
     integer :: i, j, k, n
@@ -236,8 +243,8 @@ contains
       name = name//" with all back-stresses"
     end if
     call make_material(material, &
-                       law_choice_t(criteria(i)%name, perturbed(law_yield, criteria(i))), &
-                       law_choice_t(hardenings(j)%name, hardenings(j)%example), back)
+        law_choice_t(criteria(i)%name, perturbed(law_yield, criteria(i))), &
+        law_choice_t(hardenings(j)%name, hardenings(j)%example), back)
   end subroutine make_combination
 
   !> Make a material with valid parameters.
@@ -245,6 +252,7 @@ contains
     type(material_t), intent(out) :: material
     type(law_choice_t), intent(in) :: criterion, hardening
     type(law_choice_t), intent(in), optional :: back(:)
+
     type(law_choice_t), allocatable :: none(:)
 
     allocate (none(0))
@@ -263,6 +271,7 @@ contains
     logical, intent(in) :: by_stress(6)
     real(wp), intent(inout) :: stress(6), internal_variables(material%n_internal), strain(6)
     logical, intent(out) :: success
+
     real(wp) :: increment(6), stress_trial(6), internal_trial(material%n_internal), tangent(6, 6)
     real(wp) :: residual(6), matrix(6, 6)
     type(verdict_t) :: verdict

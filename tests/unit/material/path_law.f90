@@ -14,11 +14,11 @@ module path_law
   public :: path_law_t
 
   !> Constants: initial flow stress, slope, weight of the polarity and its rate; rate of the
-  !> back-stress, its saturation and what the polarity adds to that.
+  !> back-stress, its saturation and the contribution of the polarity to it.
   real(wp), parameter :: y0 = 200.0_wp, h = 300.0_wp, f = 80.0_wp, c_p = 12.0_wp, &
-                         c_x = 30.0_wp, x0 = 40.0_wp, g = 30.0_wp
+      c_x = 30.0_wp, x0 = 40.0_wp, g = 30.0_wp
 
-  !> The law; its internal_variables variables are P, then X.
+  !> Law with the internal variables P, then X.
   type, extends(hardening_t) :: path_law_t
   contains
     procedure, nopass :: describe
@@ -52,7 +52,7 @@ contains
 
     self%n_internal = 12 + 0*size(values)
     self%owns_back_stress = .true.
-    self%follows_path = .true.
+    self%path_dependent = .true.
   end subroutine set
 
   !> Evaluate the polarity at the end and the derivatives of |P|^2.
@@ -60,6 +60,7 @@ contains
     real(wp), intent(in) :: start(6), increment
     type(flow_direction_t), intent(in) :: direction
     real(wp), intent(out) :: p(6), slope, gradient(6)
+
     real(wp) :: n(6), length, decay, tangential(6)
 
     length = norm2(direction%gradient)
@@ -81,6 +82,7 @@ contains
     real(wp), intent(in) :: plastic_strain, start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(flow_response_t), intent(out) :: flow
+
     real(wp) :: p(6), slope, gradient(6)
 
     call polarity(start(1:6), increment, direction, p, slope, gradient)
@@ -95,6 +97,7 @@ contains
     real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     type(back_response_t), intent(out) :: back
+
     real(wp) :: p(6), slope, gradient(6), normal(6), kept, weight
     integer :: j
 
@@ -110,12 +113,13 @@ contains
     end do
   end subroutine back_stress
 
-  !> Evolve the law's internal_variables variables.
+  !> Evolve the internal variables of the law.
   pure subroutine evolve(self, start, increment, direction, evolved)
     class(path_law_t), intent(in) :: self
     real(wp), intent(in) :: start(self%n_internal), increment
     type(flow_direction_t), intent(in) :: direction
     real(wp), intent(out) :: evolved(self%n_internal)
+
     type(back_response_t) :: back
     real(wp) :: slope, gradient(6)
 

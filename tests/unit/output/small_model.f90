@@ -1,4 +1,5 @@
-!> A block of two elements on each other, two tools and two phases, for the tests of the records.
+!> Fixtures of the tests of the records: a block of two stacked elements with two tools and two
+!> phases, folders and files.
 module small_model
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
   use dd3_base_error, only : error_t
@@ -13,11 +14,10 @@ module small_model
   use dd3_model_state, only : state_t, new_state
   implicit none
   private
-  public :: make_small_model, fresh_folder, lead_to_full_disk, lines_of, line_t
+  public :: make_small_model, fresh_folder, link_full_disk, lines_of, line_t
 
-  !> A line of text.
+  !> Line of a file.
   type :: line_t
-    !> Its text.
     character(len=:), allocatable :: text
   end type line_t
 
@@ -36,12 +36,12 @@ module small_model
 
 contains
 
-  !> A block of 2 x 3 x 1 mm: 12 nodes, numbered through the thickness first.
+  !> Make a block of 2 x 3 x 1 mm with 12 nodes, numbered through the thickness first.
   subroutine make_small_model(model, state)
-    !> The model.
     type(model_t), intent(out) :: model
-    !> The initial state.
+    !> Initial state.
     type(state_t), intent(out) :: state
+
     type(law_choice_t) :: criterion, hardening, none(0)
     type(error_t), allocatable :: error
     integer :: i, j, k
@@ -64,8 +64,7 @@ contains
     end do
     do k = 0, 1
       model%connectivity(:, k + 1) = [node(0, 0, k), node(1, 0, k), node(1, 1, k), node(0, 1, k), &
-                                      node(0, 0, k + 1), node(1, 0, k + 1), node(1, 1, k + 1), &
-                                      node(0, 1, k + 1)]
+          node(0, 0, k + 1), node(1, 0, k + 1), node(1, 1, k + 1), node(0, 1, k + 1)]
     end do
     criterion%name = "von_mises"
     hardening%name = "perfect"
@@ -87,18 +86,19 @@ contains
     call new_state(state, model)
   end subroutine make_small_model
 
-  !> Number of a node.
+  !> Return the number of a node.
   pure integer function node(i, j, k)
-    !> Its places along x, y and z, from 0.
+    !> Position in x, y and z, from 0.
     integer, intent(in) :: i, j, k
 
     node = 1 + k + 3*(j + 2*i)
   end function node
 
-  !> Makes a folder whose files of these names are gone.
+  !> Make a folder and remove a file from it.
   subroutine fresh_folder(folder, name)
-    !> The folder, and the file in it.
+    !> Path of the folder, name of the file in it.
     character(len=*), intent(in) :: folder, name
+
     type(error_t), allocatable :: error
     integer(c_int) :: ignored
 
@@ -106,26 +106,27 @@ contains
     ignored = posix_unlink(folder//"/"//name//c_null_char)
   end subroutine fresh_folder
 
-  !> Makes a folder in which a file stands for a full disk.
-  subroutine lead_to_full_disk(folder, name)
-    !> The folder, and the file in it.
+  !> Make a folder in which a file is linked to a full device.
+  subroutine link_full_disk(folder, name)
+    !> Path of the folder, name of the file in it.
     character(len=*), intent(in) :: folder, name
+
     integer(c_int) :: ignored
 
     call fresh_folder(folder, name)
     ignored = posix_symlink("/dev/full"//c_null_char, folder//"/"//name//c_null_char)
-  end subroutine lead_to_full_disk
+  end subroutine link_full_disk
 
-  !> The lines of a file.
+  !> Read the lines of a file.
   subroutine lines_of(path, line)
-    !> Its name.
     character(len=*), intent(in) :: path
-    !> The lines; none where it cannot be read.
+    !> Empty if the file cannot be read.
     type(line_t), allocatable, intent(out) :: line(:)
+
     character(len=2000) :: buffer
     integer :: unit, status, n, pass
 
-    ! Counted first, then kept: gfortran 12 at -O3 loses lengths where such an array grows by
+    ! Count first, then store: gfortran 12 at -O3 loses lengths if such an array grows by
     ! constructors.
     do pass = 1, 2
       n = 0

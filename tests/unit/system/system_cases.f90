@@ -36,7 +36,7 @@ contains
     do i = 1, errors%count
       write (error_unit, '(a)') errors%item(i)%message
     end do
-    if (errors%count > 0) error stop "the input file of the test is not in order"
+    if (errors%count > 0) error stop "the input file of the test has errors"
   end subroutine load_model
 
   !> Make a system with the direct solver.
@@ -53,7 +53,7 @@ contains
     options%iterations = 200
     options%ordering = "none"
     call new_system(system, model, options, 1, error)
-    if (allocated(error)) error stop "the solver of the test is not known"
+    if (allocated(error)) error stop "the solver of the test is unknown"
   end subroutine load_system
 
   !> Return reproducible numbers between -1 and 1.
@@ -113,12 +113,13 @@ contains
     call evaluate_contact(system%contact, model, committed, trial)
     do c = 1, model%n_contact
       tangent = [1.0_wp, 0.4_wp, 0.2_wp]
-      tangent = tangent - dot_product(tangent, system%contact%normal(:, &
-          c))*system%contact%normal(:, c)
-      pressure = merge(6000.0_wp + 3.0_wp*penalty, 1000.0_wp, modulo(c/2, 2) == 0)
-      if (modulo(c, 5) == 0) pressure = -60.0_wp
-      pressure = pressure + penalty*system%contact%distance(c)
-      trial%lambda(:, c) = 300.0_wp*tangent - pressure*system%contact%normal(:, c)
+      associate (normal => system%contact%normal(:, c))
+        tangent = tangent - dot_product(tangent, normal)*normal
+        pressure = merge(6000.0_wp + 3.0_wp*penalty, 1000.0_wp, modulo(c/2, 2) == 0)
+        if (modulo(c, 5) == 0) pressure = -60.0_wp
+        pressure = pressure + penalty*system%contact%distance(c)
+        trial%lambda(:, c) = 300.0_wp*tangent - pressure*normal
+      end associate
     end do
     call evaluate_contact(system%contact, model, committed, trial)
   end subroutine touch_all
@@ -134,14 +135,14 @@ contains
     real(wp), intent(out) :: residual(:, :)
     !> F_equ - lambda, `(3, n_contact)`.
     real(wp), intent(out) :: contact_residual(:, :)
-    !> Out-of-balance forces of the tools tangent their lines, `(n_tool)`.
+    !> Out-of-balance forces of the tools in the directions of their lines, `(n_tool)`.
     real(wp), intent(out) :: tool_residual(:)
 
     type(verdict_t) :: verdict
     integer :: c, t
 
     call update_material(system, model, committed, trial, .false., verdict)
-    if (verdict%outcome /= verdict_converged) error stop "no stress for the state of the test"
+    if (verdict%outcome /= verdict_converged) error stop "the stress update of the test failed"
     call evaluate_contact(system%contact, model, committed, trial)
     residual = trial%internal_force - trial%external_force
     contact_residual = system%contact%force - trial%lambda
@@ -154,9 +155,8 @@ contains
       residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + trial%lambda(:, c)
       t = system%contact%tool(c)
       if (t == 0) cycle
-      tool_residual(t) = tool_residual(t) &
-                         + dot_product(model%phase(trial%phase)%direction(:, t), &
-                         system%contact%force(:, c))
+      tool_residual(t) = tool_residual(t) + dot_product(model%phase(trial%phase)%direction(:, t), &
+          system%contact%force(:, c))
     end do
   end subroutine mixed_residual
 
