@@ -3,7 +3,7 @@ module dd3_base_kinds
   use, intrinsic :: iso_fortran_env, only : real64, int64
   implicit none
   private
-  public :: wp, i8, pi, sqrt2, half_sqrt2
+  public :: wp, i8, pi, sqrt2, half_sqrt2, inverse_sqrt2
 
   !> Working precision of real numbers.
   integer, parameter :: wp = real64
