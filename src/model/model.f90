@@ -23,7 +23,7 @@ module dd3_model_model
   !> What is written, and how often.
   type :: output_t
     !> A row of history.csv every so many increments.
-    integer :: history_every = 1
+    integer :: history_every = 0
     !> Fields every so many mm of travel of the controlling tool in its phase; 0 for not so.
     real(wp) :: fields_every = 0.0_wp
     !> Fields at these travels in the phase, mm, growing.

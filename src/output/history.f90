@@ -125,7 +125,7 @@ contains
 
     if (state%phase /= self%phase) call put_waiting(self, error)
     if (allocated(error)) return
-    due = mod(state%increment, max(1, model%output%history_every)) == 0 &
+    due = mod(state%increment, model%output%history_every) == 0 &
           .or. state%progress >= 1.0_wp
     self%phase = state%phase
     self%waiting = ""
