@@ -2,8 +2,8 @@
 module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
-  use dd3_app_element_help, only : help_element, help_elements
   use dd3_app_job, only : exit_end, exit_usage
+  use dd3_app_registry_help, only : help_elements, help_registry
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
@@ -30,7 +30,7 @@ contains
     else if (same_name(topic, "markdown")) then
       text = reference_markdown()//law_reference_markdown()
     else
-      text = help_topic(topic)//help_law(topic)//help_element(topic)
+      text = help_topic(topic)//help_law(topic)//help_registry(topic)
     end if
     if (text == "") then
       write (error_unit, '(a)') "there is no help on '"//topic// &

@@ -11,6 +11,7 @@ module dd3_model_build
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
   use dd3_input_known_name, only : check_known_name
+  use dd3_linalg_solver_registry, only : solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_materials, only : new_materials
@@ -38,6 +39,7 @@ contains
 
     call set_title(model, case)
     call set_element(model, case, errors)
+    call check_solver(case, errors)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
@@ -72,6 +74,18 @@ contains
       if (position > 0) call new_element(model%element, name(position), error)
     end do
   end subroutine set_element
+
+  !> Report a linear solver that is not in the registry.
+  subroutine check_solver(case, errors)
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: position
+
+    if (case%solver%method == "") return
+    call check_known_name(case%solver%method, case%solver%method_at, "linear solver", &
+        solver_names(), position, errors)
+  end subroutine check_solver
 
   !> Join the lines of the title.
   subroutine set_title(model, case)

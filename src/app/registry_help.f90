@@ -1,12 +1,13 @@
-!> Help on the elements, printed from their registry.
-module dd3_app_element_help
+!> Help on the elements and the linear solvers, printed from their registries.
+module dd3_app_registry_help
   use dd3_base_error, only : error_t
-  use dd3_base_text, only : newline, same_name
+  use dd3_base_text, only : join, newline, same_name
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_table, only : element_t
+  use dd3_linalg_solver_registry, only : solver_names
   implicit none
   private
-  public :: help_elements, help_element
+  public :: help_elements, help_registry
 
   !> Width of the column of names.
   integer, parameter :: name_width = 18
@@ -27,9 +28,9 @@ contains
     end do
   end function help_elements
 
-  !> Return the help on a topic: one element by its name, all by the word `element`; otherwise
-  !> empty.
-  function help_element(topic) result(text)
+  !> Return the help on a topic: one element by its name, all elements by the key `element`, all
+  !> linear solvers by the key `method`; otherwise empty.
+  function help_registry(topic) result(text)
     character(len=*), intent(in) :: topic
     character(len=:), allocatable :: text
 
@@ -38,11 +39,12 @@ contains
 
     text = ""
     if (same_name(topic, "element")) text = "elements:"//newline//help_elements()
+    if (same_name(topic, "method")) text = "linear solvers: "//join(solver_names(), " ")//newline
     name = element_names()
     do i = 1, size(name)
       if (same_name(name(i), topic)) text = line(name(i))
     end do
-  end function help_element
+  end function help_registry
 
   !> Return name and title of an element in one line.
   function line(name)
@@ -58,4 +60,4 @@ contains
     line = "  "//column//trim(element%title)//newline
   end function line
 
-end module dd3_app_element_help
+end module dd3_app_registry_help
