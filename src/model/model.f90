@@ -24,7 +24,7 @@ module dd3_model_model
   !> Output and its intervals.
   type :: output_t
     !> Interval of the rows of history.csv, in increments.
-    integer :: history_every = 1
+    integer :: history_every = 0
     !> Interval of the fields in the travel within a phase, mm; 0: off.
     real(wp) :: fields_every = 0.0_wp
     !> Travels within a phase at which fields are written, mm, ascending.
