@@ -184,7 +184,8 @@ contains
         "  --threads N          number of threads (1)"//newline// &
         "  --quiet              print nothing but errors"//newline// &
         "  --version            the program's version"//newline// &
-        "  --help [name]        this text, or help on a block, key or law, or markdown"//newline// &
+        "  --help [name]        this text, or help on a block, key, law or element, or markdown"// &
+        newline// &
         "exit codes: 0 reached the end; 1 usage; 2 input errors; 3 stopped before the end"//newline
   end function usage_text
 

@@ -3,6 +3,7 @@ module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
   use dd3_app_job, only : exit_end, exit_usage
+  use dd3_app_registry_help, only : help_elements, help_registry
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
@@ -15,7 +16,7 @@ contains
 
   !> Shows help on a topic.
   subroutine show_help(topic, exit_code)
-    !> A block, a key, a law or `markdown`; empty for the usage and the list of blocks.
+    !> A block, a key, a law, an element or `markdown`; empty for the usage and the lists.
     character(len=*), intent(in) :: topic
     !> Whether there is such a topic.
     integer, intent(out) :: exit_code
@@ -25,15 +26,15 @@ contains
     exit_code = exit_end
     if (topic == "") then
       text = usage_text()//"blocks of the input:"//newline//help_blocks()// &
-             "laws:"//newline//help_laws()
+             "laws:"//newline//help_laws()//"elements:"//newline//help_elements()
     else if (same_name(topic, "markdown")) then
       text = reference_markdown()//law_reference_markdown()
     else
-      text = help_topic(topic)//help_law(topic)
+      text = help_topic(topic)//help_law(topic)//help_registry(topic)
     end if
     if (text == "") then
       write (error_unit, '(a)') "there is no help on '"//topic// &
-          "'; dd3imp --help lists blocks and laws"//lines_with(lower_case(topic))
+          "'; dd3imp --help lists blocks, laws and elements"//lines_with(lower_case(topic))
       exit_code = exit_usage
     else
       write (output_unit, '(a)', advance="no") text

@@ -127,7 +127,7 @@ contains
       if (.not. allocated(start%source)) call clear_directory(log, start%directory)
       call watch_interrupts()
       if (size(case%point) > 0) then
-        call run_points(case, model%material, start%directory, log, summary%increments, error)
+        call run_points(case, model, start%directory, log, summary%increments, error)
       else
         call run_model(model, start, log, summary, error)
         call conclude(log, summary)

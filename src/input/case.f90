@@ -177,7 +177,9 @@ module dd3_input_case
 
   !> Settings of the linear solver.
   type :: solver_spec_t
+    !> Not yet checked against the registry of solvers.
     character(len=:), allocatable :: method
+    type(location_t) :: method_at
     !> Level of fill of the incomplete factorisation.
     integer :: ilu_level = 0
     !> Tolerance of the relative residual.

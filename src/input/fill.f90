@@ -195,6 +195,7 @@ contains
     type(block_t), intent(in) :: block
 
     solver%method = block%word("method")
+    solver%method_at = block%at("method")
     solver%ordering = block%word("ordering")
     solver%ilu_level = nint(block%number("ilu_level"))
     solver%tolerance = block%number("tolerance")

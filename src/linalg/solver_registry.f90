@@ -9,7 +9,7 @@ module dd3_linalg_solver_registry
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
   private
-  public :: new_linear_solver, solver_count, solver_names
+  public :: new_linear_solver, solver_names
 
   abstract interface
     !> Create a solver.
@@ -20,36 +20,30 @@ module dd3_linalg_solver_registry
     end subroutine constructor_interface
   end interface
 
-  !> Longest name.
-  integer, parameter :: name_length = 7
-
   !> One row: name, as written in the input, and constructor.
   type :: entry_t
-    character(len=name_length) :: name = ""
+    character(len=16) :: name = ""
     procedure(constructor_interface), pointer, nopass :: make => null()
   end type entry_t
 
-  !> Number of solvers.
-  integer, parameter :: solver_count = 3
-
 contains
 
-  !> Fill the registry, one row per solver.
-  subroutine fill_registry(entries)
-    type(entry_t), intent(out) :: entries(solver_count)
+  !> Return the registry, one row per solver.
+  function registry() result(entries)
+    type(entry_t), allocatable :: entries(:)
 
-    entries(1) = entry_t("cgs", make_cgs_solver)
-    entries(2) = entry_t("umfpack", make_umfpack_solver)
-    entries(3) = entry_t("auto", make_auto_solver)
-  end subroutine fill_registry
+    entries = [entry_t("cgs", make_cgs_solver), &
+               entry_t("umfpack", make_umfpack_solver), &
+               entry_t("auto", make_auto_solver)]
+  end function registry
 
   !> Return the names of all solvers.
   function solver_names() result(names)
-    character(len=name_length) :: names(solver_count)
+    character(len=16), allocatable :: names(:)
 
-    type(entry_t) :: entries(solver_count)
+    type(entry_t), allocatable :: entries(:)
 
-    call fill_registry(entries)
+    entries = registry()
     names = entries%name
   end function solver_names
 
@@ -60,10 +54,10 @@ contains
     !> Set for an unknown name or a value that is out of range or not set.
     type(error_t), allocatable, intent(out) :: error
 
-    type(entry_t) :: entries(solver_count)
+    type(entry_t), allocatable :: entries(:)
     integer :: i
 
-    call fill_registry(entries)
+    entries = registry()
     i = findloc(entries%name, options%method, 1)
     if (i == 0) then
       call fatal_error(error, "unknown solver "//trim(options%method)//"; known: " &

@@ -1,4 +1,6 @@
-!> Mesh generator of a structured blank: a box of hexahedra, graded and skewed.
+!> Mesh generator of a structured blank: a box of hexahedra, graded and skewed. The nodes lie on a
+!> grid of half an element's interval, of which the element uses a part: the corners only, or also
+!> the middle of edges, of faces and of the element.
 module dd3_mesh_blank
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : blank_spec_t, blank_sets
@@ -7,84 +9,128 @@ module dd3_mesh_blank
   private
   public :: new_blank_mesh
 
-  !> Nodes of a hexahedron in the order of VTK, as steps along x, y and z from its first corner.
-  integer, parameter :: hex8_step(3, 8) = reshape([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, &
-                                                   0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8])
-
 contains
 
   !> Build nodes, elements and node sets of a blank.
-  subroutine new_blank_mesh(mesh, blank)
+  subroutine new_blank_mesh(mesh, blank, natural)
     type(mesh_t), intent(out) :: mesh
     type(blank_spec_t), intent(in) :: blank
+    !> Natural coordinates of the element's nodes, each -1, 0 or 1, `(3, n_element_node)`; x, y, z
+    !> of the blank are their axes.
+    real(wp), intent(in) :: natural(:, :)
 
-    mesh%element = blank%element
+    integer, allocatable :: number(:, :, :)
+
     mesh%thickness = blank%size(3)
-    call place_nodes(mesh, blank)
-    call connect(mesh, blank%divisions, hex8_step)
+    call number_nodes(number, mesh%n_node, blank%divisions, nint(natural))
+    call place_nodes(mesh, blank, number)
+    call connect(mesh, blank%divisions, nint(natural), number)
     allocate (mesh%material(mesh%n_element), source=blank%material)
-    call name_faces(mesh, blank%divisions)
+    call name_faces(mesh, number)
   end subroutine new_blank_mesh
 
-  !> Return the number of the node at grid position (i, j, k), each from 0; z runs fastest, then y,
-  !> then x.
-  pure integer function node_number(divisions, i, j, k)
+  !> Number the grid points that are nodes; z runs fastest, then y, then x.
+  subroutine number_nodes(number, n_node, divisions, natural)
+    !> Number of the node at a grid point, 0 for none: `(0:2*n_z, 0:2*n_y, 0:2*n_x)`.
+    integer, allocatable, intent(out) :: number(:, :, :)
+    integer, intent(out) :: n_node
     !> Number of elements along x, y, z.
     integer, intent(in) :: divisions(3)
-    integer, intent(in) :: i, j, k
+    !> Natural coordinates of the element's nodes, `(3, n_element_node)`.
+    integer, intent(in) :: natural(:, :)
 
-    node_number = 1 + k + (divisions(3) + 1)*(j + (divisions(2) + 1)*i)
-  end function node_number
+    integer :: a, i, j, k, last(3), lower(3), upper(3)
 
-  !> Compute the coordinates of the nodes.
-  subroutine place_nodes(mesh, blank)
-    type(mesh_t), intent(inout) :: mesh
-    type(blank_spec_t), intent(in) :: blank
-
-    real(wp) :: shift
-    integer :: i, j, k
-
-    associate (n => blank%divisions, x => blank%grading_x, y => blank%grading_y, &
-        z => blank%grading_z)
-      mesh%n_node = product(n + 1)
-      allocate (mesh%x(3, mesh%n_node))
-      do i = 0, n(1)
-        do j = 0, n(2)
-          shift = 0.0_wp
-          if (i > 0 .and. i < n(1)) then
-            shift = blank%skew*(blank%size(1)/real(n(1), wp))*(y(j) - 0.5_wp)
-          end if
-          do k = 0, n(3)
-            mesh%x(:, node_number(n, i, j, k)) = blank%origin + blank%size*[x(i), y(j), z(k)] &
-                                                 + [shift, 0.0_wp, 0.0_wp]
-          end do
+    last = 2*divisions
+    allocate (number(0:last(3), 0:last(2), 0:last(1)), source=0)
+    do a = 1, size(natural, 2)
+      lower = 1 + natural(:, a)
+      upper = last - 1 + natural(:, a)
+      number(lower(3):upper(3):2, lower(2):upper(2):2, lower(1):upper(1):2) = 1
+    end do
+    n_node = 0
+    do i = 0, last(1)
+      do j = 0, last(2)
+        do k = 0, last(3)
+          if (number(k, j, i) == 0) cycle
+          n_node = n_node + 1
+          number(k, j, i) = n_node
         end do
       end do
-    end associate
+    end do
+  end subroutine number_nodes
+
+  !> Compute the coordinates of the nodes.
+  subroutine place_nodes(mesh, blank, number)
+    type(mesh_t), intent(inout) :: mesh
+    type(blank_spec_t), intent(in) :: blank
+    !> Number of the node at a grid point, 0 for none.
+    integer, intent(in) :: number(0:, 0:, 0:)
+
+    real(wp), allocatable :: x(:), y(:), z(:), skew(:)
+    integer :: i, j, k
+
+    x = with_middles(blank%grading_x)
+    y = with_middles(blank%grading_y)
+    z = with_middles(blank%grading_z)
+    skew = with_middles(skew_of_lines(blank))
+    allocate (mesh%x(3, mesh%n_node))
+    do i = 0, ubound(number, 3)
+      do j = 0, ubound(number, 2)
+        do k = 0, ubound(number, 1)
+          if (number(k, j, i) == 0) cycle
+          mesh%x(:, number(k, j, i)) = blank%origin &
+              + blank%size*[x(i + 1), y(j + 1), z(k + 1)] &
+              + [skew(i + 1)*(y(j + 1) - 0.5_wp), 0.0_wp, 0.0_wp]
+        end do
+      end do
+    end do
   end subroutine place_nodes
 
+  !> Return the shift of the node lines along y at x(0:n): the difference in x between their ends,
+  !> mm. The ends of the blank stay straight.
+  pure function skew_of_lines(blank) result(skew)
+    type(blank_spec_t), intent(in) :: blank
+    real(wp) :: skew(blank%divisions(1) + 1)
+
+    associate (n => blank%divisions(1))
+      skew = blank%skew*(blank%size(1)/real(n, wp))
+      skew([1, n + 1]) = 0.0_wp
+    end associate
+  end function skew_of_lines
+
+  !> Return values at n + 1 corners with the means between them, `(2*n + 1)`.
+  pure function with_middles(corner) result(value)
+    real(wp), intent(in) :: corner(:)
+    real(wp) :: value(2*size(corner) - 1)
+
+    value(1::2) = corner
+    value(2::2) = 0.5_wp*(corner(:size(corner) - 1) + corner(2:))
+  end function with_middles
+
   !> Set the connectivity; elements are numbered like the nodes.
-  subroutine connect(mesh, divisions, step)
+  subroutine connect(mesh, divisions, natural, number)
     type(mesh_t), intent(inout) :: mesh
     !> Number of elements along x, y, z.
     integer, intent(in) :: divisions(3)
-    !> Steps from an element's first corner to its nodes, in intervals of the node grid,
-    !> `(3, n_element_node)`.
-    integer, intent(in) :: step(:, :)
+    !> Natural coordinates of the element's nodes, `(3, n_element_node)`.
+    integer, intent(in) :: natural(:, :)
+    !> Number of the node at a grid point, 0 for none.
+    integer, intent(in) :: number(0:, 0:, 0:)
 
-    integer :: i, j, k, a, element
+    integer :: i, j, k, a, element, point(3)
 
     mesh%n_element = product(divisions)
-    mesh%n_element_node = size(step, 2)
+    mesh%n_element_node = size(natural, 2)
     allocate (mesh%connectivity(mesh%n_element_node, mesh%n_element))
     element = 0
     do i = 0, divisions(1) - 1
       do j = 0, divisions(2) - 1
         do k = 0, divisions(3) - 1
           element = element + 1
-          do a = 1, size(step, 2)
-            mesh%connectivity(a, element) = node_number(divisions, i + step(1, a), j + step(2, a), &
-                k + step(3, a))
+          do a = 1, size(natural, 2)
+            point = 2*[i, j, k] + 1 + natural(:, a)
+            mesh%connectivity(a, element) = number(point(3), point(2), point(1))
           end do
         end do
       end do
@@ -92,41 +138,28 @@ contains
   end subroutine connect
 
   !> Make the sets of the faces and of all nodes, by position in the grid.
-  subroutine name_faces(mesh, divisions)
+  subroutine name_faces(mesh, number)
     type(mesh_t), intent(inout) :: mesh
-    !> Number of elements along x, y, z.
-    integer, intent(in) :: divisions(3)
+    !> Number of the node at a grid point, 0 for none.
+    integer, intent(in) :: number(0:, 0:, 0:)
 
     integer :: lower(3), upper(3), s, axis
 
     allocate (mesh%set(size(blank_sets)))
     do s = 1, size(blank_sets)
       lower = 0
-      upper = divisions
+      upper = [ubound(number, 3), ubound(number, 2), ubound(number, 1)]
       ! Two faces for each axis; the set after them holds all nodes.
       axis = (s + 1)/2
       if (axis <= 3) then
         if (mod(s, 2) == 1) upper(axis) = 0
-        if (mod(s, 2) == 0) lower(axis) = divisions(axis)
+        if (mod(s, 2) == 0) lower(axis) = upper(axis)
       end if
-      mesh%set(s) = grid_set(trim(blank_sets(s)), divisions, lower, upper)
+      mesh%set(s)%name = trim(blank_sets(s))
+      associate (part => number(lower(3):upper(3), lower(2):upper(2), lower(1):upper(1)))
+        mesh%set(s)%node = pack(part, part > 0)
+      end associate
     end do
   end subroutine name_faces
-
-  !> Return the set of the nodes in a part of the grid.
-  pure function grid_set(name, divisions, lower, upper) result(set)
-    character(len=*), intent(in) :: name
-    !> Number of elements along x, y, z.
-    integer, intent(in) :: divisions(3)
-    !> First and last grid position along each axis.
-    integer, intent(in) :: lower(3), upper(3)
-    type(mesh_set_t) :: set
-
-    integer :: i, j, k
-
-    set%name = name
-    set%node = [(((node_number(divisions, i, j, k), k=lower(3), upper(3)), j=lower(2), upper(2)), &
-        i=lower(1), upper(1))]
-  end function grid_set
 
 end module dd3_mesh_blank

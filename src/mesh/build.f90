@@ -13,16 +13,18 @@ module dd3_mesh_build
 contains
 
   !> Build the mesh. It is complete only if no error was added.
-  subroutine new_mesh(mesh, case, errors)
+  subroutine new_mesh(mesh, case, natural, errors)
     type(mesh_t), intent(out) :: mesh
     !> Without errors.
     type(case_t), intent(in) :: case
+    !> Natural coordinates of the element's nodes, `(3, n_element_node)`.
+    real(wp), intent(in) :: natural(:, :)
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, before
 
     before = errors%count
-    call new_blank_mesh(mesh, case%blank(1))
+    call new_blank_mesh(mesh, case%blank(1), natural)
     do i = 1, size(case%set)
       call add_set(mesh, case%set(i), errors)
     end do

@@ -16,13 +16,11 @@ module dd3_mesh_mesh
 
   !> The mesh of the sheet.
   type :: mesh_t
-    !> Name of the element type.
-    character(len=:), allocatable :: element
     !> Number of nodes, of elements, of nodes per element.
     integer :: n_node = 0, n_element = 0, n_element_node = 0
     !> Initial coordinates, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Nodes of each element in the order of VTK, `(n_element_node, n_element)`.
+    !> Nodes of each element in the element's order, `(n_element_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
     !> Position in `case%material`, `(n_element)`.
     integer, allocatable :: material(:)

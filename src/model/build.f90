@@ -11,8 +11,10 @@ module dd3_model_build
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
   use dd3_input_known_name, only : check_known_name
+  use dd3_linalg_solver_registry, only : solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
@@ -37,12 +39,14 @@ contains
     type(mesh_t) :: mesh
 
     call set_title(model, case)
-    call check_element(case, errors)
+    call set_element(model, case, errors)
+    call check_solver(case, errors)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) return
+    call new_variables(model%internal_variable, model%material)
     if (size(case%point) > 0) return
-    call new_mesh(mesh, case, errors)
+    call new_mesh(mesh, case, model%element%node, errors)
     if (errors%count > 0) return
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
@@ -54,19 +58,36 @@ contains
     call check_supports(model, case, errors)
   end subroutine new_model
 
-  !> Report an element type that is not in the registry.
-  subroutine check_element(case, errors)
+  !> Set the element's table, or report a name that is not in the registry.
+  subroutine set_element(model, case, errors)
+    type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
 
+    type(error_t), allocatable :: error
+    character(len=16), allocatable :: name(:)
     integer :: b, position
 
+    name = element_names()
     do b = 1, size(case%blank)
       if (.not. case%blank(b)%source%has("element")) cycle
       call check_known_name(case%blank(b)%element, case%blank(b)%source%at("element"), &
-          "element type", element_names(), position, errors)
+          "element type", name, position, errors)
+      if (position > 0) call new_element(model%element, name(position), error)
     end do
-  end subroutine check_element
+  end subroutine set_element
+
+  !> Report a linear solver that is not in the registry.
+  subroutine check_solver(case, errors)
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: position
+
+    if (case%solver%method == "") return
+    call check_known_name(case%solver%method, case%solver%method_at, "linear solver", &
+        solver_names(), position, errors)
+  end subroutine check_solver
 
   !> Join the lines of the title.
   subroutine set_title(model, case)
@@ -112,15 +133,9 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(element_work_t) :: work
-    type(error_t), allocatable :: error
     type(verdict_t) :: verdict
     integer :: e
 
-    call new_element(model%element, mesh%element, error)
-    if (allocated(error)) then
-      call errors%push_input(case%blank(1)%source%at("element"), error%message)
-      return
-    end if
     model%n_node = mesh%n_node
     model%n_element = mesh%n_element
     model%x0 = mesh%x

@@ -3,6 +3,7 @@
 !> not enter.
 module dd3_model_fingerprint
   use dd3_base_digest, only : digest_t
+  use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   implicit none
@@ -16,6 +17,9 @@ module dd3_model_fingerprint
     integer :: digest = 0
   end type fingerprint_t
 
+  !> Name of the first part. Those that refer to its nodes are not compared if it differs.
+  character(len=*), parameter :: mesh_part = "the mesh"
+
 contains
 
   !> Return the fingerprint of all parts that were in use up to a phase.
@@ -28,7 +32,7 @@ contains
     integer :: i
 
     allocate (fingerprint(0))
-    call add(fingerprint, "the mesh", mesh_digest(model))
+    call add(fingerprint, mesh_part, mesh_digest(model))
     call add(fingerprint, "the supports (*BOUNDARY)", supports_digest(model))
     do i = 1, size(model%material)
       call add(fingerprint, "material '"//trim(model%material_name(i))//"'", &
@@ -38,7 +42,7 @@ contains
       call add(fingerprint, "tool '"//model%tool(i)%name//"'", tool_digest(model, i))
     end do
     do i = 1, min(last_phase, size(model%phase))
-      call add(fingerprint, "phase '"//model%phase(i)%name//"'", phase_digest(model%phase(i)))
+      call add(fingerprint, "phase '"//model%phase(i)%name//"'", phase_digest(model, i))
     end do
   end function model_fingerprint
 
@@ -56,14 +60,20 @@ contains
   end subroutine add
 
   !> Return the parts that differ between two fingerprints, separated by commas; empty if none does.
+  !> With different meshes only the materials are compared besides.
   function changed_parts(before, now) result(names)
     type(fingerprint_t), intent(in) :: before(:), now(:)
     character(len=:), allocatable :: names
 
     integer :: i, k
+    logical :: same_mesh
 
+    k = findloc(before%part, mesh_part, dim=1)
+    same_mesh = .false.
+    if (k > 0) same_mesh = before(k)%digest == now(1)%digest
     names = ""
     do i = 1, size(now)
+      if (.not. same_mesh .and. refers_to_mesh(now(i)%part)) cycle
       k = findloc(before%part, now(i)%part, dim=1)
       if (k == 0) then
         names = names//", "//trim(now(i)%part)//" (new)"
@@ -72,11 +82,19 @@ contains
       end if
     end do
     do i = 1, size(before)
+      if (.not. same_mesh .and. refers_to_mesh(before(i)%part)) cycle
       if (any(now%part == before(i)%part)) cycle
       names = names//", "//trim(before(i)%part)//" (missing)"
     end do
     if (len(names) > 0) names = names(3:)
   end function changed_parts
+
+  !> Whether a part has node numbers in it.
+  pure logical function refers_to_mesh(part)
+    character(len=*), intent(in) :: part
+
+    refers_to_mesh = part /= mesh_part .and. index(part, "material ") /= 1
+  end function refers_to_mesh
 
   !> Return the check sum of nodes, elements, materials of the elements and material axes.
   integer function mesh_digest(model)
@@ -124,25 +142,49 @@ contains
     tool_digest = digest%value()
   end function tool_digest
 
-  !> Return the check sum of what a phase does: motions, loads and early end.
-  integer function phase_digest(phase)
-    type(phase_t), intent(in) :: phase
+  !> Return the check sum of what a phase does: motions, loads with their nodes, and early end. What
+  !> it takes over from the model or from the phase before is left to their check sums.
+  integer function phase_digest(model, number)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: number
 
     type(digest_t) :: digest
+    logical, allocatable :: prescribed(:, :)
+    integer :: s, tool
 
-    call digest%add([phase%control, phase%until%kind, phase%until%tool])
-    call digest%add([phase%length, phase%until%value])
-    call digest%add(reshape(phase%move, [size(phase%move)]))
-    call digest%add(phase%pressed)
-    call digest%add(phase%keeps_tool_load)
-    call digest%add(reshape(phase%tool_load_end, [size(phase%tool_load_end)]))
-    call digest%add(reshape(phase%direction, [size(phase%direction)]))
-    call digest%add(phase%active)
-    call digest%add(reshape(phase%prescribed, [size(phase%prescribed)]))
-    call digest%add(reshape(phase%displacement, [size(phase%displacement)]))
-    call digest%add(reshape(pack(phase%load_end, spread(.not. phase%keeps_load, 1, 3)), &
-                            [3*count(.not. phase%keeps_load)]))
+    associate (phase => model%phase(number))
+      call digest%add([phase%control, phase%until%kind, phase%until%tool])
+      call digest%add([phase%length, phase%until%value])
+      do tool = 1, model%n_tool
+        call add_tool(digest, phase, tool, model%tool(tool)%name)
+      end do
+      prescribed = phase%prescribed .and. .not. model%fixed
+      call digest%add(reshape(prescribed, [size(prescribed)]))
+      call digest%add(reshape(phase%displacement, [size(phase%displacement)]))
+      do s = 1, size(model%load_set)
+        if (phase%keeps_load(s)) cycle
+        call digest%add(phase%load_end(:, s))
+        call digest%add(model%load_set(s)%node)
+      end do
+    end associate
     phase_digest = digest%value()
   end function phase_digest
+
+  !> Add what a phase does with a tool, unless the tool is only held.
+  subroutine add_tool(digest, phase, tool, name)
+    type(digest_t), intent(inout) :: digest
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: tool
+    character(len=*), intent(in) :: name
+
+    logical :: held
+
+    held = phase%active(tool) .and. .not. phase%pressed(tool)
+    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
+    call digest%add(name)
+    call digest%add([phase%pressed(tool), phase%active(tool), phase%keeps_tool_load(tool)])
+    call digest%add([phase%move(:, tool), phase%direction(:, tool)])
+    if (.not. phase%keeps_tool_load(tool)) call digest%add(phase%tool_load_end(:, tool))
+  end subroutine add_tool
 
 end module dd3_model_fingerprint

@@ -2,17 +2,66 @@
 !> fading contact forces of released tools.
 module dd3_model_loads
   use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t
+  use dd3_linalg_tensor, only : cross
   implicit none
   private
-  public :: load_set_t, nodal_forces
+  public :: load_set_t, face_load_weights, nodal_forces
 
-  !> Node set that carries a load in some phase, in equal parts.
+  !> Node set that carries a load in some phase.
   type :: load_set_t
     character(len=:), allocatable :: name
     integer, allocatable :: node(:)
+    !> Fraction of the load on each node; not allocated for equal fractions.
+    real(wp), allocatable :: weight(:)
   end type load_set_t
 
 contains
+
+  !> Evaluate the fractions of a uniform load on the faces that lie wholly in a node set: face area
+  !> times the element's face weights. They are left unallocated, for equal fractions, if the face
+  !> weights are equal, or if the set is no surface: it holds all nodes of an element, or a node
+  !> that belongs to none of these faces.
+  pure subroutine face_load_weights(element, connectivity, x, node, weight)
+    type(element_t), intent(in) :: element
+    !> `(element%n_node, n_element)`.
+    integer, intent(in) :: connectivity(:, :)
+    !> Coordinates, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> The set.
+    integer, intent(in) :: node(:)
+    !> `(size(node))`; their sum is 1.
+    real(wp), allocatable, intent(out) :: weight(:)
+
+    real(wp) :: force(size(x, 2))
+    logical :: member(size(x, 2)), on_face(size(x, 2))
+    integer :: e, f
+
+    if (all(abs(element%face_weight - element%face_weight(1)) < epsilon(1.0_wp))) return
+    member = .false.
+    member(node) = .true.
+    on_face = .false.
+    force = 0.0_wp
+    do e = 1, size(connectivity, 2)
+      if (all(member(connectivity(:, e)))) return
+      do f = 1, element%n_face
+        associate (face => connectivity(element%face(:, f), e))
+          if (.not. all(member(face))) cycle
+          on_face(face) = .true.
+          force(face) = force(face) + face_area(x(:, face(:4)))*element%face_weight
+        end associate
+      end do
+    end do
+    if (all(on_face(node))) weight = force(node)/sum(force(node))
+  end subroutine face_load_weights
+
+  !> Return the area of a face from its diagonals, exact for plane faces with straight edges.
+  pure real(wp) function face_area(corner)
+    !> `(3, 4)`, mm.
+    real(wp), intent(in) :: corner(:, :)
+
+    face_area = 0.5_wp*norm2(cross(corner(:, 3) - corner(:, 1), corner(:, 4) - corner(:, 2)))
+  end function face_area
 
   !> Evaluate the external forces on the nodes.
   pure subroutine nodal_forces(set, load, contact_node, fading, force)
@@ -32,7 +81,11 @@ contains
     do s = 1, size(set)
       associate (node => set(s)%node)
         do k = 1, size(node)
-          force(:, node(k)) = force(:, node(k)) + load(:, s)/real(size(node), wp)
+          if (allocated(set(s)%weight)) then
+            force(:, node(k)) = force(:, node(k)) + load(:, s)*set(s)%weight(k)
+          else
+            force(:, node(k)) = force(:, node(k)) + load(:, s)/real(size(node), wp)
+          end if
         end do
       end associate
     end do

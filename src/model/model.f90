@@ -5,6 +5,7 @@ module dd3_model_model
   use dd3_element_table, only : element_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
+  use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
   implicit none
@@ -23,7 +24,7 @@ module dd3_model_model
   !> Output and its intervals.
   type :: output_t
     !> Interval of the rows of history.csv, in increments.
-    integer :: history_every = 1
+    integer :: history_every = 0
     !> Interval of the fields in the travel within a phase, mm; 0: off.
     real(wp) :: fields_every = 0.0_wp
     !> Travels within a phase at which fields are written, mm, ascending.
@@ -48,6 +49,8 @@ module dd3_model_model
     type(element_t) :: element
     type(material_t), allocatable :: material(:)
     character(len=24), allocatable :: material_name(:)
+    !> Internal variables of the materials, for output.
+    type(variable_t), allocatable :: internal_variable(:)
     !> Material of each element, `(n_element)`.
     integer, allocatable :: material_of(:)
     !> Check sums of their parameters.

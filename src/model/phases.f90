@@ -4,7 +4,7 @@ module dd3_model_phases
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
-  use dd3_model_loads, only : load_set_t
+  use dd3_model_loads, only : face_load_weights, load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   implicit none
@@ -187,6 +187,8 @@ contains
           n = n + 1
           set(n)%name = name
           set(n)%node = mesh%nodes_of(name)
+          call face_load_weights(model%element, model%connectivity, model%x0, set(n)%node, &
+              set(n)%weight)
         end associate
       end do
     end do

@@ -53,7 +53,7 @@ contains
 
   !> Make the file with the rows of an earlier table up to an increment, the first column. Without
   !> an earlier table of the same columns it begins with the heading alone.
-  subroutine table_resume(self, source, path, heading, increment, found)
+  subroutine table_resume(self, source, path, heading, increment, found, error)
     class(table_t), intent(inout) :: self
     !> Paths of the earlier table and of this one; they may be the same.
     character(len=*), intent(in) :: source, path
@@ -63,14 +63,16 @@ contains
     integer, intent(in) :: increment
     !> The rows up to that of the increment are there.
     logical, intent(out) :: found
+    !> Set if the file cannot be written; an earlier one is left as it is.
+    type(error_t), allocatable, intent(out) :: error
 
     character(len=:), allocatable :: text
-    type(error_t), allocatable :: error
+    type(error_t), allocatable :: unreadable
     integer(i8) :: last
 
-    call read_file(source, text, error)
+    call read_file(source, text, unreadable)
     last = 0
-    if (.not. allocated(error)) last = end_of_rows(text, heading, increment)
+    if (.not. allocated(unreadable)) last = end_of_rows(text, heading, increment)
     found = last > len(heading, i8)
     if (.not. found) text = heading
     if (.not. found) last = len(heading, i8)
@@ -78,7 +80,6 @@ contains
     if (.not. allocated(error)) call self%file%put(text(:last), error)
     if (.not. allocated(error)) call self%file%flush(error)
     if (.not. allocated(error)) call replace_file(path, error)
-    if (allocated(error)) found = .false.
     self%file%path = path
   end subroutine table_resume
 

@@ -4,15 +4,17 @@ module dd3_output_field_series
   use dd3_base_kinds, only : wp, i8
   use dd3_output_field_table, only : field_t
   use dd3_output_hdf5, only : kind_int, kind_long, kind_real, series_t
-  use dd3_output_hdf5_read, only : read_rows
+  use dd3_output_hdf5_read, only : dataset_size, read_integers, read_rows
   use hdf5, only : hid_t, hsize_t, h5aclose_f, h5gclose_f
   implicit none
   private
-  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series
+  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series, count_steps
   public :: close_target, close_group, close_attribute
 
   !> Rows per chunk of the datasets with one row per step.
   integer, parameter :: step_chunk = 64
+  !> Most rows copied at a time.
+  integer(hsize_t), parameter :: copy_rows = 100000
 
   !> Datasets of a field: its values, and the position of the first row of each step.
   type :: target_t
@@ -76,6 +78,25 @@ contains
     call place%offset%append_long(first, ok)
   end subroutine append
 
+  !> Return the number of steps of an older file up to an increment; 0 if it has none for that
+  !> increment.
+  subroutine count_steps(old, last_increment, n, ok)
+    integer(hid_t), intent(in) :: old
+    integer, intent(in) :: last_increment
+    integer, intent(out) :: n
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    integer, allocatable :: increment(:)
+
+    n = 0
+    if (ok) call dataset_size(old, "/job/increment", n)
+    allocate (increment(max(0, n)))
+    if (size(increment) > 0) call read_integers(old, "/job/increment", increment, ok)
+    n = 0
+    if (ok .and. any(increment == last_increment)) n = count(increment <= last_increment)
+  end subroutine count_steps
+
   !> Copy the datasets of a field for some steps.
   subroutine copy_target(place, old, n, rows, ok)
     type(target_t), intent(inout) :: place
@@ -85,22 +106,25 @@ contains
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
-    call copy_series(place%offset, old, n, ok)
-    call copy_series(place%data, old, n*rows, ok)
+    call copy_series(place%offset, old, int(n, hsize_t), ok)
+    call copy_series(place%data, old, int(n, hsize_t)*int(rows, hsize_t), ok)
   end subroutine copy_target
 
   !> Copy the first rows of a dataset.
   subroutine copy_series(series, old, rows, ok)
     type(series_t), intent(inout) :: series
     integer(hid_t), intent(in) :: old
-    integer, intent(in) :: rows
+    integer(hsize_t), intent(in) :: rows
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
     real(wp), allocatable :: values(:)
 
-    call read_rows(old, series%path(), 0_hsize_t, int(rows, hsize_t), values, ok)
-    call series%append_reals(values, ok)
+    do while (ok .and. series%rows < rows)
+      call read_rows(old, series%path(), series%rows, min(copy_rows, rows - series%rows), &
+          values, ok)
+      call series%append_reals(values, ok)
+    end do
   end subroutine copy_series
 
   !> Close the datasets of a field.

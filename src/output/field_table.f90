@@ -3,12 +3,13 @@
 module dd3_output_field_table
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : tensor_from_kelvin
+  use dd3_model_internal_variables, only : global_components
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
-  public :: field_t, field_table, at_nodes_and_cells, at_points
+  public :: field_t, field_table, fill_internal_variable, at_nodes_and_cells, at_points
 
   !> Locations: a value at each node;
   integer, parameter :: at_nodes = 1
@@ -29,6 +30,8 @@ module dd3_output_field_table
     character(len=8) :: unit = ""
     character(len=120) :: description = ""
     procedure(fill_interface), nopass, pointer :: fill => null()
+    !> Position among the internal variables of the model, if the field is one of them; 0 otherwise.
+    integer :: variable = 0
   end type field_t
 
   abstract interface
@@ -44,9 +47,13 @@ module dd3_output_field_table
 
 contains
 
-  !> Return the table.
-  function field_table() result(table)
+  !> Return the table for a model: the fields of every model, then the internal variables of its
+  !> materials.
+  function field_table(model) result(table)
+    type(model_t), intent(in) :: model
     type(field_t), allocatable :: table(:)
+
+    integer :: i
 
     table = [ &
       row("displacement", at_nodes, 3, "mm", &
@@ -65,7 +72,29 @@ contains
           positive=.true.), &
       row("thickness", at_nodes_and_cells, 1, "mm", &
           "distance between the bottom and the top node through the thickness", fill_thickness)]
+    if (.not. allocated(model%internal_variable)) return
+    do i = 1, size(model%internal_variable)
+      table = [table, internal_variable_row(model, i)]
+    end do
   end function field_table
+
+  !> Make the row of an internal variable.
+  function internal_variable_row(model, i) result(row)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(field_t) :: row
+
+    associate (described => model%internal_variable(i)%row)
+      row%name = described%name
+      row%location = at_points
+      row%components = described%n_component
+      row%unit = described%unit(:len(row%unit))
+      row%description = described%meaning
+      if (row%components == 6) row%description = trim(row%description)// &
+        "; in global axes: 11 22 33 12 23 13"
+      row%variable = i
+    end associate
+  end function internal_variable_row
 
   !> Make a row of the table.
   function row(name, location, components, unit, description, fill, whole, positive)
@@ -171,6 +200,27 @@ contains
       end do
     end do
   end subroutine fill_equivalent_stress
+
+  !> Evaluate an internal variable.
+  subroutine fill_internal_variable(variable, model, state, value)
+    !> Position among the internal variables of the model.
+    integer, intent(in) :: variable
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> `(components, n_point*n_element)`, points first.
+    real(wp), intent(out) :: value(:, :)
+
+    integer :: p, e, i
+
+    i = 0
+    do e = 1, model%n_element
+      do p = 1, model%element%n_point
+        i = i + 1
+        value(:, i) = global_components(model%internal_variable(variable), model%material_of(e), &
+            state%internal_variables(:, p, e), state%orientation(:, :, p, e))
+      end do
+    end do
+  end subroutine fill_internal_variable
 
   !> Evaluate the thickness.
   subroutine fill_thickness(model, state, value)

@@ -5,7 +5,8 @@ module dd3_output_field_values
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t
+  use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, &
+      fill_internal_variable
   implicit none
   private
   public :: field_values, cell_offsets
@@ -57,7 +58,11 @@ contains
 
     n = model%element%n_point
     allocate (value(field%components, n*model%n_element))
-    call field%fill(model, state, value)
+    if (field%variable > 0) then
+      call fill_internal_variable(field%variable, model, state, value)
+    else
+      call field%fill(model, state, value)
+    end if
     call count_sharing(model, sharing)
     do e = 1, model%n_element
       cell(:, e) = sum(value(:, (e - 1)*n + 1:e*n), dim=2)/real(n, wp)

@@ -12,10 +12,10 @@ module dd3_output_fields
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, field_table
   use dd3_output_field_values, only : cell_offsets, field_values
   use dd3_output_field_series, only : append, close_attribute, close_group, close_target, &
-      copy_series, copy_target, make_targets, put_constant, step_chunk, target_t
+      copy_series, copy_target, count_steps, make_targets, put_constant, step_chunk, target_t
   use dd3_output_hdf5, only : flush_hdf5, integer_attribute, kind_byte, kind_int, kind_long, &
       kind_real, make_group, rewrite_attribute, series_t, start_hdf5, text_attribute
-  use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integers, read_rows
+  use dd3_output_hdf5_read, only : close_hdf5, open_hdf5, read_rows
   use hdf5, only : hid_t, hsize_t, h5fclose_f, h5fcreate_f, h5fget_filesize_f, H5F_ACC_TRUNC_F
   implicit none
   private
@@ -69,8 +69,8 @@ contains
   end subroutine fields_open
 
   !> Make the file with the steps of an earlier run up to a restart. If these cannot be read, the
-  !> file begins without them.
-  subroutine fields_resume(self, model, state, source, directory, found)
+  !> file begins without steps.
+  subroutine fields_resume(self, model, state, source, directory, found, error)
     class(field_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> State of the restart.
@@ -79,19 +79,30 @@ contains
     character(len=*), intent(in) :: source, directory
     !> The earlier steps are in the file.
     logical, intent(out) :: found
+    !> Set if the file cannot be written; an earlier one is left as it is.
+    type(error_t), allocatable, intent(out) :: error
 
-    type(error_t), allocatable :: error
+    character(len=:), allocatable :: path
     integer(hid_t) :: old
+    integer(hsize_t) :: length
+    integer :: n, status
+    logical :: ok
 
     found = .false.
-    call create(self, model, part_of(directory//"/"//file_name), error)
-    if (allocated(error)) return
-    call open_hdf5(source//"/"//file_name, old, found)
-    if (found) call copy_steps(self, old, state%fields_increment, found)
+    path = directory//"/"//file_name
+    call open_hdf5(source//"/"//file_name, old, ok)
+    call count_steps(old, state%fields_increment, n, ok)
+    call create(self, model, part_of(path), error)
+    if (.not. allocated(error) .and. n > 0) then
+      call h5fget_filesize_f(old, length, status)
+      if (status >= 0) call self%guard%reserve(0_i8, int(length, i8) + step_room, error)
+      if (.not. allocated(error)) call copy_steps(self, old, n, state%fields_increment, found)
+      if (.not. found) call close_all(self, ok)
+      if (.not. (found .or. allocated(error))) call create(self, model, part_of(path), error)
+    end if
     call close_hdf5(old)
-    if (.not. found) return
-    call replace_file(directory//"/"//file_name, error)
-    found = .not. allocated(error)
+    if (.not. allocated(error)) call replace_file(path, error)
+    self%guard%path = path
   end subroutine fields_resume
 
   !> Create the file with all that does not change.
@@ -118,7 +129,7 @@ contains
       call h5fcreate_f(path, H5F_ACC_TRUNC_F, self%file, status)
       ok = status >= 0
     end if
-    self%field = field_table()
+    self%field = field_table(model)
     call make_grid(self, model, ok)
     call make_job(self, model, ok)
     call flush_hdf5(self%file, ok)
@@ -226,25 +237,19 @@ contains
     call close_group(job)
   end subroutine make_job
 
-  !> Copy the steps of an older file up to an increment.
-  subroutine copy_steps(self, old, last_increment, ok)
+  !> Copy the first steps of an older file.
+  subroutine copy_steps(self, old, n, last_increment, ok)
     type(field_record_t), intent(inout) :: self
     integer(hid_t), intent(in) :: old
-    !> Increment of the last step copied.
-    integer, intent(in) :: last_increment
+    !> Number of steps copied, and increment of the last one.
+    integer, intent(in) :: n, last_increment
     !> The steps are there.
     logical, intent(out) :: ok
 
-    integer, allocatable :: increment(:)
     real(wp), allocatable :: time(:)
-    integer :: n, i
+    integer :: i
 
-    call dataset_size(old, "/job/increment", n)
-    allocate (increment(max(0, n)))
-    ok = n > 0
-    call read_integers(old, "/job/increment", increment, ok)
-    n = count(increment <= last_increment)
-    if (ok) ok = any(increment == last_increment)
+    ok = .true.
     call copy_target(self%points, old, n, self%n_node, ok)
     do i = 1, size(self%at_node)
       call copy_target(self%at_node(i), old, n, self%n_node, ok)
@@ -252,16 +257,16 @@ contains
     do i = 1, size(self%at_cell)
       call copy_target(self%at_cell(i), old, n, self%n_element, ok)
     end do
-    call copy_series(self%first_part, old, n, ok)
-    call copy_series(self%parts, old, n, ok)
-    call copy_series(self%first_cell, old, n, ok)
-    call copy_series(self%first_connectivity, old, n, ok)
-    call copy_series(self%increment, old, n, ok)
-    call copy_series(self%phase, old, n, ok)
-    call copy_series(self%progress, old, n, ok)
-    call copy_series(self%travel, old, n, ok)
-    if (self%tool%id >= 0) call copy_series(self%tool, old, n, ok)
-    call copy_series(self%time, old, n, ok)
+    call copy_series(self%first_part, old, int(n, hsize_t), ok)
+    call copy_series(self%parts, old, int(n, hsize_t), ok)
+    call copy_series(self%first_cell, old, int(n, hsize_t), ok)
+    call copy_series(self%first_connectivity, old, int(n, hsize_t), ok)
+    call copy_series(self%increment, old, int(n, hsize_t), ok)
+    call copy_series(self%phase, old, int(n, hsize_t), ok)
+    call copy_series(self%progress, old, int(n, hsize_t), ok)
+    call copy_series(self%travel, old, int(n, hsize_t), ok)
+    if (self%tool%id >= 0) call copy_series(self%tool, old, int(n, hsize_t), ok)
+    call copy_series(self%time, old, int(n, hsize_t), ok)
     call read_rows(old, self%time%path(), int(n - 1, hsize_t), 1_hsize_t, time, ok)
     call rewrite_attribute(self%step_count, [n], ok)
     call flush_hdf5(self%file, ok)

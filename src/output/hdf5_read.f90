@@ -1,6 +1,6 @@
 !> Reading of HDF5 files: datasets of numbers as one-dimensional arrays, attributes.
 module dd3_output_hdf5_read
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, i8
   use dd3_output_hdf5, only : start_hdf5
   use hdf5, only : hid_t, hsize_t, size_t, h5aclose_f, h5aget_type_f, h5aopen_f, h5aread_f, &
       h5dclose_f, h5dget_space_f, h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, h5screate_simple_f, &
@@ -167,7 +167,7 @@ contains
     call h5aget_type_f(attribute, type, status)
     if (status >= 0) call h5tget_size_f(type, length, status)
     if (status >= 0) then
-      text = repeat(" ", int(length))
+      text = repeat(" ", int(length, i8))
       call h5aread_f(attribute, type, text, [1_hsize_t], status)
       if (status < 0) text = ""
       call h5tclose_f(type, ignored)

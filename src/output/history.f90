@@ -23,8 +23,8 @@ module dd3_output_history
     type(table_t), private :: table
     !> Row of a state that is not due; it is written if it becomes the last one of its phase.
     character(len=:), allocatable, private :: waiting
-    !> Phase of the last state.
-    integer, private :: phase = 0
+    !> Increment and phase of the last state.
+    integer, private :: increment = 0, phase = 0
   contains
     procedure :: open => history_open
     procedure :: resume => history_resume
@@ -53,21 +53,25 @@ contains
   end subroutine history_open
 
   !> Make the file with the rows of an earlier run up to a restart.
-  subroutine history_resume(self, model, state, source, directory, found)
+  subroutine history_resume(self, model, state, source, directory, found, error)
     class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> State of the restart.
     type(state_t), intent(in) :: state
     !> Folders of the earlier results, and of the results.
     character(len=*), intent(in) :: source, directory
-    !> The earlier rows are in the file.
+    !> The earlier rows are in the file; otherwise it begins with the heading alone.
     logical, intent(out) :: found
+    !> Set if the file cannot be written.
+    type(error_t), allocatable, intent(out) :: error
 
     self%waiting = ""
+    self%increment = state%increment
     self%phase = state%phase
     call self%table%resume(source//"/"//file_name, directory//"/"//file_name, heading(model), &
-        state%history_increment, found)
-    if (.not. found .or. state%history_increment >= state%increment) return
+        state%history_increment, found, error)
+    if (allocated(error) .or. .not. found) return
+    if (state%history_increment >= state%increment) return
     call fill_row(self%table, model, state)
     call self%table%take_row(self%waiting)
   end subroutine history_resume
@@ -121,12 +125,17 @@ contains
     type(state_t), intent(inout) :: state
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
+
     logical :: due
 
-    if (state%phase /= self%phase) call put_waiting(self, error)
-    if (allocated(error)) return
-    due = mod(state%increment, max(1, model%output%history_every)) == 0 &
+    if (state%phase /= self%phase .and. len(self%waiting) > 0) then
+      call put_waiting(self, error)
+      if (allocated(error)) return
+      state%history_increment = self%increment
+    end if
+    due = mod(state%increment, model%output%history_every) == 0 &
           .or. state%progress >= 1.0_wp
+    self%increment = state%increment
     self%phase = state%phase
     self%waiting = ""
     call fill_row(self%table, model, state)

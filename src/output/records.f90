@@ -70,25 +70,23 @@ contains
     self%directory = directory
     self%restart_increment = state%increment
     lost = ""
-    call self%history%resume(model, state, source, directory, found)
+    call self%history%resume(model, state, source, directory, found, error)
+    if (allocated(error)) return
     if (.not. found) then
       lost = lost//" history.csv"
-      call self%history%open(model, directory, error)
-      if (.not. allocated(error)) call self%history%write(model, state, error)
+      call self%history%write(model, state, error)
     end if
+    if (.not. allocated(error)) call self%status%resume(state, source, directory, found, error)
     if (allocated(error)) return
-    call self%status%resume(state, source, directory, found)
-    if (.not. found) then
-      lost = lost//" status.csv"
-      call self%status%open(directory, error)
-    end if
+    if (.not. found) lost = lost//" status.csv"
+    call self%fields%resume(model, state, source, directory, found, error)
     if (allocated(error)) return
-    call self%fields%resume(model, state, source, directory, found)
     if (.not. found) then
       lost = lost//" fields.vtkhdf"
-      call self%fields%open(model, directory, error)
-      if (.not. allocated(error)) call write_fields(self, model, state, error)
+      call write_fields(self, model, state, error)
     end if
+    ! In another folder, or from another file, a restart file there would not fit the records.
+    if (.not. allocated(error)) call write_restart(directory, model, state, error)
   end subroutine records_resume
 
   !> Add the row of an attempt to status.csv.

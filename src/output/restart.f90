@@ -27,7 +27,7 @@ module dd3_output_restart
   character(len=*), parameter :: mark = "dd3imp restart"
   integer, parameter :: format_version = 1
   !> Room on the disk for what is not the values, bytes.
-  integer(i8), parameter :: overhead = 1000000_i8
+  integer(i8), parameter :: overhead = 300000_i8
 
   !> Visitor that writes the components into a group, a dataset each.
   type, extends(state_visitor_t) :: writer_t
@@ -177,17 +177,20 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     integer(hid_t) :: file
-    logical :: ok
+    logical :: there, ok
 
+    inquire (file=path, exist=there)
     call open_hdf5(path, file, ok)
-    if (ok) then
+    if (.not. there) then
+      call fatal_error(error, "cannot read the restart file '"//path//"': no such file")
+    else if (ok) then
       call check_origin(path, file, error)
       if (.not. allocated(error)) call check_model(path, file, model, error)
       if (.not. allocated(error)) call read_state(path, file, model, state, error)
       call close_hdf5(file)
     else
-      call fatal_error(error, "'"//path//"' cannot be read as a restart file: it is missing, "// &
-          "truncated or no HDF5 file")
+      call fatal_error(error, "cannot read the restart file '"//path// &
+          "': truncated or not an HDF5 file")
     end if
   end subroutine read_restart
 
@@ -204,7 +207,7 @@ contains
     call read_text_attribute(file, "version", version)
     found = read_integer_attribute(file, "format")
     if (program_mark /= mark) then
-      call fatal_error(error, "'"//path//"' is no restart file of dd3imp")
+      call fatal_error(error, "'"//path//"' is not a restart file of dd3imp")
     else if (found /= format_version) then
       call fatal_error(error, "'"//path//"' has restart format "//to_text(found)// &
           ", written by dd3imp "//version//"; this version reads format "// &
@@ -236,7 +239,7 @@ contains
       call read_codes(file, size(code), code, ok)
     end if
     if (.not. ok) then
-      call fatal_error(error, "'"//path//"' holds no fingerprint of its model")
+      call fatal_error(error, "'"//path//"' has no fingerprint of its model")
       return
     end if
     do i = 1, size(before)

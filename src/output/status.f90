@@ -160,17 +160,19 @@ contains
   end subroutine add_known
 
   !> Make the file with the rows of an earlier run up to a restart.
-  subroutine status_resume(self, state, source, directory, found)
+  subroutine status_resume(self, state, source, directory, found, error)
     class(status_record_t), intent(inout) :: self
     !> State of the restart.
     type(state_t), intent(in) :: state
     !> Folders of the earlier results, and of the results.
     character(len=*), intent(in) :: source, directory
-    !> The earlier rows are in the file.
+    !> The earlier rows are in the file; otherwise it begins with the heading alone.
     logical, intent(out) :: found
+    !> Set if the file cannot be written.
+    type(error_t), allocatable, intent(out) :: error
 
     call self%table%resume(source//"/"//file_name, directory//"/"//file_name, names//newline, &
-        state%increment, found)
+        state%increment, found, error)
   end subroutine status_resume
 
   !> Write what is buffered and close the file.

@@ -1,16 +1,18 @@
-!> history.csv of single material points: strain, stress, plastic strain and flow stress, one row
-!> for the start of each point and one for every n-th step; the last step of a point is always
-!> there.
+!> history.csv of material points: strain, stress, plastic strain, flow stress and the internal
+!> variables of the laws. One row for the start of each point and for every n-th step; the last step
+!> of a point always has a row.
 module dd3_point_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
+  use dd3_base_text, only : newline
   use dd3_linalg_tensor, only : kelvin_factor
+  use dd3_model_internal_variables, only : component_names, variable_t
   use dd3_output_csv, only : table_t
   implicit none
   private
   public :: point_record_t, point_row_t
 
-  !> Where the components 11 22 33 12 23 13 of the table stand in a Kelvin vector.
+  !> Position in a Kelvin vector of the components 11 22 33 12 23 13 of the table.
   integer, parameter :: place(6) = [1, 2, 3, 6, 4, 5]
 
   !> A row of the table.
@@ -23,11 +25,12 @@ module dd3_point_history
     real(wp) :: strain(6) = 0.0_wp, stress(6) = 0.0_wp
     !> Equivalent plastic strain; flow stress, MPa.
     real(wp) :: plastic = 0.0_wp, flow_stress = 0.0_wp
+    !> Components of the internal variables, as output, one after the other.
+    real(wp), allocatable :: internal_variables(:)
   end type point_row_t
 
-  !> The history.
+  !> History of material points.
   type :: point_record_t
-    !> The table.
     type(table_t), private :: table
   contains
     procedure :: open => point_open
@@ -37,30 +40,49 @@ module dd3_point_history
 
 contains
 
-  !> Makes the file with its two lines of heading.
-  subroutine point_open(self, directory, error)
-    !> The record.
+  !> Make the file with its two lines of heading.
+  subroutine point_open(self, directory, variables, error)
     class(point_record_t), intent(inout) :: self
-    !> The directory.
+    !> Folder of the results.
     character(len=*), intent(in) :: directory
-    !> Says why it cannot be written.
+    !> Internal variables of the materials.
+    type(variable_t), intent(in) :: variables(:)
+    !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     call self%table%open(directory//"/history.csv", error)
     if (allocated(error)) return
-    call self%table%file%put("# units: -,-,-,-,-,-,-,-,MPa,MPa,MPa,MPa,MPa,MPa,-,MPa"// &
-        new_line("a")//"increment,point,e11,e22,e33,e12,e23,e13,s11,s22,s33,s12,s23,s13,"// &
-        "eqps,flow_stress"//new_line("a"), error)
+    call self%table%file%put(heading(variables), error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine point_open
 
-  !> Adds a row.
+  !> Return the lines of the heading: units and names of the columns.
+  function heading(variables) result(text)
+    type(variable_t), intent(in) :: variables(:)
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: names, units
+    character(len=3), allocatable :: endings(:)
+    integer :: i, k
+
+    units = "# units: -,-,-,-,-,-,-,-,MPa,MPa,MPa,MPa,MPa,MPa,-,MPa"
+    names = "increment,point,e11,e22,e33,e12,e23,e13,s11,s22,s33,s12,s23,s13,eqps,flow_stress"
+    do i = 1, size(variables)
+      endings = component_names(variables(i))
+      do k = 1, size(endings)
+        names = names//","//trim(variables(i)%row%name)//trim(endings(k))
+        if (variables(i)%row%unit == "") units = units//",-"
+        if (variables(i)%row%unit /= "") units = units//","//trim(variables(i)%row%unit)
+      end do
+    end do
+    text = units//newline//names//newline
+  end function heading
+
+  !> Add a row.
   subroutine point_write(self, row, error)
-    !> The record.
     class(point_record_t), intent(inout) :: self
-    !> The row.
     type(point_row_t), intent(in) :: row
-    !> Says why it cannot be written.
+    !> Set if the row cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     call self%table%add_integer(row%increment)
@@ -69,14 +91,14 @@ contains
     call self%table%add_reals(row%stress(place)/kelvin_factor)
     call self%table%add_real(row%plastic)
     call self%table%add_real(row%flow_stress)
+    if (allocated(row%internal_variables)) call self%table%add_reals(row%internal_variables)
     call self%table%end_row(error)
   end subroutine point_write
 
-  !> Brings everything to the disk and closes the file.
+  !> Write what is buffered and close the file.
   subroutine point_close(self, error)
-    !> The record.
     class(point_record_t), intent(inout) :: self
-    !> Says why the rest cannot be written.
+    !> Set if the rest cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     call self%table%close(error)

@@ -15,6 +15,8 @@ module dd3_point_run
   use dd3_material_material, only : material_t
   use dd3_material_point, only : apply_strain, drive_to_target, global_stress, material_point_t, &
       new_material_point
+  use dd3_model_internal_variables, only : global_components
+  use dd3_model_model, only : model_t
   use dd3_point_history, only : point_record_t, point_row_t
   use dd3_point_path, only : new_path, path_t, segment_t
   implicit none
@@ -39,11 +41,11 @@ module dd3_point_run
 
 contains
 
-  !> Run all material points of a case. The history is complete also if a run stops early.
-  subroutine run_points(case, material, directory, log, increments, error)
+  !> Run all material points of a case. The history is whole whether they reach their end or not.
+  subroutine run_points(case, model, directory, log, increments, error)
     type(case_t), intent(in) :: case
-    !> Materials of the case.
-    type(material_t), intent(in) :: material(:)
+    !> Holds the materials.
+    type(model_t), intent(in) :: model
     !> Folder of the results; it exists.
     character(len=*), intent(in) :: directory
     type(log_t), intent(inout) :: log
@@ -54,61 +56,59 @@ contains
 
     type(point_record_t) :: record
     type(path_t) :: path
+    type(point_run_t) :: run
     type(error_t), allocatable :: late
-    integer :: i, steps
+    integer :: i
 
     increments = 0
-    call record%open(directory, error)
+    call record%open(directory, model%internal_variable, error)
     do i = 1, size(case%point)
       if (allocated(error)) exit
       call new_path(path, case%point(i))
-      call run_point(path, material(path%material), case%output%history, record, log, steps, error)
-      increments = increments + steps
+      run = point_run_t(every=max(1, case%output%history))
+      call run_point(run, path, model, record, log, error)
+      increments = increments + run%increment
     end do
     call record%close(late)
     call keep_first(error, late)
   end subroutine run_points
 
   !> Run one material point.
-  subroutine run_point(path, material, every, record, log, steps, error)
+  subroutine run_point(run, path, model, record, log, error)
+    !> New on entry.
+    type(point_run_t), intent(inout) :: run
     type(path_t), intent(in) :: path
-    type(material_t), intent(in) :: material
-    !> Interval of the rows, in steps.
-    integer, intent(in) :: every
+    type(model_t), intent(in) :: model
     type(point_record_t), intent(inout) :: record
     type(log_t), intent(inout) :: log
-    !> Steps made.
-    integer, intent(out) :: steps
     !> Set if the run stopped before its end.
     type(error_t), allocatable, intent(out) :: error
 
-    type(point_run_t) :: run
     type(error_t), allocatable :: late
     real(wp) :: strain
     integer :: i
 
     strain = 0.0_wp
-    call new_material_point(run%state, material, path%axes)
+    call new_material_point(run%state, model%material(path%material), path%axes)
     run%gradient = identity
-    run%every = max(1, every)
-    call write_row(run, material, path, record, error)
+    call write_row(run, model, path, record, error)
     do i = 1, size(path%segment)
       if (allocated(error)) exit
-      call run_segment(run, material, path, path%segment(i), record, error)
+      call run_segment(run, model, path, path%segment(i), record, error)
       strain = max(strain, maxval(abs(run%state%strain/kelvin_factor)))
     end do
-    steps = run%increment
-    if (.not. allocated(error)) call log%say("point "//path%name//": "//to_text(steps)//" steps")
+    if (.not. allocated(error)) &
+      call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
     if (strain > notable_strain) call log%say("warning: point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
-    if (run%waiting) call write_row(run, material, path, record, late)
+    if (run%waiting) call write_row(run, model, path, record, late)
     call keep_first(error, late)
   end subroutine run_point
 
   !> Run one segment of a path.
-  subroutine run_segment(run, material, path, segment, record, error)
+  subroutine run_segment(run, model, path, segment, record, error)
     type(point_run_t), intent(inout) :: run
-    type(material_t), intent(in) :: material
+    type(model_t), intent(in) :: model
     type(path_t), intent(in) :: path
     type(segment_t), intent(in) :: segment
     type(point_record_t), intent(inout) :: record
@@ -124,10 +124,10 @@ contains
     do k = 1, segment%steps
       fraction = real(k, wp)/real(segment%steps, wp)
       if (path%by_gradient) then
-        call apply_gradient(run, material, &
+        call apply_gradient(run, model%material(path%material), &
             gradient + fraction*(segment%gradient - gradient), verdict)
       else
-        call drive_to_target(run%state, material, path%by_stress, &
+        call drive_to_target(run%state, model%material(path%material), path%by_stress, &
             start + fraction*(segment%target - start), verdict)
       end if
       if (verdict%outcome /= verdict_converged) then
@@ -137,7 +137,7 @@ contains
       end if
       run%increment = run%increment + 1
       run%waiting = mod(run%increment, run%every) /= 0
-      if (.not. run%waiting) call write_row(run, material, path, record, error)
+      if (.not. run%waiting) call write_row(run, model, path, record, error)
       if (allocated(error)) return
       if (interrupted()) then
         call fatal_error(error, "interrupted by the user in point "//path%name//", step "// &
@@ -187,22 +187,29 @@ contains
   end function left_strain
 
   !> Write the row of a state.
-  subroutine write_row(run, material, path, record, error)
+  subroutine write_row(run, model, path, record, error)
     type(point_run_t), intent(inout) :: run
-    type(material_t), intent(in) :: material
+    type(model_t), intent(in) :: model
     type(path_t), intent(in) :: path
     type(point_record_t), intent(inout) :: record
     !> Set if the row cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
     type(point_row_t) :: row
+    integer :: i
 
     row%increment = run%increment
     row%point = path%name
     row%strain = run%state%strain
     row%stress = global_stress(run%state)
     row%plastic = run%state%internal_variables(1)
-    row%flow_stress = material%flow_stress(run%state%internal_variables)
+    row%flow_stress = model%material(path%material)%flow_stress(run%state%internal_variables)
+    row%internal_variables = [real(wp) ::]
+    do i = 1, size(model%internal_variable)
+      row%internal_variables = [row%internal_variables, &
+          global_components(model%internal_variable(i), path%material, &
+              run%state%internal_variables, run%state%axes)]
+    end do
     call record%write(row, error)
     run%waiting = .false.
   end subroutine write_row

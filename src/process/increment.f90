@@ -67,10 +67,8 @@ contains
   end subroutine try_increment
 
   !> Reduce r for another attempt, if one is allowed.
-  subroutine shrink_increment(phase, committed, stepper, again)
+  subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
-    !> Gets the new bound of r.
-    type(state_t), intent(inout) :: committed
     type(stepper_t), intent(inout) :: stepper
     !> Whether another attempt is allowed.
     logical, intent(out) :: again
@@ -84,17 +82,18 @@ contains
       attempt%limit%name = "cutback"
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
-      committed%r_cap = attempt%limit%r
     end associate
   end subroutine shrink_increment
 
-  !> Commit the trial state and raise the bound of r that a cut-back has set.
+  !> Commit the trial state. A cut-back sets a bound of r, which every accepted increment raises; a
+  !> failed increment leaves none, so that a restart repeats its attempts.
   subroutine accept_increment(trial, stepper, committed)
     type(state_t), intent(in) :: trial
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
     committed = trial
+    if (stepper%attempt%number > 1) committed%r_cap = stepper%attempt%limit%r
     if (committed%r_cap < huge(1.0_wp)/r_cap_factor) committed%r_cap = committed%r_cap*r_cap_factor
     if (committed%r_cap > largest_r_cap) committed%r_cap = huge(1.0_wp)
     committed%solver_memory = stepper%system%solver%memory

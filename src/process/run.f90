@@ -206,7 +206,7 @@ contains
         began = wall_time()
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
-            call shrink_increment(phase, run%committed, stepper, again)
+            call shrink_increment(phase, stepper, again)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations

@@ -1,0 +1,102 @@
+!> Internal variables of all materials of a model, for output: those of equal name form one field,
+!> which a material without the variable leaves at zero. The equivalent plastic strain, which every
+!> material has first, is not listed.
+module dd3_model_internal_variables
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : kelvin_rotation, kelvin_factor
+  use dd3_material_description, only : internal_variable_t
+  use dd3_material_material, only : material_t
+  implicit none
+  private
+  public :: variable_t, new_variables, global_components, component_names
+
+  !> Components of a tensor in the outputs, and their positions in a Kelvin vector.
+  character(len=2), parameter :: tensor_component(6) = ["11", "22", "33", "12", "23", "13"]
+  integer, parameter :: kelvin_position(6) = [1, 2, 3, 6, 4, 5]
+
+  !> An internal variable in the outputs.
+  type :: variable_t
+    !> Name, unit, meaning and number of components as in its law.
+    type(internal_variable_t) :: row
+    !> Index of its first component among the internal variables of each material; 0 for none,
+    !> `(n_material)`.
+    integer, allocatable :: first(:)
+  end type variable_t
+
+contains
+
+  !> List the internal variables of all materials.
+  subroutine new_variables(variables, material)
+    type(variable_t), allocatable, intent(out) :: variables(:)
+    type(material_t), intent(in) :: material(:)
+
+    type(internal_variable_t), allocatable :: rows(:)
+    type(variable_t), allocatable :: found(:)
+    integer :: m, i, k, n
+
+    n = 0
+    allocate (found(sum(material%n_internal)))
+    do m = 1, size(material)
+      call material(m)%describe_internal_variables(rows)
+      do i = 2, size(rows)
+        do k = 1, n
+          if (found(k)%row%name == rows(i)%name .and. &
+              found(k)%row%n_component == rows(i)%n_component) exit
+        end do
+        if (k > n) then
+          n = k
+          found(k)%row = rows(i)
+          allocate (found(k)%first(size(material)), source=0)
+        end if
+        found(k)%first(m) = rows(i)%first
+      end do
+    end do
+    allocate (variables(n))
+    do k = 1, n
+      variables(k)%row = found(k)%row
+      variables(k)%first = found(k)%first
+    end do
+  end subroutine new_variables
+
+  !> Return the components of a variable at a point as they are output: those of a tensor in global
+  !> axes, 11 22 33 12 23 13, others as the law stores them; zero if the material lacks it.
+  pure function global_components(variable, material, values, axes) result(components)
+    type(variable_t), intent(in) :: variable
+    !> Number of the material.
+    integer, intent(in) :: material
+    !> Internal variables of the point.
+    real(wp), intent(in) :: values(:)
+    !> Orthotropy axes as columns.
+    real(wp), intent(in) :: axes(3, 3)
+    real(wp) :: components(variable%row%n_component)
+
+    integer :: first
+
+    components = 0.0_wp
+    first = variable%first(material)
+    if (first == 0) return
+    components = values(first:first + variable%row%n_component - 1)
+    if (variable%row%n_component /= 6) return
+    components = matmul(kelvin_rotation(axes), components)/kelvin_factor
+    components = components(kelvin_position)
+  end function global_components
+
+  !> Return the endings of the column names of a variable's components.
+  function component_names(variable) result(names)
+    type(variable_t), intent(in) :: variable
+    character(len=3) :: names(variable%row%n_component)
+
+    integer :: i
+
+    if (variable%row%n_component == 1) then
+      names = ""
+    else if (variable%row%n_component == 6) then
+      names = "_"//tensor_component
+    else
+      do i = 1, size(names)
+        write (names(i), '("_", i0)') i
+      end do
+    end if
+  end function component_names
+
+end module dd3_model_internal_variables

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Runs that are killed and continued: their results are those of a run that is not, bit for bit.
+
+    killed.py --program build/release/dd3imp --work build/killed --kills 3
+
+A run is killed at random instants, within a change of phase, and while its restart file is written.
+"""
+import argparse
+import pathlib
+import random
+import signal
+import time
+
+from runs import Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of, table
+
+# Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only; fields by
+# increments; a linear solver that falls back.
+CASES = {
+    "often": ((), ()),
+    "each": ((), ("restart=1", "history=5")),
+    "phases": ((), ("restart=1000",)),
+    "increments": ((("every 0.4 mm", "increments 2"),), ()),
+    "fields": ((("every 0.4 mm", "increments 1"),), ("restart=1",)),
+    "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
+}
+MOST_TRIALS = 100
+
+
+class Killed:
+    """Kills of runs of one deck, and the uninterrupted run."""
+
+    def __init__(self, runner, work, name, seed):
+        changes, self.settings = CASES[name]
+        self.runner, self.work, self.random = runner, fresh(work), random.Random(seed)
+        self.deck = Deck(work / "deck.dat", *changes)
+        began = time.monotonic()
+        runner.run(self.deck, work / "whole", settings=self.settings)
+        self.seconds = time.monotonic() - began
+        self.output = work / "killed"
+
+    def kill(self, make_condition):
+        """Start or continue a run and kill it; return whether it was killed before its end."""
+        code = self.runner.stop(signal.SIGKILL, make_condition(self.output), self.deck, self.output,
+                                restart_of(self.output), self.settings)
+        check(code in (0, -signal.SIGKILL), f"exit code {code}")
+        return code != 0
+
+    def finish(self):
+        """Continue to the end and compare."""
+        self.runner.run(self.deck, self.output, restart_of(self.output), settings=self.settings)
+        compare(self.output, self.work / "whole")
+
+    def at_random(self, kills):
+        """Kill a run so many times at random instants, starting over if it ends before."""
+        done = 0
+        for _ in range(MOST_TRIALS):
+            instant = self.random.uniform(0.05, 0.9)*self.seconds
+            if self.kill(lambda output, at=instant: after(at)):
+                done += 1
+            else:
+                compare(self.output, self.work / "whole")
+                fresh(self.output)
+            if done == kills:
+                return self.finish()
+        return check(False, f"only {done} of {kills} kills hit a run")
+
+    def at_ends_of_phases(self, kills):
+        """Kill a run so many times when the restart file at the end of a phase has been written."""
+        done = 0
+        for _ in range(MOST_TRIALS):
+            # A continued run writes the file once more at its start.
+            times = 2 if restart_of(self.output) else 1
+            if self.kill(lambda output, times=times: replaced(output / "restart.h5", times)):
+                done += 1
+            else:
+                fresh(self.output)
+            if done == kills:
+                return self.finish()
+        return check(False, f"only {done} of {kills} kills hit a run")
+
+    def while_continued(self):
+        """Kill a run, then its continuations when they have replaced the first records, the second and so on."""
+        self.kill(lambda output: after(0.5*self.seconds))
+        for name in ("history.csv", "status.csv", "fields.vtkhdf", "restart.h5"):
+            self.kill(lambda output, name=name: replaced(output / name))
+        self.finish()
+
+    def fields(self, kills):
+        """Kill new runs while steps of fields are written: no step of the restart is lost."""
+        for number in range(kills):
+            fresh(self.output)
+            instant = self.random.uniform(0.0, 0.8)*self.seconds
+            path = self.output / "fields.vtkhdf"
+            self.kill(lambda output, at=instant: growing(path, at) if number % 4 else after(at))
+            restart = restart_of(self.output)
+            said = self.runner.run(self.deck, self.output, restart, settings=self.settings)
+            check("begin at the restart" not in said, f"kill {number}: {said}")
+            compare(self.output, self.work / "whole")
+
+    def while_written(self, kills):
+        """Kill while the restart file is written: the part of it is left."""
+        done = 0
+        for _ in range(MOST_TRIALS):
+            instant = self.random.uniform(0.0, 0.5)*self.seconds
+            killed = self.kill(lambda output, at=instant: being_written(output, at))
+            if killed and (self.output / "restart.h5.part").exists():
+                done += 1
+            elif not killed:
+                fresh(self.output)
+            if done == kills:
+                return self.finish()
+        return check(False, f"only {done} of {kills} kills hit the writing")
+
+
+def has_fallback(work):
+    """Check that CGS is skipped in some increments of a run, not in others: the memory of the solver counts."""
+    rows = table(work / "whole" / "status.csv")
+    check(any(row["reason"].startswith("CGS skipped") for row in rows), "CGS is never skipped")
+    check({row["solver"] for row in rows} == {"cgs", "umfpack"}, "the linear solver does not fall back")
+
+
+def main():
+    """Run all of them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
+    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
+    parser.add_argument("--kills", type=int, default=3, help="number of kills, at least 3")
+    parser.add_argument("--fields", type=int, default=0, help="number of kills while fields are written")
+    parser.add_argument("--seed", type=int, default=1, help="of the random instants")
+    options = parser.parse_args()
+    runner, work = Runner(options.program), fresh(options.work.resolve())
+
+    def case(name):
+        return Killed(runner, work / name, name, options.seed)
+
+    def fallback():
+        killed = case("fallback")
+        has_fallback(killed.work)
+        killed.at_random(rest[4])
+
+    others = max(0, options.kills - 3)
+    rest = [1 + others//5 + (1 if k < others % 5 else 0) for k in range(5)]
+    tests = [("at random instants", lambda: case("often").at_random(rest[0])),
+             ("within a change of phase", lambda: case("phases").at_ends_of_phases(rest[1])),
+             ("while the restart file is written", lambda: case("each").while_written(rest[2])),
+             ("while the records are continued", lambda: case("often").while_continued())]
+    if options.kills > 3:
+        tests += [("with fields by increments", lambda: case("increments").at_random(rest[3] - 1)),
+                  ("with a linear solver that falls back", fallback)]
+    if options.fields > 0:
+        tests += [("while fields are written", lambda: case("fields").fields(options.fields))]
+    raise SystemExit(call_tests(tests))
+
+
+if __name__ == "__main__":
+    main()
