@@ -23,7 +23,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     character(len=word_length), allocatable :: form(:)
-    character(len=word_length) :: wanted
+    character(len=word_length) :: form_word
     integer :: i, k, before
     logical :: repeats
 
@@ -37,10 +37,10 @@ contains
             "'", describe(row))
         return
       end if
-      wanted = form(k)
-      repeats = index(wanted, "...") > 0
-      if (repeats) wanted = wanted(:index(wanted, "...") - 1)
-      call check_form_word(entry, i, wanted, row, errors)
+      form_word = form(k)
+      repeats = index(form_word, "...") > 0
+      if (repeats) form_word = form_word(:index(form_word, "...") - 1)
+      call check_form_word(entry, i, form_word, row, errors)
       if (errors%count > before) return
       if (.not. repeats) k = k + 1
     end do
@@ -51,19 +51,19 @@ contains
   end subroutine check_form
 
   !> Check one word of a value against one word of the form.
-  subroutine check_form_word(entry, i, wanted, row, errors)
+  subroutine check_form_word(entry, i, form_word, row, errors)
     type(entry_t), intent(inout) :: entry
     !> Position of the word.
     integer, intent(in) :: i
     !> Word of the form.
-    character(len=*), intent(in) :: wanted
+    character(len=*), intent(in) :: form_word
     type(parameter_t), intent(in) :: row
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: text
 
     text = lower_case(entry%value(i)%text)
-    select case (wanted)
+    select case (form_word)
     case ("number")
       call add_real(entry, entry%value(i), describe(row), errors)
     case ("count")
@@ -78,22 +78,22 @@ contains
     case ("set", "tool", "material")
       entry%value(i)%text = text
     case default
-      call check_known_word(entry%value(i), literals(wanted), describe(row), errors)
+      call check_known_word(entry%value(i), literals(form_word), describe(row), errors)
       entry%value(i)%text = text
     end select
   end subroutine check_form_word
 
   !> Return the words that may stand for a literal word of the form: `word`, `[word]`, `word|word`.
-  pure function literals(wanted) result(known)
-    character(len=*), intent(in) :: wanted
+  pure function literals(form_word) result(known)
+    character(len=*), intent(in) :: form_word
     character(len=word_length), allocatable :: known(:)
 
-    character(len=len(wanted)) :: plain
+    character(len=len(form_word)) :: plain
     integer :: i
 
-    plain = wanted
-    do i = 1, len(wanted)
-      if (scan(wanted(i:i), "[]|") > 0) plain(i:i) = " "
+    plain = form_word
+    do i = 1, len(form_word)
+      if (scan(form_word(i:i), "[]|") > 0) plain(i:i) = " "
     end do
     known = split_words(plain)
   end function literals

@@ -19,7 +19,7 @@ contains
     type(parameter_t), intent(in) :: row
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i, wanted, before
+    integer :: i, n_expected, before
 
     before = errors%count
     do i = 1, size(entry%value)
@@ -32,16 +32,16 @@ contains
       call check_range(entry%number(i), row, entry%value(i)%at, describe(row), errors)
     end do
     if (errors%count > before) return
-    wanted = row%count
-    if (row%kind == kind_real .or. row%kind == kind_integer) wanted = 1
-    call check_count(entry, wanted, describe(row), errors)
+    n_expected = row%count
+    if (row%kind == kind_real .or. row%kind == kind_integer) n_expected = 1
+    call check_count(entry, n_expected, describe(row), errors)
   end subroutine check_numbers
 
   !> Check the number of values in an entry.
-  subroutine check_count(entry, wanted, expected, errors)
+  subroutine check_count(entry, n_expected, expected, errors)
     type(entry_t), intent(in) :: entry
     !> Number of values required; 0 for any number.
-    integer, intent(in) :: wanted
+    integer, intent(in) :: n_expected
     character(len=*), intent(in) :: expected
     type(error_list_t), intent(inout) :: errors
 
@@ -49,11 +49,11 @@ contains
     integer :: given
 
     given = size(entry%value)
-    if (wanted == 0 .or. given == wanted) return
+    if (n_expected == 0 .or. given == n_expected) return
     values = " values"
-    if (wanted == 1) values = " value"
+    if (n_expected == 1) values = " value"
     ! The caret is below the first excess value, or below the last one where some are missing.
-    call errors%push_input(entry%value(min(given, wanted + 1))%at, "expected "//to_text(wanted)// &
+    call errors%push_input(entry%value(min(given, n_expected + 1))%at, "expected "//to_text(n_expected)// &
         values//", got "//to_text(given), expected)
   end subroutine check_count
 

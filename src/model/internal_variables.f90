@@ -14,12 +14,12 @@ module dd3_model_internal_variables
   character(len=2), parameter :: tensor_component(6) = ["11", "22", "33", "12", "23", "13"]
   integer, parameter :: kelvin_position(6) = [1, 2, 3, 6, 4, 5]
 
-  !> An internal variable in the outputs.
+  !> Internal variable in the outputs.
   type :: variable_t
     !> Name, unit, meaning and number of components as in its law.
     type(internal_variable_t) :: row
-    !> Index of its first component among the internal variables of each material; 0 for none,
-    !> `(n_material)`.
+    !> Index of its first component among the internal variables of each material, `(n_material)`; 0
+    !> if the material lacks it.
     integer, allocatable :: first(:)
   end type variable_t
 
@@ -58,8 +58,8 @@ contains
     end do
   end subroutine new_variables
 
-  !> Return the components of a variable at a point as they are output: those of a tensor in global
-  !> axes, 11 22 33 12 23 13, others as the law stores them; zero if the material lacks it.
+  !> Return the output components of a variable at a point: those of a tensor in global axes, 11 22
+  !> 33 12 23 13, others as the law stores them; zero if the material lacks it.
   pure function global_components(variable, material, values, axes) result(components)
     type(variable_t), intent(in) :: variable
     !> Number of the material.

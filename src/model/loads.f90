@@ -18,19 +18,19 @@ module dd3_model_loads
 
 contains
 
-  !> Evaluate the fractions of a uniform load on the faces that lie wholly in a node set: face area
-  !> times the element's face weights. They are left unallocated, for equal fractions, if the face
-  !> weights are equal, or if the set is no surface: it holds all nodes of an element, or a node
-  !> that belongs to none of these faces.
+  !> Evaluate the fractions of a uniform load on the faces with all nodes in a set: face area times
+  !> the element's face weights. They are not allocated, for equal fractions, if the face weights
+  !> are equal, or if the set is not a surface: it contains all nodes of an element, or a node
+  !> outside these faces.
   pure subroutine face_load_weights(element, connectivity, x, node, weight)
     type(element_t), intent(in) :: element
     !> `(element%n_node, n_element)`.
     integer, intent(in) :: connectivity(:, :)
     !> Coordinates, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> The set.
+    !> Nodes of the set.
     integer, intent(in) :: node(:)
-    !> `(size(node))`; their sum is 1.
+    !> Fractions, `(size(node))`, with the sum 1.
     real(wp), allocatable, intent(out) :: weight(:)
 
     real(wp) :: force(size(x, 2))

@@ -1,5 +1,5 @@
-!> Walk over the components of a state: `visit_state` passes every component with its name to
-!> a visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
+!> Walk over the components of a state: `visit_state` passes every component with its name to a
+!> visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
 !> component is named in one place only.
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp

@@ -98,7 +98,7 @@ contains
       strain = max(strain, maxval(abs(run%state%strain/kelvin_factor)))
     end do
     if (.not. allocated(error)) &
-      call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
+        call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
     if (strain > notable_strain) call log%say("warning: point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
     if (run%waiting) call write_row(run, model, path, record, late)

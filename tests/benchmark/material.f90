@@ -19,10 +19,10 @@ program benchmark_material
   type(description_t), allocatable :: criteria(:), hardenings(:), backstresses(:)
   type(law_choice_t), allocatable :: back(:)
   type(set_t), allocatable :: sets(:)
-  character(len=60) :: wanted
+  character(len=60) :: filter
   integer :: i, j, k
 
-  call get_command_argument(1, wanted)
+  call get_command_argument(1, filter)
   sets = published_sets()
   call describe_laws(law_yield, criteria)
   call describe_laws(law_hardening, hardenings)
@@ -69,7 +69,7 @@ contains
 
     name = trim(criterion%name)//" "//trim(hardening%name)
     if (size(back) > 0) name = trim(name)//" "//trim(back(1)%name)
-    if (index(name, trim(wanted)) == 0) return
+    if (index(name, trim(filter)) == 0) return
     call new_material(material, 2.1e5_wp, 0.3_wp, criterion, hardening, back)
     do n = 1, size(sizes)
       call time_updates(material, sizes(n), .true., plastic_time(n), iterations(n))

@@ -43,12 +43,12 @@ program benchmark_robustness
   type(law_choice_t), allocatable :: backs(:), none(:)
   type(description_t), allocatable :: hardenings(:)
   type(law_choice_t) :: hardening
-  character(len=60) :: wanted
+  character(len=60) :: filter
   integer :: i, j, k
   !> Sets with which all hardening laws are tested.
   integer, parameter :: chosen(3) = [2, 15, 17]
 
-  call get_command_argument(1, wanted)
+  call get_command_argument(1, filter)
   sets = published_sets()
   call describe_laws(law_hardening, hardenings)
   backs = [law_of("prager k=800"), law_of("lemaitre_chaboche CX=50 Xsat=60"), &
@@ -95,7 +95,7 @@ contains
     do n = 1, size(back)
       name = name//", "//trim(back(n)%name)
     end do
-    if (index(name, trim(wanted)) == 0) return
+    if (index(name, trim(filter)) == 0) return
     call seed()
     call new_material(material, 2.1e5_wp, 0.3_wp, set%law, hardening, back)
     call walk_randomly(material, increments, tally)
