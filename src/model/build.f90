@@ -19,7 +19,7 @@ module dd3_model_build
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
-  use dd3_model_tolerances, only : start_depth, start_search, wrong_side_depth
+  use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
   private
@@ -143,6 +143,7 @@ contains
     model%material_of = mesh%material
     model%thickness = mesh%thickness
     model%contact_depth = 0.5_wp*mesh%thickness
+    model%tolerance = new_tolerances(mesh%thickness, mesh%x)
     call new_element_work(work, model%element)
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
@@ -254,14 +255,14 @@ contains
 
     do t = 1, model%n_tool
       deepest = -start_depth
-      nearest = start_search
+      nearest = model%tolerance%start_search
       worst = 0
       do c = 1, model%n_contact
         if (.not. model%candidate(t, c)) cycle
         node = model%contact_node(c)
         hint = hint_t()
         call find_contact(model%tool(t)%surface, model%x0(:, node) - model%tool(t)%position, hint, &
-                          start_search, start_search, hit)
+            model%tolerance%start_search, model%tolerance%start_search, hit)
         if (.not. hit%found) cycle
         if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
         if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth*model%thickness) cycle

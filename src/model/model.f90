@@ -8,6 +8,7 @@ module dd3_model_model
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_tolerances, only : tolerances_t
   implicit none
   private
   public :: model_t, history_set_t, output_t
@@ -61,6 +62,7 @@ module dd3_model_model
     real(wp) :: thickness = 0.0_wp
     !> Depth inside a tool down to which a node still counts as touching it, mm.
     real(wp) :: contact_depth = 0.0_wp
+    type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.
     integer, allocatable :: contact_node(:)

@@ -1,27 +1,51 @@
-!> Tolerances of lengths and directions, and search distances.
+!> Lengths that count as zero, or as far, relative to the thickness and to the size of the sheet;
+!> all in one place. Only the depth of a start inside the sheet, part of the input format, is
+!> absolute.
 module dd3_model_tolerances
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: start_depth, start_search, wrong_side_depth, touch, closed, hysteresis, tool_search, &
-      tangential
+  public :: tolerances_t, new_tolerances, start_depth, wrong_side_depth, tangential
 
   !> Depth inside the sheet at which a tool may start, mm.
   real(wp), parameter :: start_depth = 1.0e-3_wp
-  !> Distance up to which a tool is looked for at the start, mm.
-  real(wp), parameter :: start_search = 1.0e4_wp
-  !> Depth up to which a start inside the sheet is reported, divided by the thickness: a node deeper
-  !> behind a surface can lie beyond its border.
+  !> Depth up to which a start inside the sheet is reported, in thicknesses: a node farther behind a
+  !> surface may lie beyond its border.
   real(wp), parameter :: wrong_side_depth = 10.0_wp
-  !> Gap up to which a tool without contact counts as touching, mm.
-  real(wp), parameter :: touch = 1.0e-4_wp
-  !> Gap that counts as closed when a pressed tool approaches the sheet, mm.
-  real(wp), parameter :: closed = 1.0e-9_wp
-  !> A candidate stays with its tool unless another one is nearer by this, mm.
-  real(wp), parameter :: hysteresis = 1.0e-6_wp
-  !> Distance up to which the predictor and a pressed tool look for contact, mm.
-  real(wp), parameter :: tool_search = 1.0e3_wp
   !> Below this |n.f|, of two unit vectors, a force f counts as tangential to the surface.
   real(wp), parameter :: tangential = 1.0e-6_wp
+
+  !> Lengths, mm.
+  type :: tolerances_t
+    !> Gap up to which a tool without contact counts as touching.
+    real(wp) :: touch = 0.0_wp
+    !> Gap that counts as closed when a pressed tool approaches the sheet.
+    real(wp) :: closed = 0.0_wp
+    !> A candidate stays with its tool unless another one is nearer by this.
+    real(wp) :: hysteresis = 0.0_wp
+    !> Distance up to which the predictor and a pressed tool look for contact.
+    real(wp) :: tool_search = 0.0_wp
+    !> Distance up to which a tool is looked for at the start.
+    real(wp) :: start_search = 0.0_wp
+  end type tolerances_t
+
+contains
+
+  !> Return the tolerances for a sheet.
+  pure type(tolerances_t) function new_tolerances(thickness, x) result(self)
+    !> Thickness of the sheet, mm.
+    real(wp), intent(in) :: thickness
+    !> Initial positions of its nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+
+    real(wp) :: diagonal
+
+    diagonal = norm2(maxval(x, dim=2) - minval(x, dim=2))
+    self%touch = 1.0e-4_wp*thickness
+    self%closed = 1.0e-9_wp*thickness
+    self%hysteresis = 1.0e-6_wp*thickness
+    self%tool_search = 100.0_wp*diagonal
+    self%start_search = 1000.0_wp*diagonal
+  end function new_tolerances
 
 end module dd3_model_tolerances

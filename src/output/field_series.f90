@@ -8,7 +8,8 @@ module dd3_output_field_series
   use hdf5, only : hid_t, hsize_t, h5aclose_f, h5gclose_f
   implicit none
   private
-  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series, count_steps
+  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series, &
+      count_steps
   public :: close_target, close_group, close_attribute
 
   !> Rows per chunk of the datasets with one row per step.

@@ -8,7 +8,6 @@ module dd3_process_limiters
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : touch
   use dd3_process_attempt, only : limit_t
   use dd3_process_phase_end, only : next_output_progress, until_value
   use dd3_process_stepper, only : stepper_t
@@ -260,7 +259,7 @@ contains
         approach = dot_product(prediction%tool_displacement(:, tool) &
             - prediction%displacement(:, node), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
-        depth = merge(0.5_wp*model%contact_depth, 0.5_wp*touch, touching(tool))
+        depth = merge(0.5_wp*model%contact_depth, 0.5_wp*model%tolerance%touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
             name=merge("gap          ", "first contact", touching(tool)))

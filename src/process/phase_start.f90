@@ -8,7 +8,7 @@ module dd3_process_phase_start
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : closed, tangential, tool_search
+  use dd3_model_tolerances, only : tangential
   use dd3_process_phase_end, only : until_value
   implicit none
   private
@@ -113,7 +113,8 @@ contains
     if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
     do k = 1, most_advances
       call gap_of_tool(model, tool, state, gap, facing)
-      if (gap <= closed .or. gap > tool_search .or. facing <= tangential) return
+      if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return
+      if (facing <= tangential) return
       state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
           + gap*model%phase(state%phase)%direction(:, tool)
     end do
@@ -141,7 +142,7 @@ contains
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
           state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
-          tool_search, model%contact_depth, hit)
+          model%tolerance%tool_search, model%contact_depth, hit)
       if (.not. hit%found) cycle
       gap = min(gap, hit%distance)
       facing = max(facing, dot_product(hit%normal, model%phase(state%phase)%direction(:, tool)))

@@ -10,7 +10,7 @@ module dd3_process_phase_warnings
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : tangential, tool_search, touch
+  use dd3_model_tolerances, only : tangential
   use dd3_process_phase_start, only : gap_of_tool
   implicit none
   private
@@ -38,11 +38,11 @@ contains
         if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
         if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
         call gap_of_tool(model, tool, state, gap, facing)
-        if (facing > tangential .and. gap <= touch) cycle
+        if (facing > tangential .and. gap <= model%tolerance%touch) cycle
         text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
             "' does not meet the sheet along its force"
-        if (gap <= tool_search .and. facing < -tangential) text = "warning: in phase '"// &
-            phase%name//"' the force on tool '"//model%tool(tool)%name// &
+        if (gap <= model%tolerance%tool_search .and. facing < -tangential) text = &
+            "warning: in phase '"//phase%name//"' the force on tool '"//model%tool(tool)%name// &
             "' points away from the sheet; is its sign wrong?"
         return
       end do
@@ -94,7 +94,7 @@ contains
       associate (x => state%x(:, model%contact_node(c)))
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
-            touch, model%contact_depth, hit)
+            model%tolerance%touch, model%contact_depth, hit)
         if (.not. hit%found) cycle
         do d = 0, 3
           direction = hit%normal

@@ -4,9 +4,7 @@ module dd3_process_residual
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : touch
   use dd3_system_contact, only : contact_work_t, evaluate_contact
   use dd3_system_system, only : system_t
   implicit none
@@ -49,25 +47,28 @@ contains
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
             trial%tool_load(:, tool) + trial%tool_force(:, tool))
-        problem%tool_prescribed(:, tool) = motion_to_contact(contact, phase, trial, tool)
+        problem%tool_prescribed(:, tool) = motion_to_contact(contact, model, trial, tool)
       end do
     end associate
   end subroutine evaluate_forces
 
   !> Return the displacement of a pressed tool that has lost the sheet back to contact, mm; zero for
   !> the others.
-  pure function motion_to_contact(contact, phase, trial, tool) result(motion)
+  pure function motion_to_contact(contact, model, trial, tool) result(motion)
     type(contact_work_t), intent(in) :: contact
-    type(phase_t), intent(in) :: phase
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     integer, intent(in) :: tool
     real(wp) :: motion(3)
 
     motion = 0.0_wp
-    if (.not. phase%pressed(tool) .or. norm2(trial%tool_load(:, tool)) <= 0.0_wp) return
-    if (.not. any(contact%tool == tool)) return
-    if (any(contact%tool == tool .and. contact%status /= status_gap)) return
-    motion = phase%direction(:, tool)*(minval(contact%distance, mask=contact%tool == tool) + touch)
+    associate (phase => model%phase(trial%phase))
+      if (.not. phase%pressed(tool) .or. norm2(trial%tool_load(:, tool)) <= 0.0_wp) return
+      if (.not. any(contact%tool == tool)) return
+      if (any(contact%tool == tool .and. contact%status /= status_gap)) return
+      motion = phase%direction(:, tool) &
+          *(minval(contact%distance, mask=contact%tool == tool) + model%tolerance%touch)
+    end associate
   end function motion_to_contact
 
   !> Return the scale of the force on a pressed tool, N. The scale of one that is eased to zero is a

@@ -7,7 +7,6 @@ module dd3_system_contact
       status_gap, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : hysteresis, tool_search, touch
   implicit none
   private
   public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact
@@ -108,7 +107,7 @@ contains
       do c = 1, model%n_contact
         hint = committed%hint(:, c)
         tool = committed%contact_tool(c)
-        call find_nearest_tool(model, committed, c, tool_search, tool, hint, hit)
+        call find_nearest_tool(model, committed, c, model%tolerance%tool_search, tool, hint, hit)
         self%tool(c) = tool
         self%lambda(:, c) = committed%lambda(:, c)
         self%status(c) = committed%status(c)
@@ -121,7 +120,8 @@ contains
         if (.not. touching(tool)) then
           leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
           self%status(c) = status_gap
-          if (hit%distance <= touch .and. .not. leaving) self%status(c) = status_stick
+          if (hit%distance <= model%tolerance%touch .and. .not. leaving) self%status(c) = &
+              status_stick
         end if
         call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
             self%lambda(:, c), no_slip, phase%penalty, model%tool(tool)%friction, &
@@ -172,7 +172,7 @@ contains
             search_distance, model%contact_depth, hit)
         if (.not. hit%found) cycle
         distance = hit%distance
-        if (t == previous) distance = distance - hysteresis
+        if (t == previous) distance = distance - model%tolerance%hysteresis
         if (distance >= best) cycle
         best = distance
         tool = t
