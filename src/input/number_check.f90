@@ -52,9 +52,9 @@ contains
     if (required == 0 .or. given == required) return
     values = " values"
     if (required == 1) values = " value"
-    ! The caret is below the first excess value, or below the last one where some are missing.
-    call errors%push_input(entry%value(min(given, required + 1))%at, "expected "//to_text(required)// &
-        values//", got "//to_text(given), expected)
+    ! The caret is below the first excess value or, if some are missing, below the last one.
+    call errors%push_input(entry%value(min(given, required + 1))%at, "expected "// &
+        to_text(required)//values//", got "//to_text(given), expected)
   end subroutine check_count
 
   !> Append a word as a real number to the numbers of an entry.
