@@ -19,7 +19,7 @@ contains
     type(parameter_t), intent(in) :: row
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i, n_expected, before
+    integer :: i, required, before
 
     before = errors%count
     do i = 1, size(entry%value)
@@ -32,16 +32,16 @@ contains
       call check_range(entry%number(i), row, entry%value(i)%at, describe(row), errors)
     end do
     if (errors%count > before) return
-    n_expected = row%count
-    if (row%kind == kind_real .or. row%kind == kind_integer) n_expected = 1
-    call check_count(entry, n_expected, describe(row), errors)
+    required = row%count
+    if (row%kind == kind_real .or. row%kind == kind_integer) required = 1
+    call check_count(entry, required, describe(row), errors)
   end subroutine check_numbers
 
   !> Check the number of values in an entry.
-  subroutine check_count(entry, n_expected, expected, errors)
+  subroutine check_count(entry, required, expected, errors)
     type(entry_t), intent(in) :: entry
     !> Number of values required; 0 for any number.
-    integer, intent(in) :: n_expected
+    integer, intent(in) :: required
     character(len=*), intent(in) :: expected
     type(error_list_t), intent(inout) :: errors
 
@@ -49,12 +49,12 @@ contains
     integer :: given
 
     given = size(entry%value)
-    if (n_expected == 0 .or. given == n_expected) return
+    if (required == 0 .or. given == required) return
     values = " values"
-    if (n_expected == 1) values = " value"
-    ! The caret is below the first excess value, or below the last one where some are missing.
-    call errors%push_input(entry%value(min(given, n_expected + 1))%at, "expected "//to_text(n_expected)// &
-        values//", got "//to_text(given), expected)
+    if (required == 1) values = " value"
+    ! The caret is below the first excess value or, if some are missing, below the last one.
+    call errors%push_input(entry%value(min(given, required + 1))%at, "expected "// &
+        to_text(required)//values//", got "//to_text(given), expected)
   end subroutine check_count
 
   !> Append a word as a real number to the numbers of an entry.

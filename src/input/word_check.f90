@@ -19,12 +19,12 @@ contains
     type(parameter_t), intent(in) :: row
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i, n_expected, before
+    integer :: i, required, before
 
     before = errors%count
-    n_expected = 1
-    if (row%kind == kind_names) n_expected = row%count
-    call check_count(entry, n_expected, describe(row), errors)
+    required = 1
+    if (row%kind == kind_names) required = row%count
+    call check_count(entry, required, describe(row), errors)
     if (errors%count > before .and. row%kind /= kind_names) return
     if (row%kind == kind_text) then
       if (entry%value(1)%text == "") then
