@@ -6,7 +6,7 @@ module dd3_app_job
   use dd3_base_clock, only : section_names
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_file, only : make_directory, remove_file
-  use dd3_base_file_system, only : folder_of, read_file
+  use dd3_base_file_system, only : folder_of, part_of, read_file
   use dd3_base_interrupt, only : watch_interrupts
   use dd3_base_log, only : log_t
   use dd3_base_text, only : text_t, to_text, slice
@@ -174,6 +174,7 @@ contains
 
     names = ""
     do i = 1, size(result_file)
+      call remove_file(part_of(directory//"/"//trim(result_file(i))), removed)
       call remove_file(directory//"/"//trim(result_file(i)), removed)
       if (removed) names = names//" "//trim(result_file(i))
     end do

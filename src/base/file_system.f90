@@ -6,7 +6,7 @@ module dd3_base_file_system
   use dd3_base_kinds, only : i8
   implicit none
   private
-  public :: read_file, replace_file, sync_file, folder_of, part_of
+  public :: read_file, replace_file, keep_file, sync_file, folder_of, part_of
 
   interface
     !> rename(2).
@@ -65,6 +65,15 @@ contains
     if (posix_rename(part_of(path)//c_null_char, path//c_null_char) /= 0) &
         call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
   end subroutine replace_file
+
+  !> Keep a file that is about to be replaced under its name with a suffix; no-op if there is none.
+  subroutine keep_file(path, suffix)
+    character(len=*), intent(in) :: path, suffix
+
+    integer(c_int) :: ignored
+
+    ignored = posix_rename(path//c_null_char, path//suffix//c_null_char)
+  end subroutine keep_file
 
   !> Wait until the content of an open file is on the disk. Errors are ignored: not all file systems
   !> support this.

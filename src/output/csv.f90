@@ -4,11 +4,11 @@ module dd3_output_csv
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
-  use dd3_base_file_system, only : part_of, read_file, replace_file
-  use dd3_base_text, only : newline
+  use dd3_base_file_system, only : keep_file, part_of, read_file, replace_file
+  use dd3_base_text, only : newline, to_text
   implicit none
   private
-  public :: table_t, quoted, short_real
+  public :: table_t, suffix_kept, quoted, short_real
 
   !> Significant digits of a real number.
   integer, parameter :: digits = 10
@@ -79,9 +79,19 @@ contains
     call self%open(part_of(path), error)
     if (.not. allocated(error)) call self%file%put(text(:last), error)
     if (.not. allocated(error)) call self%file%flush(error)
+    if (.not. (found .or. allocated(error))) call keep_file(path, suffix_kept(increment))
     if (.not. allocated(error)) call replace_file(path, error)
     self%file%path = path
   end subroutine table_resume
+
+  !> Return the suffix of the name under which a record is kept that a restart cannot continue.
+  function suffix_kept(increment) result(suffix)
+    !> Increment of the restart.
+    integer, intent(in) :: increment
+    character(len=:), allocatable :: suffix
+
+    suffix = ".until_"//to_text(increment)
+  end function suffix_kept
 
   !> Return the length of a table up to the last row of an increment; 0 if the table has another
   !> heading or lacks that increment.

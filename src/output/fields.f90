@@ -6,9 +6,10 @@ module dd3_output_fields
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_file, only : file_t
-  use dd3_base_file_system, only : part_of, replace_file
+  use dd3_base_file_system, only : keep_file, part_of, replace_file
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_output_csv, only : suffix_kept
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, field_table
   use dd3_output_field_values, only : cell_offsets, field_values
   use dd3_output_field_series, only : append, close_attribute, close_group, close_target, &
@@ -101,6 +102,7 @@ contains
       if (.not. (found .or. allocated(error))) call create(self, model, part_of(path), error)
     end if
     call close_hdf5(old)
+    if (.not. (found .or. allocated(error))) call keep_file(path, suffix_kept(state%increment))
     if (.not. allocated(error)) call replace_file(path, error)
     self%guard%path = path
   end subroutine fields_resume

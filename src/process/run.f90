@@ -125,7 +125,8 @@ contains
       call log%say("restart after increment "//to_text(run%committed%increment)//" of phase '"// &
           model%phase(run%committed%phase)%name//"'")
       if (len(lost) > 0) call log%say("warning: these records begin at the restart, as those "// &
-          "of the earlier run are missing or have other columns:"//lost)
+          "of the earlier run are missing or have other columns:"//lost// &
+          "; earlier files in the folder are kept as *.until_<increment>")
     else
       call run%records%open(model, start%directory, run%committed, error)
     end if
