@@ -133,7 +133,7 @@ def changed(runner, work):
         check(f"restart after increment {first} of phase 'deeper'" in said, f"{name}: {said}")
         warning = [line for line in said.splitlines() if "begin at the restart" in line]
         if lost:
-            check(len(warning) == 1 and warning[0].endswith(": " + lost), f"{name}: {said}")
+            check(len(warning) == 1 and f": {lost};" in warning[0], f"{name}: {said}")
         else:
             check(not warning, f"{name}: {warning}")
         rows = table(output / "status.csv")
