@@ -18,8 +18,8 @@ module dd3_output_records
     type(status_record_t), private :: status
     type(field_record_t), private :: fields
     character(len=:), allocatable, private :: directory
-    !> Increment of the last restart file.
-    integer, private :: restart_increment = 0
+    !> Increment of the last restart file, and of the last fields that it knows of.
+    integer, private :: restart_increment = 0, restart_fields = 0
   contains
     procedure :: open => records_open
     procedure :: resume => records_resume
@@ -49,6 +49,7 @@ contains
     if (.not. allocated(error)) call self%fields%open(model, directory, error)
     if (.not. allocated(error)) call self%history%write(model, state, error)
     if (.not. allocated(error)) call write_fields(self, model, state, error)
+    self%restart_fields = state%fields_increment
   end subroutine records_open
 
   !> Continue the records of an earlier run from a restart on. Rows and steps after the restart are
@@ -87,6 +88,7 @@ contains
     end if
     ! In another folder, or from another file, a restart file there would not fit the records.
     if (.not. allocated(error)) call write_restart(directory, model, state, error)
+    self%restart_fields = state%fields_increment
   end subroutine records_resume
 
   !> Add the row of an attempt to status.csv.
@@ -152,18 +154,23 @@ contains
     if (.not. allocated(error)) state%fields_increment = state%increment
   end subroutine write_fields
 
-  !> Write the restart file, once per increment; the rows before it go to the disk first.
+  !> Write the restart file, once per increment and again when its fields have been written since;
+  !> the rows before it go to the disk first.
   subroutine save(self, model, state, error)
     type(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
 
-    if (.not. model%output%restart .or. state%increment == self%restart_increment) return
+    if (.not. model%output%restart) return
+    if (state%increment == self%restart_increment .and. &
+      state%fields_increment == self%restart_fields) return
     call self%history%flush(error)
     if (.not. allocated(error)) call self%status%flush(error)
     if (.not. allocated(error)) call write_restart(self%directory, model, state, error)
-    if (.not. allocated(error)) self%restart_increment = state%increment
+    if (allocated(error)) return
+    self%restart_increment = state%increment
+    self%restart_fields = state%fields_increment
   end subroutine save
 
   !> Write the last state and close the records. The fields of the last state are no output that was
