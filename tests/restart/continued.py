@@ -51,9 +51,12 @@ def snapshots(runner, deck, output, settings):
             now = identity(source)
             if now is None or now == seen:
                 continue
-            seen = now
             copy = output / f"{len(found)}.h5"
-            os.link(source, copy)
+            try:
+                os.link(source, copy)
+            except FileNotFoundError:  # replaced by the next one in between
+                continue
+            seen = now
             found[len(found)] = copy
     check(process.returncode == 0, f"exit code {process.returncode} instead of 0")
     by_increment = {}
