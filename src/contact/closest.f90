@@ -5,8 +5,8 @@
 !> equal ones it prefers the patch of the last query. All other queries are local: they start from
 !> the last closest point and cross edges to neighbouring patches. Patches are extended by a narrow
 !> band beyond smooth edges, so that a node near such an edge does not change patch in every
-!> iteration. A node deeper inside the tool than a given depth is on its wrong side and not in
-!> contact.
+!> iteration. A node deeper inside the tool than a given depth, and one where the sheet turns its
+!> face away from the tool, has not come through this part of the surface and is not in contact.
 !> Source: Wang and Makinouchi, inside-outside contact search, in: Nakamachi, Makinouchi
 !> (eds.), Proc. NUMISHEET (1996); Oliveira, Alves and Menezes, Arch. Comput. Methods Eng. 15
 !> (2008) 113-162.
@@ -49,12 +49,14 @@ module dd3_contact_closest
     real(wp) :: x(3)
     !> Largest distances of a contact outside and inside the tool, mm.
     real(wp) :: search_distance, depth
+    !> Outward normal of the sheet; zero if unknown.
+    real(wp) :: outward(3) = 0.0_wp
   end type query_t
 
 contains
 
   !> Find the closest point of a surface to a node.
-  pure subroutine find_contact(surface, x, hint, search_distance, depth, hit)
+  pure subroutine find_contact(surface, x, hint, search_distance, depth, hit, outward)
     type(surface_t), intent(in) :: surface
     !> Position of the node in the surface's frame, mm.
     real(wp), intent(in) :: x(3)
@@ -64,11 +66,14 @@ contains
     !> Largest depth of a contact inside the tool, mm.
     real(wp), intent(in) :: depth
     type(hit_t), intent(out) :: hit
+    !> Outward normal of the sheet at the node: the tool's must be opposite.
+    real(wp), intent(in), optional :: outward(3)
 
     type(query_t) :: query
     real(wp) :: moved
 
     query = query_t(x, search_distance, depth)
+    if (present(outward)) query%outward = outward
     if (.not. hint%due) then
       moved = sum((x - hint%anchor)**2)
       if (hint%patch == 0) then
@@ -102,13 +107,13 @@ contains
     if (hit%found) call keep_point(hint, hit)
   end subroutine search_locally
 
-  !> Discard a hit that is too far outside or too deep inside.
+  !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
   pure subroutine apply_limits(hit, query)
     type(hit_t), intent(inout) :: hit
     type(query_t), intent(in) :: query
 
     hit%found = hit%found .and. hit%distance <= query%search_distance &
-        .and. hit%distance > -query%depth
+        .and. hit%distance > -query%depth .and. dot_product(hit%normal, query%outward) <= 0.0_wp
   end subroutine apply_limits
 
   !> Keep the closest point for the next query.

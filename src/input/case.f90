@@ -173,6 +173,10 @@ module dd3_input_case
     real(wp) :: cutback_factor = 0.0_wp
     !> Minimum of r; the run stops below it.
     real(wp) :: cutback_min = 0.0_wp
+    !> Iterations that the size of the increments is steered to; 0: not steered.
+    integer :: target_iterations = 0
+    !> Whether the status of candidates that cycle is held, and whether iterations are damped.
+    logical :: active_set = .false., damping = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.

@@ -201,7 +201,7 @@ contains
     end if
     if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
       call errors%push_input(whole_file, "the block *CONTACT is missing", &
-          "*CONTACT with a penalty, as there are tools")
+          "*CONTACT, as there are tools")
     end if
   end subroutine check_presence
 

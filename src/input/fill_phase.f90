@@ -216,6 +216,10 @@ contains
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
     if (block%has("cutback_factor")) newton%cutback_factor = block%number("cutback_factor")
     if (block%has("cutback_min")) newton%cutback_min = block%number("cutback_min")
+    if (block%has("target_iterations")) &
+        newton%target_iterations = nint(block%number("target_iterations"))
+    if (block%has("active_set")) newton%active_set = block%number("active_set") > 0.5_wp
+    if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp
   end subroutine fill_newton
 
   !> Set the contact's settings that a block gives.

@@ -93,8 +93,8 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     key = [ &
-      row("penalty", kind_real, "N/mm", "", "penalty of the augmented Lagrangian", lower=zero, &
-          lower_open=.true.), &
+      row("penalty", kind_real, "N/mm", "-", "penalty of the augmented Lagrangian; default: "// &
+          "from stiffness, thickness and mesh", lower=zero, lower_open=.true.), &
       row("search_distance", kind_real, "mm", "-", &
           "search distance of the tools; default: the thickness of the sheet", lower=zero, &
           lower_open=.true.)]
@@ -114,11 +114,11 @@ contains
     integer :: i
 
     key = [ &
-      row("strain", kind_real, "", "0.005", "maximum strain increment"), &
-      row("rotation", kind_real, "degrees", "0.05", "maximum rotation increment"), &
-      row("stress_tangential", kind_real, "", "3.0", &
+      row("strain", kind_real, "", "0.05", "maximum strain increment"), &
+      row("rotation", kind_real, "degrees", "2", "maximum rotation increment"), &
+      row("stress_tangential", kind_real, "", "off", &
           "maximum stress increment tangential to the yield surface, over the flow stress"), &
-      row("stress_normal", kind_real, "", "1.0", &
+      row("stress_normal", kind_real, "", "off", &
           "maximum stress increment normal to the yield surface, over the flow stress"), &
       row("force", kind_reals, "", "off", "bounds c d e on the change of the contact forces", &
           count=3), &
@@ -142,12 +142,18 @@ contains
           lower=zero, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1.0e6_wp), &
-      row("cutback", kind_logical, "", "off", &
+      row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
       row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", lower=zero, &
           upper=1.0_wp, lower_open=.true., upper_open=.true.), &
       row("cutback_min", kind_real, "", "1e-5", "minimum of r; the run stops below it", &
-          lower=zero, lower_open=.true.)]
+          lower=zero, lower_open=.true.), &
+      row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
+          "the increments is steered to; 0: not steered", lower=zero, upper=1.0e6_wp), &
+      row("active_set", kind_logical, "", "on", &
+          "on: hold the contact status of nodes where it cycles, then release the worst violator"), &
+      row("damping", kind_logical, "", "on", &
+          "on: shorten an iteration that moves a node too far or inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)

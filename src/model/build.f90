@@ -17,6 +17,8 @@ module dd3_model_build
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
+  use dd3_model_outward_normals, only : find_contact_faces
+  use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
@@ -142,7 +144,6 @@ contains
     model%connectivity = mesh%connectivity
     model%material_of = mesh%material
     model%thickness = mesh%thickness
-    model%contact_depth = 0.5_wp*mesh%thickness
     model%tolerance = new_tolerances(mesh%thickness, mesh%x)
     call new_element_work(work, model%element)
     do e = 1, model%n_element
@@ -172,6 +173,8 @@ contains
     model%candidate = member(:, model%contact_node)
     allocate (model%candidate_of(model%n_node), source=0)
     model%candidate_of(model%contact_node) = [(i, i=1, model%n_contact)]
+    call find_contact_faces(model)
+    call set_contact_stiffness(model, model%material(model%material_of(1))%young)
     allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool

@@ -60,8 +60,6 @@ module dd3_model_model
     real(wp), allocatable :: axes(:, :, :)
     !> Thickness of the sheet at the start, mm.
     real(wp) :: thickness = 0.0_wp
-    !> Depth inside a tool down to which a node still counts as touching it, mm.
-    real(wp) :: contact_depth = 0.0_wp
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.
@@ -70,6 +68,10 @@ module dd3_model_model
     integer, allocatable :: candidate_of(:)
     !> Tools that a candidate can touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
+    !> Stiffness of the sheet through its thickness under each candidate, `(n_contact)`, N/mm.
+    real(wp), allocatable :: contact_stiffness(:)
+    !> Nodes of the faces on which a tool can touch the sheet, `(n_face_node, n_contact_face)`.
+    integer, allocatable :: contact_face(:, :)
     !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
     !> tool is never pressed.
     integer, allocatable :: tool_row(:)

@@ -27,6 +27,10 @@ module dd3_model_tolerances
     real(wp) :: tool_search = 0.0_wp
     !> Distance up to which a tool is looked for at the start.
     real(wp) :: start_search = 0.0_wp
+    !> Depth inside a tool that an accepted increment may leave.
+    real(wp) :: depth = 0.0_wp
+    !> Depth down to which a candidate of a committed state is found.
+    real(wp) :: committed_depth = 0.0_wp
   end type tolerances_t
 
 contains
@@ -46,6 +50,8 @@ contains
     self%hysteresis = 1.0e-6_wp*thickness
     self%tool_search = 100.0_wp*diagonal
     self%start_search = 1000.0_wp*diagonal
+    self%depth = 1.0e-3_wp*thickness
+    self%committed_depth = 2.0_wp*max(start_depth, self%depth)
   end function new_tolerances
 
 end module dd3_model_tolerances

@@ -28,6 +28,19 @@ module dd3_process_attempt
     !> Contact status in the last iterations, the newest first, `(n_contact, status_memory)`; -1
     !> before the first one.
     integer, allocatable :: status(:, :)
+    !> Number of changes of the status of each candidate since the first iteration, and whether it
+    !> slips backwards in the last one, `(n_contact)`.
+    integer, allocatable :: changes(:)
+    logical, allocatable :: reversed(:)
+    !> Tangential contact forces in the last iteration, `(3, n_contact)`, N.
+    real(wp), allocatable :: tangential(:, :)
+    !> Counts of remedies: candidates held, releases of held ones, iterations damped.
+    integer :: held = 0, released = 0, damped = 0
+    !> Number of times that held candidates were released.
+    integer :: releases = 0
+    !> Fraction of the last solution in the trial state, and the reductions that led to it.
+    real(wp) :: step = 1.0_wp
+    integer :: reductions = 0
     !> Node with the largest residual, and that residual, N.
     integer :: worst_node = 0
     real(wp) :: worst_residual = 0.0_wp
@@ -70,9 +83,20 @@ contains
     integer, intent(in) :: n_contact
 
     self%criterion = [real(wp) ::]
-    if (.not. allocated(self%status)) &
-        allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
+    if (.not. allocated(self%status)) then
+      allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
+      allocate (self%changes(n_contact), self%reversed(n_contact), self%tangential(3, n_contact))
+    end if
     self%status = -1
+    self%changes = 0
+    self%reversed = .false.
+    self%tangential = 0.0_wp
+    self%held = 0
+    self%released = 0
+    self%releases = 0
+    self%damped = 0
+    self%step = 1.0_wp
+    self%reductions = 0
     self%lambda_increment = 0.0_wp
     self%worst_node = 0
     self%worst_residual = 0.0_wp

@@ -60,6 +60,9 @@ contains
 
     associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
+      row%held = correction%held
+      row%released = correction%released
+      row%damped = correction%damped
       if (size(correction%criterion) > 0) &
           row%criterion = correction%criterion(size(correction%criterion))
       if (verdict%element > 0) then

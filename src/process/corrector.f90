@@ -6,15 +6,17 @@ module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_process_active_set, only : hold_cycling, record_status, release_violators
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
   use dd3_process_balance, only : balance_tools
+  use dd3_process_newton_step, only : advance, retreat
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force, tool_force_tolerance
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_reduced, only : contact_force_increment
+  use dd3_system_contact, only : contact_work_t, not_held
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -23,8 +25,6 @@ module dd3_process_corrector
 
   !> Fraction of the tolerance of the criterion below which all but the tool forces has converged.
   real(wp), parameter :: settled = 0.1_wp
-  !> Largest displacement in an iteration, divided by the thickness of the sheet.
-  real(wp), parameter :: largest_step = 20.0_wp
   !> Strain whose force on the square of the thickness is the smallest scale of the criterion: in a
   !> free sheet at rest all forces are round-off.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
@@ -46,6 +46,7 @@ contains
     character(len=:), allocatable :: changes
 
     call clear_correction(attempt%correction, model%n_contact)
+    system%contact%held = not_held
     call iterate(model, committed, trial, system, attempt)
     associate (verdict => attempt%verdict)
       if (verdict%outcome == verdict_converged) return
@@ -67,7 +68,7 @@ contains
     type(attempt_t), intent(inout) :: attempt
 
     integer :: j
-    logical :: moved
+    logical :: moved, changed
 
     system%problem%prescribed = 0.0_wp
     system%problem%tool_prescribed = 0.0_wp
@@ -77,12 +78,17 @@ contains
         verdict%iterations = j
         call evaluate(model, committed, trial, system, attempt)
         if (verdict%outcome /= verdict_converged) return
-        correction%status(:, 2:) = correction%status(:, :status_memory - 1)
+        call record_status(correction, system%contact, j)
         call check_convergence(model, trial, system, attempt)
         if (verdict%outcome /= verdict_converged .and. j > 1 &
             .and. verdict%norm < settled*phase%newton%tolerance) then
           call balance_tools(model, committed, trial, system, moved)
           if (moved) call check_convergence(model, trial, system, attempt)
+        end if
+        if (phase%newton%active_set) then
+          call update_active_set(correction, system%contact, phase%newton%tolerance, verdict, &
+              changed)
+          if (changed) call evaluate_forces(model, committed, trial, system)
         end if
         if (verdict%outcome == verdict_converged) then
           trial%lambda = system%contact%force
@@ -102,6 +108,25 @@ contains
       verdict%norm = correction%criterion(phase%newton%iterations)
     end associate
   end subroutine iterate
+
+  !> Hold candidates whose status cycles, or release them once the iterations have converged.
+  subroutine update_active_set(correction, contact, tolerance, verdict, changed)
+    type(correction_t), intent(inout) :: correction
+    type(contact_work_t), intent(inout) :: contact
+    !> Of the criterion of convergence.
+    real(wp), intent(in) :: tolerance
+    !> Converged before; a retry if held candidates violate the contact law.
+    type(verdict_t), intent(inout) :: verdict
+    !> Whether the contact must be evaluated again.
+    logical, intent(out) :: changed
+
+    if (verdict%norm < tolerance) then
+      call release_violators(correction, contact, changed)
+      if (changed) verdict%outcome = verdict_retry
+    else
+      call hold_cycling(correction, contact, changed)
+    end if
+  end subroutine update_active_set
 
   !> Set the reason why the last iteration did not converge: a pressed tool without contact, the
   !> force on a tool, or the residual of a node; empty if the contact status has not settled.
@@ -136,7 +161,8 @@ contains
   end subroutine explain
 
   !> Evaluate stresses, internal forces, contact and residuals of the trial state; in the first
-  !> iteration, which is never the last, the stiffness too.
+  !> iteration, which is never the last, the stiffness too. A step that inverts an element is
+  !> shortened if the iterations are damped.
   subroutine evaluate(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
@@ -146,11 +172,18 @@ contains
     type(attempt_t), intent(inout) :: attempt
 
     integer :: j
+    logical :: again
 
     j = attempt%verdict%iterations
     call system%profile%start()
-    call update_material(system, model, committed, trial, j == 1, attempt%verdict)
-    attempt%verdict%iterations = j
+    again = .true.
+    do while (again)
+      call update_material(system, model, committed, trial, j == 1, attempt%verdict)
+      attempt%verdict%iterations = j
+      again = attempt%verdict%outcome /= verdict_converged &
+          .and. model%phase(trial%phase)%newton%damping
+      if (again) call retreat(model, committed, trial, system, attempt, again)
+    end do
     call system%profile%add(section_material)
     if (attempt%verdict%outcome /= verdict_converged) return
     call evaluate_forces(model, committed, trial, system)
@@ -168,7 +201,7 @@ contains
 
     real(wp) :: sum_of_squares, scale
     integer :: j, tool
-    logical :: forces_met
+    logical :: forces_met, outside
 
     call residual_norm(model, trial, system, attempt%correction, sum_of_squares)
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
@@ -192,10 +225,10 @@ contains
       j = verdict%iterations
       correction%criterion = [correction%criterion(:j - 1), &
           (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
-      correction%status(:, 1) = contact%status
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
-      if (j > 1 .and. forces_met .and. verdict%norm < phase%newton%tolerance) &
+      outside = all(contact%distance >= -model%tolerance%depth .or. contact%tool == 0)
+      if (j > 1 .and. forces_met .and. outside .and. verdict%norm < phase%newton%tolerance) &
           verdict%outcome = verdict_converged
     end associate
   end subroutine check_convergence
@@ -233,46 +266,6 @@ contains
     end associate
     correction%worst_residual = sqrt(max(correction%worst_residual, 0.0_wp))
   end subroutine residual_norm
-
-  !> Add the solution to the trial state.
-  subroutine advance(model, trial, system, attempt)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: trial
-    !> Solved.
-    type(system_t), intent(in) :: system
-    !> Gets the increment of the contact forces; a verdict to retry if the solution is too large.
-    type(attempt_t), intent(inout) :: attempt
-
-    real(wp) :: largest
-    integer :: node, worst, tool, row
-
-    associate (solution => system%problem%solution, verdict => attempt%verdict, &
-        increment => attempt%correction%lambda_increment)
-      largest = 0.0_wp
-      worst = 0
-      do node = 1, model%n_node
-        if (maxval(abs(solution(3*node - 2:3*node))) <= largest) cycle
-        largest = maxval(abs(solution(3*node - 2:3*node)))
-        worst = node
-      end do
-      if (.not. largest <= largest_step*model%thickness) then
-        verdict%outcome = verdict_retry
-        verdict%node = worst
-        verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
-        return
-      end if
-      trial%x = trial%x + reshape(solution(:3*model%n_node), [3, model%n_node])
-      call contact_force_increment(model, model%phase(trial%phase), system%contact, &
-          system%stiffness, system%problem, increment)
-      trial%lambda = trial%lambda + increment
-      do tool = 1, model%n_tool
-        row = model%tool_row(tool)
-        if (row == 0) cycle
-        trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
-            + solution(3*row - 2:3*row)
-      end do
-    end associate
-  end subroutine advance
 
   !> Return a list of the nodes whose status did not settle in the last iterations; empty if there
   !> are none.

@@ -20,6 +20,8 @@ module dd3_process_increment
 
   !> Factor on r_cap after an accepted increment; value of r_cap above which the bound is removed.
   real(wp), parameter :: r_cap_factor = 1.5_wp, largest_r_cap = 1.0e3_wp
+  !> Smallest factor on r after an increment that took more iterations than the target.
+  real(wp), parameter :: smallest_factor = 0.5_wp
 
 contains
 
@@ -87,14 +89,27 @@ contains
 
   !> Commit the trial state. A cut-back sets a bound of r, which every accepted increment raises; a
   !> failed increment leaves none, so that a restart repeats its attempts.
-  subroutine accept_increment(trial, stepper, committed)
+  subroutine accept_increment(model, trial, stepper, committed)
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
+    real(wp) :: factor
+
     committed = trial
-    if (stepper%attempt%number > 1) committed%r_cap = stepper%attempt%limit%r
-    if (committed%r_cap < huge(1.0_wp)/r_cap_factor) committed%r_cap = committed%r_cap*r_cap_factor
+    factor = r_cap_factor
+    associate (attempt => stepper%attempt, newton => model%phase(trial%phase)%newton)
+      if (newton%target_iterations > 0 .and. &
+          attempt%verdict%iterations > newton%target_iterations) then
+        factor = max(smallest_factor, &
+            sqrt(real(newton%target_iterations, wp)/attempt%verdict%iterations))
+        committed%r_cap = attempt%limit%r
+      else if (attempt%number > 1) then
+        committed%r_cap = attempt%limit%r
+      end if
+    end associate
+    if (committed%r_cap < huge(1.0_wp)/r_cap_factor) committed%r_cap = committed%r_cap*factor
     if (committed%r_cap > largest_r_cap) committed%r_cap = huge(1.0_wp)
     committed%solver_memory = stepper%system%solver%memory
   end subroutine accept_increment

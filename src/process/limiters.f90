@@ -37,6 +37,9 @@ module dd3_process_limiters
     logical :: above_r_min = .false.
   end type limiter_t
 
+  !> Predicted depth of a candidate inside a tool in contact that limits r, over the thickness.
+  real(wp), parameter :: largest_depth = 0.25_wp
+
 contains
 
   !> Return the limiters in the order of their evaluation; the first of equal bounds wins.
@@ -234,8 +237,8 @@ contains
   end function ellipsoid_norm
 
   !> Limit the approach of candidates and tools. A tool without contact advances to contact and no
-  !> further, because the predictor ignores the resistance behind a gap. Below a tool in contact no
-  !> candidate penetrates so deep that it would be lost on the wrong side.
+  !> further, because the predictor ignores the resistance behind a gap. Below a tool in contact the
+  !> predicted depth of the candidates that close is bounded.
   function gap_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -259,7 +262,7 @@ contains
         approach = dot_product(prediction%tool_displacement(:, tool) &
             - prediction%displacement(:, node), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
-        depth = merge(0.5_wp*model%contact_depth, 0.5_wp*model%tolerance%touch, touching(tool))
+        depth = merge(largest_depth*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
             name=merge("gap          ", "first contact", touching(tool)))

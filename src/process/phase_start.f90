@@ -6,6 +6,7 @@ module dd3_process_phase_start
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
   use dd3_model_model, only : model_t
+  use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
@@ -133,8 +134,10 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
+    real(wp) :: outward(3, model%n_contact)
     integer :: c
 
+    outward = outward_normals(model, state%x)
     gap = huge(1.0_wp)
     facing = -1.0_wp
     do c = 1, model%n_contact
@@ -142,7 +145,8 @@ contains
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
           state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
-          model%tolerance%tool_search, model%contact_depth, hit)
+          model%tolerance%tool_search, model%tolerance%committed_depth, hit, &
+          outward(:, c))
       if (.not. hit%found) cycle
       gap = min(gap, hit%distance)
       facing = max(facing, dot_product(hit%normal, model%phase(state%phase)%direction(:, tool)))

@@ -94,7 +94,7 @@ contains
       associate (x => state%x(:, model%contact_node(c)))
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
-            model%tolerance%touch, model%contact_depth, hit)
+            model%tolerance%touch, model%tolerance%committed_depth, hit)
         if (.not. hit%found) cycle
         do d = 0, 3
           direction = hit%normal

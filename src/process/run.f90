@@ -216,7 +216,7 @@ contains
         run%summary%retries = run%summary%retries + 1
       end do
       if (attempt%verdict%outcome == verdict_converged) then
-        call accept_increment(run%trial, stepper, run%committed)
+        call accept_increment(model, run%trial, stepper, run%committed)
         run%summary%increments = run%committed%increment
       else if (.not. allocated(error)) then
         call fatal_error(error, failure_message(model, run%committed, stepper))

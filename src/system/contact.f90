@@ -3,13 +3,18 @@
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
-  use dd3_contact_operator, only : contact_operator, contact_operator_of_status, round_off, &
-      status_gap, status_stick
+  use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
+      contact_violation, round_off, status_gap, status_stick
   use dd3_model_model, only : model_t
+  use dd3_model_penalty, only : contact_penalty
+  use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact
+  public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact, not_held
+
+  !> Value of `held` of a candidate whose status is not held.
+  integer, parameter :: not_held = -1
 
   !> Contact of the candidates.
   type :: contact_work_t
@@ -27,6 +32,12 @@ module dd3_system_contact
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
     real(wp), allocatable :: d(:, :, :), e(:, :, :)
+    !> Status that a candidate is held in, `(n_contact)`, or `not_held`; the status by the contact
+    !> law; and the force by which it violates the one held, N.
+    integer, allocatable :: held(:), natural(:)
+    real(wp), allocatable :: violation(:)
+    !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
+    real(wp), allocatable :: outward(:, :)
   end type contact_work_t
 
 contains
@@ -41,9 +52,12 @@ contains
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
         source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
+    allocate (self%outward(3, n_contact), self%violation(n_contact), source=0.0_wp)
+    allocate (self%held(n_contact), self%natural(n_contact), source=not_held)
   end subroutine new_contact_work
 
-  !> Evaluate the contact in a trial state: search, status, force and linearisation.
+  !> Evaluate the contact in a trial state: search, status, force and linearisation. The outward
+  !> normals are those of the predictor.
   subroutine evaluate_contact(self, model, committed, trial)
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -62,7 +76,8 @@ contains
         node = model%contact_node(c)
         tool = trial%contact_tool(c)
         hint = trial%hint(:, c)
-        call find_nearest_tool(model, trial, c, phase%search_distance, tool, hint, hit)
+        call find_nearest_tool(model, committed, trial, c, self%outward(:, c), &
+            phase%search_distance, tool, hint, hit)
         trial%contact_tool(c) = tool
         trial%hint(:, c) = hint
         self%tool(c) = tool
@@ -74,14 +89,36 @@ contains
               + committed%tool_displacement(:, tool)
           self%distance(c) = hit%distance
           self%normal(:, c) = hit%normal
-          call contact_operator(hit%normal, hit%distance, hit%dnormal, self%lambda(:, c), slip, &
-              phase%penalty, model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), &
-              self%e(:, :, c), self%status(c))
+          call evaluate_candidate(self, c, hit, slip, contact_penalty(model, phase, c), &
+              model%tool(tool)%friction)
         end if
         trial%status(c) = self%status(c)
       end do
     end associate
   end subroutine evaluate_contact
+
+  !> Evaluate status, force and linearisation of a candidate near a tool.
+  subroutine evaluate_candidate(self, c, hit, slip, penalty, friction)
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
+    type(hit_t), intent(in) :: hit
+    !> Slip, mm; penalty, N/mm; coefficient of friction.
+    real(wp), intent(in) :: slip(3), penalty, friction
+
+    self%natural(c) = contact_status(hit%normal, hit%distance, self%lambda(:, c), slip, penalty, &
+        friction)
+    self%status(c) = self%natural(c)
+    self%violation(c) = 0.0_wp
+    if (self%held(c) /= not_held) then
+      self%status(c) = self%held(c)
+      self%violation(c) = contact_violation(self%held(c), hit%normal, hit%distance, &
+          self%lambda(:, c), slip, penalty, friction)
+    end if
+    ! A node held in contact under tension slips without friction.
+    call contact_operator_of_status(self%status(c), hit%normal, hit%distance, hit%dnormal, &
+        self%lambda(:, c), slip, penalty, merge(0.0_wp, friction, self%natural(c) == status_gap), &
+        self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+  end subroutine evaluate_candidate
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
@@ -97,17 +134,19 @@ contains
     logical :: touching(model%n_tool), leaving
     integer :: c, tool
 
+    self%outward = outward_normals(model, committed%x)
     associate (phase => model%phase(committed%phase))
       touching = .false.
       do c = 1, model%n_contact
         if (committed%status(c) == status_gap) cycle
-        if (norm2(committed%lambda(:, c)) <= phase%penalty*round_off) cycle
+        if (norm2(committed%lambda(:, c)) <= contact_penalty(model, phase, c)*round_off) cycle
         touching(committed%contact_tool(c)) = .true.
       end do
       do c = 1, model%n_contact
         hint = committed%hint(:, c)
         tool = committed%contact_tool(c)
-        call find_nearest_tool(model, committed, c, model%tolerance%tool_search, tool, hint, hit)
+        call find_nearest_tool(model, committed, committed, c, self%outward(:, c), &
+            model%tolerance%tool_search, tool, hint, hit)
         self%tool(c) = tool
         self%lambda(:, c) = committed%lambda(:, c)
         self%status(c) = committed%status(c)
@@ -124,8 +163,8 @@ contains
               status_stick
         end if
         call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-            self%lambda(:, c), no_slip, phase%penalty, model%tool(tool)%friction, &
-            self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+            self%lambda(:, c), no_slip, contact_penalty(model, phase, c), &
+            model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
       end do
     end associate
   end subroutine predictor_contact
@@ -136,6 +175,8 @@ contains
     integer, intent(in) :: c
 
     self%status(c) = status_gap
+    self%natural(c) = status_gap
+    self%violation(c) = 0.0_wp
     self%distance(c) = huge(1.0_wp)
     self%normal(:, c) = 0.0_wp
     self%force(:, c) = 0.0_wp
@@ -143,12 +184,17 @@ contains
     self%e(:, :, c) = 0.0_wp
   end subroutine open_candidate
 
-  !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis.
-  subroutine find_nearest_tool(model, state, c, search_distance, tool, hint, nearest)
+  !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
+  !> committed state every candidate is outside the tools; since then it cannot have come deeper
+  !> inside a tool than it moved relative to it.
+  subroutine find_nearest_tool(model, committed, trial, c, outward, search_distance, tool, hint, &
+      nearest)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(in) :: committed, trial
     !> Number of the candidate.
     integer, intent(in) :: c
+    !> Outward normal of the sheet.
+    real(wp), intent(in) :: outward(3)
     !> Distance up to which the tools are looked for, mm.
     real(wp), intent(in) :: search_distance
     !> Tool so far; gets the nearest, 0 if none is within the search distance.
@@ -159,17 +205,20 @@ contains
     type(hit_t), intent(out) :: nearest
 
     type(hit_t) :: hit
-    real(wp) :: best, distance
-    integer :: previous, t
+    real(wp) :: best, distance, x(3), moved(3)
+    integer :: previous, t, node
 
     previous = tool
     tool = 0
     best = huge(1.0_wp)
-    associate (phase => model%phase(state%phase), x => state%x(:, model%contact_node(c)))
+    node = model%contact_node(c)
+    associate (phase => model%phase(trial%phase))
       do t = 1, model%n_tool
         if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
-        call find_contact(model%tool(t)%surface, x - state%tool_displacement(:, t), hint(t), &
-            search_distance, model%contact_depth, hit)
+        x = trial%x(:, node) - trial%tool_displacement(:, t)
+        moved = x - committed%x(:, node) + committed%tool_displacement(:, t)
+        call find_contact(model%tool(t)%surface, x, hint(t), search_distance, &
+            model%tolerance%committed_depth + norm2(moved), hit, outward)
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == previous) distance = distance - model%tolerance%hysteresis

@@ -1,0 +1,53 @@
+!> Penalty of the augmented Lagrangian. The converged solution does not depend on it; it weighs gap
+!> and slip against forces where the contact status is decided.
+module dd3_model_penalty
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : cross
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  implicit none
+  private
+  public :: contact_penalty, set_contact_stiffness
+
+  !> Automatic penalty over the stiffness of the sheet under a candidate. Where a node closes, the
+  !> linearisation leaves gaps and slips of the order of the curvature of tool and path; a penalty
+  !> near the stiffness of the sheet turns them into forces that decide the status wrongly.
+  real(wp), parameter :: fraction = 1.0e-3_wp
+
+contains
+
+  !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one.
+  pure real(wp) function contact_penalty(model, phase, c)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    !> Number of the candidate.
+    integer, intent(in) :: c
+
+    contact_penalty = phase%penalty
+    if (phase%penalty <= 0.0_wp) contact_penalty = fraction*model%contact_stiffness(c)
+  end function contact_penalty
+
+  !> Set the stiffness of the sheet through its thickness under each candidate, E A/t, with its
+  !> tributary area A. A candidate that belongs to no face gets the mean.
+  subroutine set_contact_stiffness(model, young)
+    type(model_t), intent(inout) :: model
+    !> Young's modulus, MPa.
+    real(wp), intent(in) :: young
+
+    real(wp) :: area(model%n_contact), mean
+    integer :: f
+
+    area = 0.0_wp
+    do f = 1, size(model%contact_face, 2)
+      associate (node => model%contact_face(:, f), x => model%x0)
+        area(model%candidate_of(node)) = area(model%candidate_of(node)) + 0.5_wp/size(node)* &
+            norm2(cross(x(:, node(3)) - x(:, node(1)), x(:, node(4)) - x(:, node(2))))
+      end associate
+    end do
+    mean = model%thickness**2
+    if (any(area > 0.0_wp)) mean = sum(area)/count(area > 0.0_wp)
+    where (area <= 0.0_wp) area = mean
+    model%contact_stiffness = young*area/model%thickness
+  end subroutine set_contact_stiffness
+
+end module dd3_model_penalty

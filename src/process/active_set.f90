@@ -1,0 +1,106 @@
+!> Active set of the contact: remedy for contact status that cycles.
+!>
+!> The corrector evaluates the status in every iteration. Where single nodes open and close, or stick
+!> and slip, again and again, their status is held: the iterations converge with it, as a smooth
+!> problem. Then the status by the contact law is compared with the one held, and the nodes with the
+!> largest violations are released into it, until none violates its status. The converged solution
+!> is that of the contact law.
+!> Source: Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888 (primal-dual active
+!> set); Alart and Curnier 1991.
+module dd3_process_active_set
+  use dd3_base_kinds, only : wp
+  use dd3_contact_operator, only : status_slip, status_stick
+  use dd3_process_attempt, only : correction_t, status_memory
+  use dd3_system_contact, only : contact_work_t, not_held
+  implicit none
+  private
+  public :: record_status, hold_cycling, release_violators
+
+  !> Number of changes of a node's status after which it is held, and the iterations before which
+  !> changes do not count.
+  integer, parameter :: most_changes = 4, free_iterations = 10
+  !> Violation, relative to the largest nodal contact force, that is round-off.
+  real(wp), parameter :: negligible = 1.0e-6_wp
+  !> The first times all violators are released, then those above this fraction of the largest.
+  integer, parameter :: full_releases = 4
+  real(wp), parameter :: released_fraction = 0.5_wp
+
+contains
+
+  !> Record the status of the candidates in an iteration and count its changes. A slip whose
+  !> direction reverses counts as a change.
+  subroutine record_status(correction, contact, iteration)
+    type(correction_t), intent(inout) :: correction
+    type(contact_work_t), intent(in) :: contact
+    integer, intent(in) :: iteration
+
+    real(wp) :: tangential(3)
+    integer :: c
+
+    correction%status(:, 2:) = correction%status(:, :status_memory - 1)
+    correction%status(:, 1) = contact%status
+    correction%reversed = .false.
+    do c = 1, size(contact%status)
+      tangential = contact%force(:, c) &
+          - dot_product(contact%force(:, c), contact%normal(:, c))*contact%normal(:, c)
+      if (all(correction%status(c, :2) == status_slip)) &
+          correction%reversed(c) = dot_product(tangential, correction%tangential(:, c)) < 0.0_wp
+      correction%tangential(:, c) = tangential
+    end do
+    if (iteration <= free_iterations) return
+    where (correction%reversed .or. correction%status(:, 1) /= correction%status(:, 2)) &
+        correction%changes = correction%changes + 1
+  end subroutine record_status
+
+  !> Hold the candidates whose status cycles: in their present status, or sticking where the
+  !> direction of slip reverses.
+  subroutine hold_cycling(correction, contact, changed)
+    type(correction_t), intent(inout) :: correction
+    !> Gets the status held.
+    type(contact_work_t), intent(inout) :: contact
+    !> Whether the contact must be evaluated again.
+    logical, intent(out) :: changed
+
+    integer :: c
+
+    changed = .false.
+    do c = 1, size(contact%status)
+      if (correction%changes(c) < most_changes) cycle
+      if (contact%held(c) == not_held) then
+        contact%held(c) = contact%status(c)
+        correction%held = correction%held + 1
+      end if
+      if (correction%reversed(c)) then
+        contact%held(c) = status_stick
+        changed = .true.
+      end if
+    end do
+  end subroutine hold_cycling
+
+  !> Release held candidates that violate the contact law into their status by it: all of them, or,
+  !> if that does not settle, those with the largest violations.
+  subroutine release_violators(correction, contact, released)
+    type(correction_t), intent(inout) :: correction
+    !> Evaluated; gets the status held.
+    type(contact_work_t), intent(inout) :: contact
+    !> Whether any was released.
+    logical, intent(out) :: released
+
+    real(wp) :: largest, smallest
+    integer :: c
+
+    largest = maxval(contact%violation, mask=contact%held /= not_held)
+    released = largest > negligible*maxval(norm2(contact%force, dim=1))
+    if (.not. released) return
+    correction%releases = correction%releases + 1
+    smallest = released_fraction*largest
+    if (correction%releases <= full_releases) smallest = tiny(smallest)
+    do c = 1, size(contact%status)
+      if (contact%held(c) == not_held) cycle
+      if (contact%violation(c) < smallest) cycle
+      contact%held(c) = contact%natural(c)
+      correction%released = correction%released + 1
+    end do
+  end subroutine release_violators
+
+end module dd3_process_active_set
