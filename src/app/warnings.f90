@@ -1,10 +1,11 @@
-!> Warnings of unusual magnitudes, most often caused by a wrong unit or a typing error. They are not
-!> errors: a unit cube of a model material is a valid case.
+!> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error, loads
+!> on held directions. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -52,7 +53,27 @@ contains
             " mm of blank '"//blank%source%called()//"'", unusual_unit)
       end associate
     end do
+    call check_held_loads(case, model, warnings)
   end subroutine unit_warnings
+
+  !> Warn of loads that supports or `displace` carry in part.
+  subroutine check_held_loads(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    type(held_load_t), allocatable :: found(:)
+    integer :: i
+
+    call find_held_loads(model, case, found)
+    do i = 1, size(found)
+      associate (load => case%phase(found(i)%phase)%load(found(i)%load))
+        call add(warnings, load%at, "load along "//axis_name(found(i)%axis)//" on '"//load%set// &
+            "'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
+            " nodes are held in this direction, and their supports carry their part of it")
+      end associate
+    end do
+  end subroutine check_held_loads
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.
   subroutine check_criterion(case, model, i, warnings)

@@ -173,6 +173,7 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     type(parameter_t), allocatable :: inherited(:)
+    integer :: i
 
     inherited = [limits_keys(), newton_keys(), contact_keys()]
     inherited%default = "-"
@@ -189,20 +190,29 @@ contains
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &
       row("release", kind_other, "", "-", &
-          "tool whose contact is switched off for the rest of the run", repeatable=.true., &
+          "tool whose contact is switched off until a later phase names it again", &
+          repeatable=.true., &
           form="tool"), &
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
+      row("free", kind_other, "", "-", &
+          "directions that displace has led until now; their reactions fade over the phase", &
+          repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &
       row("pressure", kind_other, "MPa", "-", &
           "pressure on the faces with all nodes in the set", repeatable=.true., &
           form="set number", later="*"), &
-      row("unload", kind_logical, "", "-", "springback: all tools released", later="*"), &
+      row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
+          "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
           "ends the phase early: displacement or force of a tool in its direction", &
           form="displacement|force tool number"), &
       inherited]
+    do i = 1, 2
+      key(i)%implied_by = "unload"
+      key(i)%implied = merge("load", "0.1 ", key(i)%name == "control")
+    end do
   end function phase_keys
 
   function history_keys() result(key)

@@ -20,30 +20,26 @@ contains
 
     real(wp), allocatable :: force(:, :)
     integer, allocatable :: motion(:)
-    logical, allocatable :: gone(:)
     integer :: i
 
     allocate (force(3, size(case%tool)), source=0.0_wp)
     allocate (motion(size(case%tool)), source=held)
-    allocate (gone(size(case%tool)), source=.false.)
     do i = 1, size(case%phase)
       if (.not. case%phase(i)%source%valid) return
-      call check_actions(case, case%phase(i), motion, force, gone, errors)
+      call check_actions(case, case%phase(i), motion, force, errors)
       call check_control(case, case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
     end do
   end subroutine check_phases
 
   !> Check the actions on the tools and update their motion.
-  subroutine check_actions(case, phase, motion, force, gone, errors)
+  subroutine check_actions(case, phase, motion, force, errors)
     type(case_t), intent(in) :: case
     type(phase_spec_t), intent(in) :: phase
     !> Motion of each tool.
     integer, intent(inout) :: motion(:)
     !> Last force on each pressed tool, `(3, n_tool)`, N.
     real(wp), intent(inout) :: force(:, :)
-    !> Tools released in an earlier phase.
-    logical, intent(inout) :: gone(:)
     type(error_list_t), intent(inout) :: errors
 
     logical :: named(size(motion)), released(size(motion))
@@ -62,9 +58,6 @@ contains
     do i = 1, size(phase%press)
       call name_tool(case, phase%press(i)%tool, phase%press(i)%at, named, errors)
       call check_press(phase%press(i), motion, force, errors)
-      if (gone(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, "tool '"// &
-          case%tool(phase%press(i)%tool)%source%called()//"' was released in an earlier phase "// &
-          "and cannot be pressed", "a tool that is not released")
     end do
     do i = 1, size(phase%release)
       call name_tool(case, phase%release(i)%tool, phase%release(i)%at, released, errors)
@@ -74,7 +67,13 @@ contains
       end if
       if (motion(phase%release(i)%tool) == pressed) motion(phase%release(i)%tool) = held
     end do
-    gone = gone .or. released
+    if (phase%unload) then
+      do i = 1, size(phase%press)
+        call errors%push_input(phase%press(i)%at, "a tool cannot be pressed in a phase with "// &
+            "unload = on, which releases all tools")
+      end do
+      where (motion == pressed) motion = held
+    end if
     ! A moved tool is held in a later phase that does not name it.
     do i = 1, size(motion)
       if (motion(i) == moved .and. .not. named(i)) motion(i) = held
@@ -133,11 +132,11 @@ contains
     integer :: i, n_actions
 
     n_actions = size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
-    n_actions = n_actions + size(phase%release)
+    n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, press, displace, load, release")
+            "at least one of move, press, displace, free, load, release, unload")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &

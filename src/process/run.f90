@@ -18,10 +18,12 @@ module dd3_process_run
   use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
       try_increment
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
-  use dd3_process_phase_start, only : begin_phase
-  use dd3_process_phase_warnings, only : press_warning, release_warning, support_warning
+  use dd3_process_phase_start, only : begin_phase, check_returns
+  use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
+      support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
   use dd3_process_stepper, only : stepper_t
+  use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -149,11 +151,8 @@ contains
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
-        call begin_phase(model, number, committed)
-        call say_if_any(log, press_warning(model, committed))
-        call say_if_any(log, support_warning(model, committed))
-        if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
-            //"' has no increment: the condition of its early end holds at its start")
+        call start_phase(model, number, committed, log, error)
+        if (allocated(error)) return
       end if
       do while (.not. phase_is_over(model, committed))
         next_output = next_output_progress(model%output, phase, committed)
@@ -170,10 +169,36 @@ contains
           return
         end if
       end do
+      call say_if_any(log, until_warning(phase, committed))
       call say_if_any(log, release_warning(phase, committed))
+      call say_if_any(log, reaction_note(model, committed))
       call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
+
+  !> Begin a phase, with notes and warnings.
+  subroutine start_phase(model, number, committed, log, error)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    type(state_t), intent(inout) :: committed
+    type(log_t), intent(inout) :: log
+    !> Set if a tool that was released would start inside the sheet.
+    type(error_t), allocatable, intent(out) :: error
+
+    call check_returns(model, number, committed, error)
+    if (allocated(error)) return
+    call begin_phase(model, number, committed)
+    associate (phase => model%phase(number))
+      call say_if_any(log, kept_note(phase))
+      call say_if_any(log, press_warning(model, committed))
+      call say_if_any(log, support_warning(model, committed))
+      call say_if_any(log, unload_note(model, committed))
+      call say_if_any(log, imbalance_warning(model, committed))
+      if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
+          //"' has no increment: the condition of its early end holds at its start")
+    end associate
+  end subroutine start_phase
 
   !> Log a text that is not empty.
   subroutine say_if_any(log, text)
