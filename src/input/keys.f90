@@ -93,8 +93,8 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     key = [ &
-      row("penalty", kind_real, "N/mm", "", "penalty of the augmented Lagrangian", lower=zero, &
-          lower_open=.true.), &
+      row("penalty", kind_real, "N/mm", "", "penalty of the augmented Lagrangian", &
+          lower=1.0e-3_wp, upper=1.0e9_wp), &
       row("search_distance", kind_real, "mm", "-", &
           "search distance of the tools; default: the thickness of the sheet", lower=zero, &
           lower_open=.true.)]
@@ -131,6 +131,9 @@ contains
       if (key(i)%name == "force_floor") cycle
       key(i)%lower = zero
       key(i)%lower_open = .true.
+      if (key(i)%name /= "r_min" .and. key(i)%name /= "r_max") cycle
+      key(i)%lower = 1.0e-6_wp
+      key(i)%lower_open = .false.
     end do
   end function limits_keys
 
@@ -139,15 +142,15 @@ contains
 
     key = [ &
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
-          lower=zero, lower_open=.true.), &
+          lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
-          lower=2.0_wp, upper=1.0e6_wp), &
+          lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "off", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
-      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", lower=zero, &
-          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", &
+          lower=0.01_wp, upper=0.9_wp), &
       row("cutback_min", kind_real, "", "1e-5", "minimum of r; the run stops below it", &
-          lower=zero, lower_open=.true.)]
+          lower=1.0e-9_wp, upper=1.0_wp)]
   end function newton_keys
 
   function solver_keys() result(key)
@@ -159,10 +162,10 @@ contains
           "them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
-      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", lower=zero, &
-          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &
+          lower=1.0e-15_wp, upper=0.01_wp), &
       row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs", &
-          lower=1.0_wp, upper=1.0e9_wp), &
+          lower=1.0_wp, upper=1.0e6_wp), &
       row("ordering", kind_name, "", "none", &
           "ordering of the unknowns; none: as the nodes are numbered", &
           choices="none amd rcm")]

@@ -10,6 +10,10 @@ module dd3_input_phase_check
 
   !> Motion of a tool; tools are held at the start.
   integer, parameter :: held = 0, moved = 1, pressed = 2
+  !> Largest number of increments of a phase, if none is smaller than the trial increment.
+  real(wp), parameter :: most_increments = 1.0e7_wp
+  !> Largest trial increment, in motions of the controlling tool.
+  real(wp), parameter :: largest_trial = 1.0e3_wp
 
 contains
 
@@ -28,6 +32,7 @@ contains
       if (.not. case%phase(i)%source%valid) return
       call check_actions(case, case%phase(i), motion, force, errors)
       call check_control(case, case%phase(i), errors)
+      call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
     end do
   end subroutine check_phases
@@ -155,6 +160,40 @@ contains
         case%tool(phase%control)%source%called()//"' has no move in this phase", "move = "// &
         case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
   end subroutine check_control
+
+  !> Check the trial increment against the motion of the controlling tool, or against the phase.
+  subroutine check_trial(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: unit, bound
+    real(wp) :: length
+    integer :: i
+
+    length = 1.0_wp
+    unit = ""
+    if (phase%control > 0) then
+      length = 0.0_wp
+      unit = " mm"
+      do i = 1, size(phase%move)
+        if (phase%move(i)%tool == phase%control) length = norm2(phase%move(i)%vector)
+      end do
+    end if
+    if (.not. length > 0.0_wp) return
+    associate (r_max => min(1.0_wp, phase%limits%r_max%value), trial => phase%trial)
+      if (trial*r_max < length/most_increments) then
+        bound = ""
+        if (r_max < 1.0_wp) bound = ", with r_max = "//to_text(r_max)//","
+        call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)//bound// &
+            " divides the phase into more than 1e7 increments", "at least "// &
+            to_text(length/most_increments/r_max)//unit)
+      else if (phase%control > 0 .and. trial > largest_trial*length) then
+        call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)// &
+            " is out of range: the controlling tool moves by "//to_text(length)//unit, &
+            "at most "//to_text(largest_trial*length)//unit)
+      end if
+    end associate
+  end subroutine check_trial
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

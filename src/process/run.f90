@@ -29,6 +29,9 @@ module dd3_process_run
   private
   public :: run_model, run_start_t, run_summary_t
 
+  !> Smallest increment of the progress of a phase.
+  real(wp), parameter :: least_progress = 1.0e-12_wp
+
   !> Initial data of a run.
   type :: run_start_t
     !> Initial state, or that of a restart.
@@ -225,6 +228,13 @@ contains
       began = wall_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
+      if (predicted .and. .not. makes_progress(stepper)) then
+        call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
+            " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
+            " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
+            trim(attempt%limit%name))
+        return
+      end if
       do
         if (predicted) call try_increment(model, run%committed, run%trial, stepper)
         row = status_row(model, run%committed, stepper)
@@ -233,6 +243,7 @@ contains
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
             call shrink_increment(phase, stepper, again)
+        if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
@@ -248,6 +259,13 @@ contains
       end if
     end associate
   end subroutine run_increment
+
+  !> Whether an increment with the present r is large enough for the phase to end.
+  pure logical function makes_progress(stepper)
+    type(stepper_t), intent(in) :: stepper
+
+    makes_progress = stepper%attempt%limit%r*stepper%prediction%progress > least_progress
+  end function makes_progress
 
   !> Write an accepted increment to the records and show it.
   subroutine write_increment(run, model, next_output, log, error)
