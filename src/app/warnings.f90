@@ -1,10 +1,12 @@
-!> Warnings of unusual magnitudes, most often caused by a wrong unit or a typing error. They are not
-!> errors: a unit cube of a model material is a valid case.
+!> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error,
+!> settings that make results inaccurate, loads on held directions. They are not errors: a unit cube
+!> of a model material is a valid case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -19,6 +21,10 @@ module dd3_app_warnings
   !> Usual range of the equivalent stress under unit tension in the rolling direction; 1 in most
   !> published sets.
   real(wp), parameter :: least_tension = 0.8_wp, largest_tension = 1.25_wp
+  !> Largest usual coefficient of friction and tolerance of the corrector; smallest usual search
+  !> distance of the tools, in thicknesses of the sheet.
+  real(wp), parameter :: largest_friction = 1.0_wp, largest_tolerance = 0.02_wp, &
+      least_search = 0.1_wp
   character(len=*), parameter :: unusual_unit = "unusual; units are N, mm and MPa"
 
 contains
@@ -52,7 +58,61 @@ contains
             " mm of blank '"//blank%source%called()//"'", unusual_unit)
       end associate
     end do
+    do i = 1, size(case%tool)
+      associate (tool => case%tool(i))
+        if (tool%friction > largest_friction) call add(warnings, tool%source%at("friction"), &
+            "friction = "//to_text(tool%friction)//" of tool '"//tool%source%called()//"'", &
+            "unusual; Coulomb's coefficient is below 1 in sheet metal forming")
+      end associate
+    end do
+    call check_settings(case, model, warnings)
+    call check_held_loads(case, model, warnings)
   end subroutine unit_warnings
+
+  !> Warn of a tolerance of the corrector and a search distance that make results inaccurate.
+  subroutine check_settings(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    integer :: i
+
+    do i = 1, case%deck%n_block
+      associate (block => case%deck%block(i))
+        select case (block%keyword)
+        case ("newton", "contact", "phase")
+          if (block%keyword /= "contact" .and. block%number("tolerance") > largest_tolerance) then
+            call add(warnings, block%at("tolerance"), "tolerance = "// &
+                to_text(block%number("tolerance")), "forces may be inaccurate above 0.02")
+          end if
+          if (.not. block%has("search_distance")) cycle
+          if (block%number("search_distance") >= least_search*model%thickness) cycle
+          call add(warnings, block%at("search_distance"), "search_distance = "// &
+              to_text(block%number("search_distance")), &
+              "small for the thickness; nodes may pass a tool before it is found")
+        end select
+      end associate
+    end do
+  end subroutine check_settings
+
+  !> Warn of loads that supports or `displace` carry in part.
+  subroutine check_held_loads(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    type(held_load_t), allocatable :: found(:)
+    integer :: i
+
+    call find_held_loads(model, case, found)
+    do i = 1, size(found)
+      associate (load => case%phase(found(i)%phase)%load(found(i)%load))
+        call add(warnings, load%at, "load along "//axis_name(found(i)%axis)//" on '"//load%set// &
+            "'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
+            " nodes are held in this direction, and their supports carry their part of it")
+      end associate
+    end do
+  end subroutine check_held_loads
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.
   subroutine check_criterion(case, model, i, warnings)

@@ -44,6 +44,9 @@ module dd3_base_parameter
     !> Default as it would be written; empty if a value must be given; `-` if the key may be left
     !> out and then has no value.
     character(len=24) :: default = ""
+    !> Switch of the block that, when on, allows a key without default to be left out, and the value
+    !> that the key has then.
+    character(len=24) :: implied_by = "", implied = ""
     !> Bounds of the value.
     real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
     !> Whether the bounds are excluded.

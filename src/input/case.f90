@@ -12,7 +12,7 @@ module dd3_input_case
   public :: case_t, blank_spec_t, node_set_spec_t, law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_name_t, tool_vector_t, displace_spec_t, load_spec_t, until_spec_t
+  public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
   public :: point_spec_t, point_goal_t, gradient_values
@@ -220,6 +220,15 @@ module dd3_input_case
     type(location_t) :: at
   end type displace_spec_t
 
+  !> Directions of nodes that are free again.
+  type :: free_spec_t
+    !> Node set.
+    character(len=:), allocatable :: set
+    !> Whether x, y, z are freed.
+    logical :: direction(3) = .false.
+    type(location_t) :: at
+  end type free_spec_t
+
   !> A force on nodes.
   type :: load_spec_t
     !> Node set.
@@ -247,11 +256,14 @@ module dd3_input_case
     integer :: control = 0
     !> Trial increment: mm of the controlling tool, or fraction of the phase for `load`.
     real(wp) :: trial = 0.0_wp
+    !> Whether all tools are released and supports are chosen where they are missing.
+    logical :: unload = .false.
     !> Tools held, and tools whose contact is switched off.
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.
     type(tool_vector_t), allocatable :: move(:), press(:)
     type(displace_spec_t), allocatable :: displace(:)
+    type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
     type(until_spec_t) :: until
     !> Settings in this phase, with those inherited from the phases before.

@@ -1,5 +1,6 @@
 !> Check of the blocks of an input against the keyword table; fills in the defaults.
 module dd3_input_check
+  use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, error_list_t, location_t
   use dd3_base_text, only : upper_case, same_name, nearest_name, suggestion, join, to_text
   use dd3_base_parameter, only : parameter_t
@@ -155,19 +156,23 @@ contains
     type(entry_t) :: entry
     type(token_list_t) :: word
     type(line_t) :: line
+    character(len=len(key%default)) :: value
     logical :: continues
     integer :: k
 
     do k = 1, size(key)
-      if (block%find(key(k)%name) > 0 .or. key(k)%default == "-") cycle
-      if (key(k)%default == "") then
+      if (block%find(key(k)%name) > 0) cycle
+      value = key(k)%default
+      if (block%number(key(k)%implied_by) > 0.0_wp) value = key(k)%implied
+      if (value == "-") cycle
+      if (value == "") then
         call errors%push_input(block%opened, "'"//trim(key(k)%name)//"' is missing in "// &
             title_of(block), trim(key(k)%name)//" = "//trim(key(k)%help))
         cycle
       end if
       word = token_list_t()
       line%file = "default"
-      line%text = trim(key(k)%default)
+      line%text = trim(value)
       call split_line(line, word, continues, errors)
       entry = entry_t(defaulted=.true.)
       entry%key = trim(key(k)%name)

@@ -4,8 +4,8 @@ module dd3_input_fill_phase
   use dd3_base_text, only : same_name
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
-      newton_spec_t, tool_name_t, tool_vector_t, displace_spec_t, load_spec_t, until_spec_t, &
-      until_displacement, until_force
+      newton_spec_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, &
+      until_spec_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -36,11 +36,13 @@ contains
     call fill_contact(phase%contact, block)
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
+    phase%unload = block%number("unload") > 0.5_wp
     call fill_tool_names(phase%hold, case, block, "hold")
     call fill_tool_names(phase%release, case, block, "release")
     call fill_tool_vectors(phase%move, case, block, "move")
     call fill_tool_vectors(phase%press, case, block, "press")
     call fill_displacements(phase%displace, block)
+    call fill_freed(phase%free, block)
     call fill_loads(phase%load, block)
     call fill_until(phase%until, case, block)
     case%phase(i) = phase
@@ -130,6 +132,24 @@ contains
       end associate
     end do
   end subroutine fill_displacements
+
+  subroutine fill_freed(list, block)
+    type(free_spec_t), allocatable, intent(out) :: list(:)
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "free")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%set = entry%value(1)%text
+        list(i)%direction(nint(entry%number)) = .true.
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_freed
 
   subroutine fill_loads(list, block)
     type(load_spec_t), allocatable, intent(out) :: list(:)

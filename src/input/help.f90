@@ -97,6 +97,8 @@ contains
     select case (key%default)
     case ("")
       text = "must be given"
+      if (key%implied /= "") text = text//"; "//trim(key%implied)//" with "// &
+          trim(key%implied_by)//" = on"
     case ("-")
       text = "optional"
     case default

@@ -94,7 +94,7 @@ contains
 
     key = [ &
       row("penalty", kind_real, "N/mm", "-", "penalty of the augmented Lagrangian; default: "// &
-          "from stiffness, thickness and mesh", lower=zero, lower_open=.true.), &
+          "from stiffness, thickness and mesh", lower=1.0e-3_wp, upper=1.0e9_wp), &
       row("search_distance", kind_real, "mm", "-", &
           "search distance of the tools; default: the thickness of the sheet", lower=zero, &
           lower_open=.true.)]
@@ -131,6 +131,9 @@ contains
       if (key(i)%name == "force_floor") cycle
       key(i)%lower = zero
       key(i)%lower_open = .true.
+      if (key(i)%name /= "r_min" .and. key(i)%name /= "r_max") cycle
+      key(i)%lower = 1.0e-6_wp
+      key(i)%lower_open = .false.
     end do
   end function limits_keys
 
@@ -139,21 +142,21 @@ contains
 
     key = [ &
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
-          lower=zero, lower_open=.true.), &
+          lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
-          lower=2.0_wp, upper=1.0e6_wp), &
+          lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
-      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", lower=zero, &
-          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", &
+          lower=0.01_wp, upper=0.9_wp), &
       row("cutback_min", kind_real, "", "1e-5", "minimum of r; the run stops below it", &
-          lower=zero, lower_open=.true.), &
+          lower=1.0e-9_wp, upper=1.0_wp), &
       row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
-          "the increments is steered to; 0: not steered", lower=zero, upper=1.0e6_wp), &
-      row("active_set", kind_logical, "", "on", &
-          "on: hold the contact status of nodes where it cycles, then release the worst violator"), &
-      row("damping", kind_logical, "", "on", &
-          "on: shorten an iteration that moves a node too far or inverts an element")]
+          "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
+      row("active_set", kind_logical, "", "on", "on: hold the contact status of nodes where it "// &
+          "cycles, then release the nodes that violate it"), &
+      row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
+          "gradients or that inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)
@@ -165,10 +168,10 @@ contains
           "them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
-      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", lower=zero, &
-          upper=1.0_wp, lower_open=.true., upper_open=.true.), &
+      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &
+          lower=1.0e-15_wp, upper=0.01_wp), &
       row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs", &
-          lower=1.0_wp, upper=1.0e9_wp), &
+          lower=1.0_wp, upper=1.0e6_wp), &
       row("ordering", kind_name, "", "none", &
           "ordering of the unknowns; none: as the nodes are numbered", &
           choices="none amd rcm")]
@@ -179,6 +182,7 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     type(parameter_t), allocatable :: inherited(:)
+    integer :: i
 
     inherited = [limits_keys(), newton_keys(), contact_keys()]
     inherited%default = "-"
@@ -195,20 +199,29 @@ contains
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &
       row("release", kind_other, "", "-", &
-          "tool whose contact is switched off for the rest of the run", repeatable=.true., &
+          "tool whose contact is switched off until a later phase names it again", &
+          repeatable=.true., &
           form="tool"), &
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
+      row("free", kind_other, "", "-", &
+          "directions that displace has led until now; their reactions fade over the phase", &
+          repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &
       row("pressure", kind_other, "MPa", "-", &
           "pressure on the faces with all nodes in the set", repeatable=.true., &
           form="set number", later="*"), &
-      row("unload", kind_logical, "", "-", "springback: all tools released", later="*"), &
+      row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
+          "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
           "ends the phase early: displacement or force of a tool in its direction", &
           form="displacement|force tool number"), &
       inherited]
+    do i = 1, 2
+      key(i)%implied_by = "unload"
+      key(i)%implied = merge("load", "0.1 ", key(i)%name == "control")
+    end do
   end function phase_keys
 
   function history_keys() result(key)

@@ -10,6 +10,10 @@ module dd3_input_phase_check
 
   !> Motion of a tool; tools are held at the start.
   integer, parameter :: held = 0, moved = 1, pressed = 2
+  !> Largest number of increments of a phase, if none is smaller than the trial increment.
+  real(wp), parameter :: most_increments = 1.0e7_wp
+  !> Largest trial increment, in motions of the controlling tool.
+  real(wp), parameter :: largest_trial = 1.0e3_wp
 
 contains
 
@@ -20,30 +24,27 @@ contains
 
     real(wp), allocatable :: force(:, :)
     integer, allocatable :: motion(:)
-    logical, allocatable :: gone(:)
     integer :: i
 
     allocate (force(3, size(case%tool)), source=0.0_wp)
     allocate (motion(size(case%tool)), source=held)
-    allocate (gone(size(case%tool)), source=.false.)
     do i = 1, size(case%phase)
       if (.not. case%phase(i)%source%valid) return
-      call check_actions(case, case%phase(i), motion, force, gone, errors)
+      call check_actions(case, case%phase(i), motion, force, errors)
       call check_control(case, case%phase(i), errors)
+      call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
     end do
   end subroutine check_phases
 
   !> Check the actions on the tools and update their motion.
-  subroutine check_actions(case, phase, motion, force, gone, errors)
+  subroutine check_actions(case, phase, motion, force, errors)
     type(case_t), intent(in) :: case
     type(phase_spec_t), intent(in) :: phase
     !> Motion of each tool.
     integer, intent(inout) :: motion(:)
     !> Last force on each pressed tool, `(3, n_tool)`, N.
     real(wp), intent(inout) :: force(:, :)
-    !> Tools released in an earlier phase.
-    logical, intent(inout) :: gone(:)
     type(error_list_t), intent(inout) :: errors
 
     logical :: named(size(motion)), released(size(motion))
@@ -62,9 +63,6 @@ contains
     do i = 1, size(phase%press)
       call name_tool(case, phase%press(i)%tool, phase%press(i)%at, named, errors)
       call check_press(phase%press(i), motion, force, errors)
-      if (gone(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, "tool '"// &
-          case%tool(phase%press(i)%tool)%source%called()//"' was released in an earlier phase "// &
-          "and cannot be pressed", "a tool that is not released")
     end do
     do i = 1, size(phase%release)
       call name_tool(case, phase%release(i)%tool, phase%release(i)%at, released, errors)
@@ -74,7 +72,13 @@ contains
       end if
       if (motion(phase%release(i)%tool) == pressed) motion(phase%release(i)%tool) = held
     end do
-    gone = gone .or. released
+    if (phase%unload) then
+      do i = 1, size(phase%press)
+        call errors%push_input(phase%press(i)%at, "a tool cannot be pressed in a phase with "// &
+            "unload = on, which releases all tools")
+      end do
+      where (motion == pressed) motion = held
+    end if
     ! A moved tool is held in a later phase that does not name it.
     do i = 1, size(motion)
       if (motion(i) == moved .and. .not. named(i)) motion(i) = held
@@ -133,11 +137,11 @@ contains
     integer :: i, n_actions
 
     n_actions = size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
-    n_actions = n_actions + size(phase%release)
+    n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, press, displace, load, release")
+            "at least one of move, press, displace, free, load, release, unload")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &
@@ -156,6 +160,40 @@ contains
         case%tool(phase%control)%source%called()//"' has no move in this phase", "move = "// &
         case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
   end subroutine check_control
+
+  !> Check the trial increment against the motion of the controlling tool, or against the phase.
+  subroutine check_trial(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: unit, bound
+    real(wp) :: length
+    integer :: i
+
+    length = 1.0_wp
+    unit = ""
+    if (phase%control > 0) then
+      length = 0.0_wp
+      unit = " mm"
+      do i = 1, size(phase%move)
+        if (phase%move(i)%tool == phase%control) length = norm2(phase%move(i)%vector)
+      end do
+    end if
+    if (.not. length > 0.0_wp) return
+    associate (r_max => min(1.0_wp, phase%limits%r_max%value), trial => phase%trial)
+      if (trial*r_max < length/most_increments) then
+        bound = ""
+        if (r_max < 1.0_wp) bound = ", with r_max = "//to_text(r_max)//","
+        call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)//bound// &
+            " divides the phase into more than 1e7 increments", "at least "// &
+            to_text(length/most_increments/r_max)//unit)
+      else if (phase%control > 0 .and. trial > largest_trial*length) then
+        call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)// &
+            " is out of range: the controlling tool moves by "//to_text(length)//unit, &
+            "at most "//to_text(largest_trial*length)//unit)
+      end if
+    end associate
+  end subroutine check_trial
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

@@ -1,14 +1,19 @@
-!> Builds the mesh of a case: nodes, elements and node sets; checks the prescribed displacements.
+!> Builds the mesh of a case: nodes, elements and node sets; checks the prescribed displacements and
+!> the directions that are free again.
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
   use dd3_input_case, only : case_t, phase_spec_t
   use dd3_mesh_blank, only : new_blank_mesh
-  use dd3_mesh_mesh, only : mesh_t
+  use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_mesh_select, only : add_set
   implicit none
   private
   public :: new_mesh
+
+  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
+  character(len=*), parameter :: directions_led = &
+      "directions that `displace` led in an earlier phase"
 
 contains
 
@@ -21,6 +26,7 @@ contains
     real(wp), intent(in) :: natural(:, :)
     type(error_list_t), intent(inout) :: errors
 
+    logical, allocatable :: held(:, :), led(:, :)
     integer :: i, before
 
     before = errors%count
@@ -29,53 +35,75 @@ contains
       call add_set(mesh, case%set(i), errors)
     end do
     if (errors%count > before) return
+    allocate (held(3, mesh%n_node), led(3, mesh%n_node), source=.false.)
+    do i = 1, size(case%boundary)
+      call mark_directions(held, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
+    end do
     do i = 1, size(case%phase)
-      call check_displacements(mesh, case, case%phase(i), errors)
+      call check_freed(mesh, case%phase(i), held, led, errors)
+      call check_displacements(mesh, case%phase(i), held, led, errors)
     end do
   end subroutine new_mesh
 
-  !> Report displacements of nodes that are fixed by a boundary condition, or displaced twice.
-  subroutine check_displacements(mesh, case, phase, errors)
+  !> Report freed directions that no earlier phase displaced.
+  subroutine check_freed(mesh, phase, held, led, errors)
     type(mesh_t), intent(in) :: mesh
-    type(case_t), intent(in) :: case
     type(phase_spec_t), intent(in) :: phase
+    !> Directions fixed by *BOUNDARY, `(3, n_node)`.
+    logical, intent(in) :: held(:, :)
+    !> Directions that an earlier phase displaced, `(3, n_node)`; gets those that stay so.
+    logical, intent(inout) :: led(:, :)
     type(error_list_t), intent(inout) :: errors
 
-    logical :: held(3, mesh%n_node), moved(3, mesh%n_node)
+    integer, allocatable :: node(:)
+    integer :: i, axis
+
+    do i = 1, size(phase%free)
+      node = mesh%nodes_of(phase%free(i)%set)
+      do axis = 1, 3
+        if (.not. phase%free(i)%direction(axis)) cycle
+        if (all(held(axis, node))) then
+          call errors%push_input(phase%free(i)%at, "'"//phase%free(i)%set//"' is fixed along "// &
+              axis_name(axis)//" in every phase by *BOUNDARY", directions_led)
+        else if (.not. any(led(axis, node))) then
+          call errors%push_input(phase%free(i)%at, "no earlier phase displaces '"// &
+              phase%free(i)%set//"' along "//axis_name(axis), directions_led)
+        end if
+        led(axis, node) = .false.
+      end do
+    end do
+  end subroutine check_freed
+
+  !> Report displacements of nodes that are fixed by a boundary condition, or displaced twice.
+  subroutine check_displacements(mesh, phase, held, led, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(phase_spec_t), intent(in) :: phase
+    !> Directions fixed by *BOUNDARY, `(3, n_node)`.
+    logical, intent(in) :: held(:, :)
+    !> Directions that an earlier phase displaced, `(3, n_node)`; gets those of this phase.
+    logical, intent(inout) :: led(:, :)
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: moved(3, mesh%n_node)
     integer, allocatable :: node(:)
     integer :: i
 
-    if (size(phase%displace) == 0) return
-    held = .false.
     moved = .false.
-    do i = 1, size(case%boundary)
-      call mark(held, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
-    end do
     do i = 1, size(phase%displace)
       node = mesh%nodes_of(phase%displace(i)%set)
-      if (any(held(phase%displace(i)%axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
-        call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-            "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
-      else if (any(moved(phase%displace(i)%axis, node))) then
-        call errors%push_input(phase%displace(i)%at, "a node of '"//phase%displace(i)%set// &
-            "' is displaced twice along this axis in this phase", "one displace for each node")
-      end if
-      moved(phase%displace(i)%axis, node) = .true.
+      associate (axis => phase%displace(i)%axis, set => phase%displace(i)%set, &
+          at => phase%displace(i)%at)
+        if (any(held(axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
+          call errors%push_input(at, "a node of '"//set// &
+              "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
+        else if (any(moved(axis, node))) then
+          call errors%push_input(at, "a node of '"//set// &
+              "' is displaced twice along this axis in this phase", "one displace for each node")
+        end if
+        moved(axis, node) = .true.
+      end associate
     end do
+    led = led .or. (moved .and. .not. held)
   end subroutine check_displacements
-
-  !> Mark the directions of some nodes.
-  pure subroutine mark(marked, node, direction)
-    !> `(3, n_node)`.
-    logical, intent(inout) :: marked(:, :)
-    integer, intent(in) :: node(:)
-    logical, intent(in) :: direction(3)
-
-    integer :: i
-
-    do i = 1, size(node)
-      marked(:, node(i)) = marked(:, node(i)) .or. direction
-    end do
-  end subroutine mark
 
 end module dd3_mesh_build

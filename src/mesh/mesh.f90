@@ -4,7 +4,7 @@ module dd3_mesh_mesh
   use dd3_base_text, only : same_name
   implicit none
   private
-  public :: mesh_t, mesh_set_t
+  public :: mark_directions, mesh_t, mesh_set_t
 
   !> A named list of nodes.
   type :: mesh_set_t
@@ -71,5 +71,19 @@ contains
 
     model_size = norm2(maxval(self%x, dim=2) - minval(self%x, dim=2))
   end function model_size
+
+  !> Mark the directions of some nodes.
+  pure subroutine mark_directions(marked, node, direction)
+    !> `(3, n_node)`.
+    logical, intent(inout) :: marked(:, :)
+    integer, intent(in) :: node(:)
+    logical, intent(in) :: direction(3)
+
+    integer :: i
+
+    do i = 1, size(node)
+      marked(:, node(i)) = marked(:, node(i)) .or. direction
+    end do
+  end subroutine mark_directions
 
 end module dd3_mesh_mesh

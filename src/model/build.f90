@@ -14,6 +14,7 @@ module dd3_model_build
   use dd3_linalg_solver_registry, only : solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
@@ -55,6 +56,7 @@ contains
     call find_candidates(model, case, mesh)
     call set_supports(model, case, mesh)
     call new_phases(model, case, mesh)
+    call check_loads(model, case, errors)
     call set_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
@@ -306,7 +308,7 @@ contains
       if (len(motion) == 0) cycle
       call errors%push_input(case%phase(i)%source%opened, "nothing holds the sheet in phase '"// &
           case%phase(i)%source%called()//"': it is free to "//motion, &
-          "supports by *BOUNDARY or displace, or a tool that is not released")
+          "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
       return
     end do
   end subroutine check_supports

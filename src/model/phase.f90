@@ -30,8 +30,13 @@ module dd3_model_phase
     logical, allocatable :: active(:)
     !> Degrees of freedom with prescribed displacement, supports included, `(3, n_node)`.
     logical, allocatable :: prescribed(:, :)
+    !> Supports chosen against free rigid motions of an unloaded sheet, in columns of node and axis,
+    !> `(2, n)`; they are prescribed too.
+    integer, allocatable :: support(:, :)
     !> Prescribed displacement over the phase, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
+    !> Directions that an earlier phase displaced and this one holds, as text: `x of 'tip', ...`.
+    character(len=:), allocatable :: kept_displacements
     !> Total forces on the sets with loads at the end of the phase, `(3, n_load)`, N; without
     !> meaning for those whose load the phase leaves unchanged, `(n_load)`.
     real(wp), allocatable :: load_end(:, :)

@@ -4,9 +4,11 @@ module dd3_model_phases
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_displacements, only : set_displacements
   use dd3_model_loads, only : face_load_weights, load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_rigid_supports, only : choose_supports
   implicit none
   private
   public :: new_phases
@@ -21,16 +23,21 @@ contains
     type(mesh_t), intent(in) :: mesh
 
     type(phase_t) :: before
+    logical :: led(3, model%n_node), unloaded
     integer :: i
 
     call new_load_sets(model, case, mesh)
     call new_idle_phase(before, model)
+    led = model%fixed
+    unloaded = .false.
     allocate (model%phase(size(case%phase)))
     do i = 1, size(case%phase)
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
       call set_tools(case%phase(i), model%phase(i))
-      call set_displacements(case%phase(i), mesh, model%phase(i))
+      call set_displacements(case, i, mesh, led, model%phase(i))
+      unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
+      call set_supports(model, unloaded, led, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
@@ -85,7 +92,8 @@ contains
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%thickness
   end subroutine set_settings
 
-  !> Set the motion and load of the tools, and the trial increment as a fraction of the phase.
+  !> Set the motion and load of the tools, and the trial increment as a fraction of the phase. A
+  !> tool that is named after its release has contact again.
   subroutine set_tools(spec, phase)
     type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
@@ -95,10 +103,12 @@ contains
     do i = 1, size(spec%hold)
       t = spec%hold(i)%tool
       call stop_pressing(phase, t)
+      phase%active(t) = .true.
     end do
     do i = 1, size(spec%move)
       t = spec%move(i)%tool
       call stop_pressing(phase, t)
+      phase%active(t) = .true.
       phase%move(:, t) = spec%move(i)%vector
       if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
     end do
@@ -110,6 +120,12 @@ contains
       phase%active(t) = .false.
       call stop_pressing(phase, t)
     end do
+    if (spec%unload) then
+      phase%active = .false.
+      do t = 1, size(phase%active)
+        call stop_pressing(phase, t)
+      end do
+    end if
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return
@@ -134,25 +150,30 @@ contains
 
     if (norm2(force) > 0.0_wp) phase%direction(:, tool) = unit(force)
     phase%pressed(tool) = .true.
+    phase%active(tool) = .true.
     phase%keeps_tool_load(tool) = .false.
     phase%tool_load_end(:, tool) = force
   end subroutine press
 
-  !> Set the prescribed displacements.
-  subroutine set_displacements(spec, mesh, phase)
-    type(phase_spec_t), intent(in) :: spec
-    type(mesh_t), intent(in) :: mesh
+  !> Set the prescribed directions. For a sheet unloaded by this phase or an earlier one, supports
+  !> are added that stop the rigid motions left free.
+  subroutine set_supports(model, unloaded, led, phase)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: unloaded
+    !> Directions that *BOUNDARY and `displace` prescribe, `(3, n_node)`.
+    logical, intent(in) :: led(:, :)
     type(phase_t), intent(inout) :: phase
 
-    integer, allocatable :: node(:)
-    integer :: i
+    integer :: k
 
-    do i = 1, size(spec%displace)
-      node = mesh%nodes_of(spec%displace(i)%set)
-      phase%prescribed(spec%displace(i)%axis, node) = .true.
-      phase%displacement(spec%displace(i)%axis, node) = spec%displace(i)%value
+    phase%prescribed = led
+    phase%support = reshape([integer ::], [2, 0])
+    if (.not. unloaded) return
+    call choose_supports(model%x0, led, phase%support)
+    do k = 1, size(phase%support, 2)
+      phase%prescribed(phase%support(2, k), phase%support(1, k)) = .true.
     end do
-  end subroutine set_displacements
+  end subroutine set_supports
 
   !> Set the loads of the sets that the phase names.
   subroutine set_loads(spec, model, phase)

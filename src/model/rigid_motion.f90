@@ -28,6 +28,8 @@ module dd3_model_rigid_motion
     procedure :: hold
     procedure :: hold_prescribed
     procedure :: free_motion
+    procedure :: free_projector
+    procedure :: condition
   end type rigid_motion_t
 
 contains
@@ -51,12 +53,24 @@ contains
     real(wp), intent(in) :: x(3)
     real(wp), intent(in) :: direction(3)
 
-    real(wp) :: condition(6)
+    real(wp) :: row(6)
 
-    condition(:3) = direction
-    condition(4:) = cross((x - self%centre)/self%size, direction)
-    self%product = self%product + spread(condition, 2, 6)*spread(condition, 1, 6)
+    row = self%condition(x, direction)
+    self%product = self%product + spread(row, 2, 6)*spread(row, 1, 6)
   end subroutine hold
+
+  !> Return the condition of a point held in a direction on translation and rotation times size. It
+  !> is also the resultant and the moment over size of a force there.
+  pure function condition(self, x, direction) result(row)
+    class(rigid_motion_t), intent(in) :: self
+    !> Position of the point, mm.
+    real(wp), intent(in) :: x(3)
+    real(wp), intent(in) :: direction(3)
+    real(wp) :: row(6)
+
+    row(:3) = direction
+    row(4:) = cross((x - self%centre)/self%size, direction)
+  end function condition
 
   !> Hold the nodes at which a displacement is prescribed.
   pure subroutine hold_prescribed(self, x, prescribed)
@@ -100,6 +114,24 @@ contains
     end do
     if (len(turns) > 0) call add(text, turns)
   end function free_motion
+
+  !> Return the orthogonal projection onto the free motions, and their number.
+  pure subroutine free_projector(self, projector, n)
+    class(rigid_motion_t), intent(in) :: self
+    real(wp), intent(out) :: projector(6, 6)
+    integer, intent(out) :: n
+
+    real(wp) :: motion(6, 6), unit(6)
+    integer :: k
+
+    call null_space(self%product, motion, n)
+    projector = 0.0_wp
+    do k = 1, n
+      unit = motion(:, k) - matmul(projector, motion(:, k))
+      unit = unit/norm2(unit)
+      projector = projector + spread(unit, 2, 6)*spread(unit, 1, 6)
+    end do
+  end subroutine free_projector
 
   !> Append words to a list separated by commas.
   pure subroutine add(text, words)

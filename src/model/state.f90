@@ -21,6 +21,9 @@ module dd3_model_state
     real(wp), allocatable :: load(:, :), load_end(:, :)
     !> Forces of the candidates on released tools that fade over the phase, `(3, n_contact)`, N.
     real(wp), allocatable :: fading(:, :)
+    !> Reactions of the directions that are free again, as forces on the sheet that fade over the
+    !> phase, `(3, n_node)`, N.
+    real(wp), allocatable :: reaction(:, :)
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
     !> Whether the force of `until` is approached from below.
@@ -49,7 +52,8 @@ module dd3_model_state
     real(wp), allocatable :: x(:, :)
     !> Internal forces, `(3, n_node)`, N.
     real(wp), allocatable :: internal_force(:, :)
-    !> External forces, `(3, n_node)`, N: loads, and the fading forces of released contacts.
+    !> External forces, `(3, n_node)`, N: loads, and the fading forces of released contacts
+    !> and freed directions.
     real(wp), allocatable :: external_force(:, :)
     !> Total forces on the sets with loads, `(3, n_load)`, N.
     real(wp), allocatable :: load(:, :)
@@ -143,6 +147,7 @@ contains
     allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
     allocate (self%load, self%load_end, mold=state%load)
     allocate (self%fading, mold=state%fading)
+    allocate (self%reaction, mold=state%x)
     allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)
     self%tool_displacement = 0.0_wp
     self%tool_load = 0.0_wp
@@ -150,6 +155,7 @@ contains
     self%load = 0.0_wp
     self%load_end = 0.0_wp
     self%fading = 0.0_wp
+    self%reaction = 0.0_wp
   end subroutine new_phase_start
 
 end module dd3_model_state

@@ -102,6 +102,7 @@ contains
     call visitor%reals("start_load", size(start%load), start%load)
     call visitor%reals("start_load_end", size(start%load_end), start%load_end)
     call visitor%reals("start_fading", size(start%fading), start%fading)
+    call visitor%reals("start_reaction", size(start%reaction), start%reaction)
     call visitor%reals("start_plastic_strain", size(start%plastic_strain), start%plastic_strain)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start

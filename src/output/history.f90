@@ -191,7 +191,7 @@ contains
   end function mean
 
   !> Return the sum of the support reactions of some nodes, N: internal forces less those of loads
-  !> and tools.
+  !> and tools. Fading reactions of freed directions are included.
   pure function reaction(model, state, node)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -201,7 +201,8 @@ contains
 
     reaction = 0.0_wp
     do i = 1, size(node)
-      reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i))
+      reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i)) &
+          + (1.0_wp - state%progress)*state%start%reaction(:, node(i))
     end do
     do i = 1, model%n_contact
       if (any(node == model%contact_node(i))) reaction = reaction + state%lambda(:, i)

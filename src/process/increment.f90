@@ -62,6 +62,7 @@ contains
       trial%fading = (1.0_wp - progress)*start%fading
       call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
           trial%external_force)
+      trial%external_force = trial%external_force + (1.0_wp - progress)*start%reaction
       trial%tool_load = start%tool_load + progress*(start%tool_load_end - start%tool_load)
       trial%hint%due = .true.
     end associate

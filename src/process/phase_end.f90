@@ -7,7 +7,7 @@ module dd3_process_phase_end
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: phase_is_over, next_output_progress, until_value, progress_tolerance
+  public :: phase_is_over, next_output_progress, until_met, until_value, progress_tolerance
 
   !> Tolerance of the progress at the end of a phase and at outputs.
   real(wp), parameter :: progress_tolerance = 1.0e-9_wp

@@ -2,6 +2,8 @@
 !> model and the state alone, and stores all that the phase starts from in the state.
 module dd3_process_phase_start
   use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
@@ -9,19 +11,20 @@ module dd3_process_phase_start
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : tangential
+  use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
   use dd3_process_phase_end, only : until_value
   implicit none
   private
-  public :: begin_phase, gap_of_tool
+  public :: begin_phase, check_returns, gap_of_tool
 
   !> Largest number of advances of a pressed tool towards the sheet; each covers the smallest gap.
   integer, parameter :: most_advances = 200
 
 contains
 
-  !> Begin a phase: forces continue from their present values, released contacts become forces that
-  !> fade over the phase, and a pressed tool without contact approaches the sheet.
+  !> Begin a phase: forces continue from their present values, released contacts and reactions of
+  !> freed directions become forces that fade over the phase, and a pressed tool without contact
+  !> approaches the sheet.
   !>
   !> A release is predicted elastic: beyond the maximum of the force, the tangents of loading would
   !> continue on the descending branch instead of unloading.
@@ -34,6 +37,10 @@ contains
 
     integer :: tool
 
+    call free_directions(model, number, state)
+    do tool = 1, model%n_tool
+      if (returns(model, number, tool)) state%hint(tool, :) = hint_t()
+    end do
     state%phase = number
     state%begun = .true.
     state%progress = 0.0_wp
@@ -52,6 +59,70 @@ contains
       start%plastic_strain = state%internal_variables(1, :, :)
     end associate
   end subroutine begin_phase
+
+  !> Whether a phase names a tool that an earlier one released, so that it has contact again.
+  pure logical function returns(model, number, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    integer, intent(in) :: tool
+
+    returns = number > 1 .and. model%phase(number)%active(tool)
+    if (returns) returns = .not. model%phase(number - 1)%active(tool)
+  end function returns
+
+  !> Report tools that return after their release and would start inside the sheet.
+  subroutine check_returns(model, number, state, error)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> State at the end of the phase before.
+    type(state_t), intent(in) :: state
+    !> Set if a tool would start inside the sheet.
+    type(error_t), allocatable, intent(out) :: error
+
+    real(wp) :: depth
+    integer :: tool, node
+
+    do tool = 1, model%n_tool
+      if (.not. returns(model, number, tool)) cycle
+      call deepest_candidate(model, tool, state, depth, node)
+      if (node == 0) cycle
+      call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
+          model%tool(tool)%name//"', which was released, but node "//to_text(node)//" is "// &
+          to_text(depth, 3)//" mm inside it: move the tool clear of the sheet in the phase "// &
+          "that releases it")
+      return
+    end do
+  end subroutine check_returns
+
+  !> Find the candidate that is deepest inside a tool.
+  subroutine deepest_candidate(model, tool, state, depth, node)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    type(state_t), intent(in) :: state
+    !> Its depth, mm.
+    real(wp), intent(out) :: depth
+    !> Its node; 0 if none is deeper than a tool may start.
+    integer, intent(out) :: node
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    integer :: c
+
+    depth = start_depth
+    node = 0
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      hint = hint_t()
+      call find_contact(model%tool(tool)%surface, &
+          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
+          model%tolerance%start_search, wrong_side_depth*model%thickness, hit)
+      if (.not. hit%found .or. -hit%distance <= depth) cycle
+      depth = -hit%distance
+      node = model%contact_node(c)
+    end do
+  end subroutine deepest_candidate
 
   !> Set the forces pressed on the tools at the start and at the end of a phase. A tool that was
   !> held or moved until now starts from the contact force on it in the direction of its line.
@@ -77,6 +148,29 @@ contains
           start%tool_load_end = start%tool_load
     end associate
   end subroutine set_tool_loads
+
+  !> Turn the reactions of the directions that the phase frees into fading forces. Those of the
+  !> phase before that have not faded yet continue.
+  subroutine free_directions(model, number, state)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: number
+    !> The state at the end of the phase before.
+    type(state_t), intent(inout) :: state
+
+    real(wp) :: reaction(3, model%n_node)
+    logical :: freed(3, model%n_node)
+
+    freed = .false.
+    if (number > 1) freed = model%phase(number - 1)%prescribed
+    freed = freed .and. .not. model%phase(number)%prescribed
+    reaction = state%internal_force - state%external_force
+    reaction(:, model%contact_node) = reaction(:, model%contact_node) + state%lambda
+    where (.not. freed) reaction = 0.0_wp
+    reaction = reaction + (1.0_wp - state%progress)*state%start%reaction
+    where (model%phase(number)%prescribed) reaction = 0.0_wp
+    state%start%reaction = reaction
+    if (any(freed)) state%plastic = .false.
+  end subroutine free_directions
 
   !> Turn the contact forces of released tools into fading forces.
   subroutine release_contacts(phase, state)

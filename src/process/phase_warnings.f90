@@ -1,25 +1,62 @@
-!> Warnings at the start and at the end of a phase: a pressed tool without contact, an unsupported
-!> sheet, yielding during a release.
+!> Notes and warnings at the start and at the end of a phase: nodes that stay held, a pressed tool
+!> without contact, an unsupported sheet, yielding during a release.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_input_case, only : until_force
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
+  use dd3_process_phase_end, only : until_met, until_value
   use dd3_process_phase_start, only : gap_of_tool
   implicit none
   private
-  public :: press_warning, release_warning, support_warning
+  public :: kept_note, press_warning, release_warning, support_warning, until_warning
 
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
 
 contains
+
+  !> Return a note on the directions that earlier phases displaced and this one keeps; empty
+  !> without them.
+  pure function kept_note(phase) result(text)
+    type(phase_t), intent(in) :: phase
+    character(len=:), allocatable :: text
+
+    text = ""
+    if (len(phase%kept_displacements) > 0) text = "phase '"//phase%name// &
+        "' keeps directions where earlier phases displaced them: "//phase%kept_displacements// &
+        " (`free` frees them)"
+  end function kept_note
+
+  !> Return a warning if a phase with an early end went on to its end; empty otherwise.
+  function until_warning(phase, state) result(text)
+    type(phase_t), intent(in) :: phase
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: quantity, unit
+
+    text = ""
+    if (phase%until%tool == 0) return
+    if (until_met(phase, state)) return
+    quantity = "displacement"
+    unit = " mm"
+    if (phase%until%kind == until_force) then
+      quantity = "force"
+      unit = " N"
+    end if
+    text = "warning: phase '"//phase%name//"' ended without meeting its `until`: the "//quantity// &
+        " is "//to_text(abs(until_value(phase, state)), 4)//unit//", not "// &
+        to_text(phase%until%value)//unit
+  end function until_warning
 
   !> Return a warning if a pressed tool has no contact at the start of a phase because its force
   !> points the wrong way, or no candidate lies ahead of it; empty otherwise.

@@ -116,6 +116,7 @@ contains
     associate (problem => system%problem, start => committed%start)
       call nodal_forces(model%load_set, -self%progress*(start%load_end - start%load), &
           model%contact_node, self%progress*start%fading, problem%residual)
+      problem%residual = problem%residual + self%progress*start%reaction
       problem%contact_residual = 0.0_wp
       problem%prescribed = self%progress*phase%displacement
       problem%tool_prescribed = self%progress*phase%move

@@ -18,14 +18,19 @@ module dd3_process_run
   use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
       try_increment
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
-  use dd3_process_phase_start, only : begin_phase
-  use dd3_process_phase_warnings, only : press_warning, release_warning, support_warning
+  use dd3_process_phase_start, only : begin_phase, check_returns
+  use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
+      support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
   use dd3_process_stepper, only : stepper_t
+  use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_system, only : new_system
   implicit none
   private
   public :: run_model, run_start_t, run_summary_t
+
+  !> Smallest increment of the progress of a phase.
+  real(wp), parameter :: least_progress = 1.0e-12_wp
 
   !> Initial data of a run.
   type :: run_start_t
@@ -149,11 +154,8 @@ contains
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
-        call begin_phase(model, number, committed)
-        call say_if_any(log, press_warning(model, committed))
-        call say_if_any(log, support_warning(model, committed))
-        if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
-            //"' has no increment: the condition of its early end holds at its start")
+        call start_phase(model, number, committed, log, error)
+        if (allocated(error)) return
       end if
       do while (.not. phase_is_over(model, committed))
         next_output = next_output_progress(model%output, phase, committed)
@@ -170,10 +172,36 @@ contains
           return
         end if
       end do
+      call say_if_any(log, until_warning(phase, committed))
       call say_if_any(log, release_warning(phase, committed))
+      call say_if_any(log, reaction_note(model, committed))
       call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
+
+  !> Begin a phase, with notes and warnings.
+  subroutine start_phase(model, number, committed, log, error)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    type(state_t), intent(inout) :: committed
+    type(log_t), intent(inout) :: log
+    !> Set if a tool that was released would start inside the sheet.
+    type(error_t), allocatable, intent(out) :: error
+
+    call check_returns(model, number, committed, error)
+    if (allocated(error)) return
+    call begin_phase(model, number, committed)
+    associate (phase => model%phase(number))
+      call say_if_any(log, kept_note(phase))
+      call say_if_any(log, press_warning(model, committed))
+      call say_if_any(log, support_warning(model, committed))
+      call say_if_any(log, unload_note(model, committed))
+      call say_if_any(log, imbalance_warning(model, committed))
+      if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
+          //"' has no increment: the condition of its early end holds at its start")
+    end associate
+  end subroutine start_phase
 
   !> Log a text that is not empty.
   subroutine say_if_any(log, text)
@@ -200,6 +228,13 @@ contains
       began = wall_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
+      if (predicted .and. .not. makes_progress(stepper)) then
+        call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
+            " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
+            " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
+            trim(attempt%limit%name))
+        return
+      end if
       do
         if (predicted) call try_increment(model, run%committed, run%trial, stepper)
         row = status_row(model, run%committed, stepper)
@@ -208,6 +243,7 @@ contains
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
             call shrink_increment(phase, stepper, again)
+        if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
@@ -223,6 +259,13 @@ contains
       end if
     end associate
   end subroutine run_increment
+
+  !> Whether an increment with the present r is large enough for the phase to end.
+  pure logical function makes_progress(stepper)
+    type(stepper_t), intent(in) :: stepper
+
+    makes_progress = stepper%attempt%limit%r*stepper%prediction%progress > least_progress
+  end function makes_progress
 
   !> Write an accepted increment to the records and show it.
   subroutine write_increment(run, model, next_output, log, error)

@@ -33,7 +33,7 @@ ACCEPTED = (
     ("later phase", (("load = x_max 0 0 -8", "load = x_max 0 0 -4"),), (), ""),
     ("other load set", (("load = x_max 0 0 -8", "load = corner 0 0 -4"), ("load = x_max 0 0 0", "load = corner 0 0 0")),
      (), ""),
-    ("added load set", (("*PHASE back", "*PHASE more\n  control = load\n  trial = 0.5\n  load = other_corner 1 0 0\n\n"
+    ("added load set", (("*PHASE back", "*PHASE more\n  control = load\n  trial = 0.5\n  load = other_corner 0 1 0\n\n"
                          "*PHASE back"),), (), ""),
     ("added phase", (("displace = other_corner z 0", "displace = other_corner z 0\n\n*PHASE last\n  control = load\n"
                       "  trial = 0.5\n  load = x_max 0 0 1"),), (), ""),

@@ -1,0 +1,86 @@
+!> Loads on directions that supports or `displace` hold: there they do not act on the sheet.
+module dd3_model_held_loads
+  use dd3_base_kinds, only : wp
+  use dd3_base_error, only : error_list_t
+  use dd3_input_case, only : case_t
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: axis_name, check_loads, find_held_loads, held_load_t
+
+  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
+
+  !> A component of a load that is held at some nodes of its set.
+  type :: held_load_t
+    !> Numbers of the phase, and of the load in it.
+    integer :: phase = 0, load = 0
+    !> Direction: 1, 2, 3.
+    integer :: axis = 0
+    !> Number of nodes held, and of all nodes of the set.
+    integer :: held = 0, n_node = 0
+  end type held_load_t
+
+contains
+
+  !> Report loads along a direction that is held at all nodes of the set.
+  subroutine check_loads(model, case, errors)
+    !> With its phases.
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    type(held_load_t), allocatable :: found(:)
+    integer :: i
+
+    call find_held_loads(model, case, found)
+    do i = 1, size(found)
+      if (found(i)%held < found(i)%n_node) cycle
+      associate (load => case%phase(found(i)%phase)%load(found(i)%load), &
+          axis => axis_name(found(i)%axis))
+        call errors%push_input(load%at, "the load along "//axis//" on '"//load%set// &
+            "' has no effect: all its nodes are held in this direction", "free = "//load%set// &
+            " "//axis//" where `displace` holds them, or no load in this direction")
+      end associate
+    end do
+  end subroutine check_loads
+
+  !> Find the loads given in the phases that are held in part or in whole.
+  pure subroutine find_held_loads(model, case, found)
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    type(held_load_t), allocatable, intent(out) :: found(:)
+
+    type(held_load_t) :: this
+    integer :: i, k, axis
+
+    allocate (found(0))
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%load)
+        do axis = 1, 3
+          if (abs(case%phase(i)%load(k)%force(axis)) <= 0.0_wp) cycle
+          this = held_load_t(phase=i, load=k, axis=axis)
+          call count_held(model, case%phase(i)%load(k)%set, this)
+          if (this%held > 0) found = [found, this]
+        end do
+      end do
+    end do
+  end subroutine find_held_loads
+
+  !> Count the nodes of a load's set that its phase holds.
+  pure subroutine count_held(model, set, this)
+    type(model_t), intent(in) :: model
+    !> Name of the set.
+    character(len=*), intent(in) :: set
+    !> Gets the numbers of nodes.
+    type(held_load_t), intent(inout) :: this
+
+    integer :: s
+
+    do s = 1, size(model%load_set)
+      if (model%load_set(s)%name /= set) cycle
+      this%held = count(model%phase(this%phase)%prescribed(this%axis, model%load_set(s)%node))
+      this%n_node = size(model%load_set(s)%node)
+    end do
+  end subroutine count_held
+
+end module dd3_model_held_loads

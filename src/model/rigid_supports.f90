@@ -1,0 +1,89 @@
+!> Supports against the rigid motions that are left free: as few as there are free motions, so that
+!> they carry no reaction if the forces on the sheet are in equilibrium. Each is chosen as the nodal
+!> direction with the largest component in the free motions (pivoted Gram-Schmidt), and those
+!> motions that it stops are removed.
+module dd3_model_rigid_supports
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_linalg_tensor, only : identity
+  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  implicit none
+  private
+  public :: choose_supports, name_of_support
+
+  !> Nodes with a support are taken, such as those of a plane of symmetry, if their component is at
+  !> least this fraction of the largest.
+  real(wp), parameter :: sufficient = 0.1_wp
+  !> Relative difference below which two components count as equal; the lower node number wins.
+  real(wp), parameter :: equal = 1.0e-6_wp
+
+contains
+
+  !> Choose the supports.
+  subroutine choose_supports(x, prescribed, support)
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Directions with a support already, `(3, n_node)`.
+    logical, intent(in) :: prescribed(:, :)
+    !> Node and axis of each support, `(2, n)`.
+    integer, allocatable, intent(out) :: support(:, :)
+
+    type(rigid_motion_t) :: body
+    real(wp) :: projector(6, 6), row(6), component, other
+    integer :: n, k, place(2), near(2)
+
+    call new_rigid_motion(body, x)
+    call body%hold_prescribed(x, prescribed)
+    call body%free_projector(projector, n)
+    allocate (support(2, n))
+    do k = 1, n
+      call find_largest(body, x, spread(.true., 1, size(x, 2)), projector, place, component)
+      call find_largest(body, x, any(prescribed, dim=1), projector, near, other)
+      if (other >= sufficient*component) place = near
+      support(:, k) = place
+      row = matmul(projector, body%condition(x(:, place(1)), identity(:, place(2))))
+      row = row/norm2(row)
+      projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
+    end do
+  end subroutine choose_supports
+
+  !> Find the nodal direction with the largest component in the free motions.
+  subroutine find_largest(body, x, allowed, projector, place, component)
+    type(rigid_motion_t), intent(in) :: body
+    real(wp), intent(in) :: x(:, :)
+    !> Nodes to choose from.
+    logical, intent(in) :: allowed(:)
+    !> Projection onto the free motions.
+    real(wp), intent(in) :: projector(6, 6)
+    !> Node and axis.
+    integer, intent(out) :: place(2)
+    real(wp), intent(out) :: component
+
+    real(wp) :: this
+    integer :: node, axis
+
+    place = 1
+    component = 0.0_wp
+    do node = 1, size(x, 2)
+      if (.not. allowed(node)) cycle
+      do axis = 1, 3
+        this = norm2(matmul(projector, body%condition(x(:, node), identity(:, axis))))
+        if (this <= component*(1.0_wp + equal)) cycle
+        component = this
+        place = [node, axis]
+      end do
+    end do
+  end subroutine find_largest
+
+  !> Return a support as text: `z of node 12`.
+  pure function name_of_support(support) result(text)
+    !> Node and axis.
+    integer, intent(in) :: support(2)
+    character(len=:), allocatable :: text
+
+    character(len=1), parameter :: axis(3) = ["x", "y", "z"]
+
+    text = axis(support(2))//" of node "//to_text(support(1))
+  end function name_of_support
+
+end module dd3_model_rigid_supports
