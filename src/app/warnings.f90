@@ -1,11 +1,13 @@
-!> Warnings of unusual magnitudes, most often caused by a wrong unit or a typing error. They are not
-!> errors: a unit cube of a model material is a valid case.
+!> Warnings of unusual magnitudes, most often caused by a wrong unit or a typing error, and of tools
+!> that probably are not as meant. They are not errors: a unit cube of a model material is a valid
+!> case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
   use dd3_model_model, only : model_t
+  use dd3_model_tool_report, only : tool_warnings
   implicit none
   private
   public :: unit_warnings
@@ -52,6 +54,7 @@ contains
             " mm of blank '"//blank%source%called()//"'", unusual_unit)
       end associate
     end do
+    call tool_warnings(case, model, warnings)
   end subroutine unit_warnings
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.

@@ -19,6 +19,7 @@ module dd3_model_build
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_sheet_faces, only : new_sheet_faces
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
@@ -140,6 +141,7 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     model%thickness = mesh%thickness
     model%contact_depth = 0.5_wp*mesh%thickness
