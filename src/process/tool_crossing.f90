@@ -1,6 +1,6 @@
 !> Tools that cross each other: points of one tool that a phase moved from the front of another
-!> tool's surface to behind it. Points are samples of the patches, so that slight overlaps may be
-!> missed.
+!> tool's surface to behind it. Points are samples of the patches, and only those not far behind are
+!> found, so that slight overlaps may be missed.
 module dd3_process_tool_crossing
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : n_sample, position_at
@@ -14,6 +14,9 @@ module dd3_process_tool_crossing
 
   !> Depth below which tools only touch each other, in thicknesses.
   real(wp), parameter :: notable_depth = 0.01_wp
+  !> Distance behind a surface within which points are looked for, in thicknesses and in sizes of
+  !> their patch, the larger of the two.
+  real(wp), parameter :: reach_thicknesses = 2.0_wp, reach_patches = 0.5_wp
   !> Number of patches from which on every fourth line of samples is used.
   integer, parameter :: many_patches = 100
 
@@ -57,18 +60,20 @@ contains
     !> Displacement of the second, mm.
     real(wp), intent(in) :: origin(3)
 
-    real(wp) :: x(3), depth
+    real(wp) :: x(3), depth, reach
     integer :: k, i, j, step
 
     associate (patch => model%tool(a)%surface%patch, surface => model%tool(b)%surface)
       step = merge(4, 1, size(patch) > many_patches)
       do k = 1, size(patch)
-        if (any(patch(k)%lower + offset > surface%upper + norm2(moved)) .or. &
-            any(patch(k)%upper + offset < surface%lower - norm2(moved))) cycle
+        reach = min(norm2(moved), max(reach_thicknesses*model%thickness, &
+            reach_patches*patch(k)%size))
+        if (any(patch(k)%lower + offset > surface%upper + reach .or. &
+            patch(k)%upper + offset < surface%lower - reach)) cycle
         do j = 0, n_sample, step
           do i = 0, n_sample, step
             x = position_at(patch(k), real(i, wp)/n_sample, real(j, wp)/n_sample) + offset
-            depth = depth_behind(surface, x, moved)
+            depth = depth_behind(surface, x, moved, reach)
             if (depth <= max(self%depth, notable_depth*model%thickness)) cycle
             self%depth = depth
             self%x = x + origin
@@ -80,23 +85,23 @@ contains
 
   !> Return the depth of a point behind a surface if it was in front of it before it moved, mm; 0
   !> otherwise.
-  pure real(wp) function depth_behind(surface, x, moved) result(depth)
+  pure real(wp) function depth_behind(surface, x, moved, reach) result(depth)
     type(surface_t), intent(in) :: surface
     !> Point and its displacement relative to the surface, mm.
     real(wp), intent(in) :: x(3), moved(3)
+    !> Largest depth, mm.
+    real(wp), intent(in) :: reach
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: distance
 
     depth = 0.0_wp
-    distance = norm2(moved)
-    if (any(x > surface%upper + distance) .or. any(x < surface%lower - distance)) return
-    call find_contact(surface, x, hint, distance, distance, hit)
+    if (any(x > surface%upper + reach .or. x < surface%lower - reach)) return
+    call find_contact(surface, x, hint, reach, reach, hit)
     if (.not. hit%found .or. hit%distance >= 0.0_wp) return
     depth = -hit%distance
     hint = hint_t()
-    call find_contact(surface, x - moved, hint, 2.0_wp*distance, distance, hit)
+    call find_contact(surface, x - moved, hint, reach + norm2(moved), reach, hit)
     if (.not. hit%found .or. hit%distance < 0.0_wp) depth = 0.0_wp
   end function depth_behind
 

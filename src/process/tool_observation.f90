@@ -1,6 +1,7 @@
 !> Observation of the tools after an accepted increment: which of them have touched the sheet, and
 !> how deep they enter its faces between the nodes.
 module dd3_process_tool_observation
+  use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -20,7 +21,7 @@ contains
     type(tool_depth_t) :: found
     integer :: tool
 
-    state%tool_depth = 0
+    state%tool_depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
       state%touched(tool) = state%touched(tool) .or. &
