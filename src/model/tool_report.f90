@@ -50,8 +50,8 @@ contains
 
     associate (patch => model%tool(tool)%surface%patch, n_t => size(report%t_junction, 2))
       text = counted(report%n_patch, "patch", "patches")//"; edges: "// &
-          to_text(report%n_joined)//" joined, "//to_text(report%n_open)//" open, "// &
-          to_text(size(report%near_miss))//" of near misses; "// &
+          to_text(report%n_joined)//" joined, "//to_text(report%n_open)//" open; "// &
+          counted(size(report%near_miss), "near miss", "near misses")//", "// &
           counted(n_t, "T-junction", "T-junctions")
       if (n_t > 0) text = text//" ("//lines(patch(report%t_patch(:, 1))%line)//")"
       text = text//", "//counted(report%n_kink, "kink", "kinks")
