@@ -18,6 +18,7 @@ module dd3_app_job
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
+  use dd3_model_tool_report, only : tool_report
   use dd3_output_restart, only : read_restart, restart_name
   use dd3_point_run, only : run_points
   use dd3_process_run, only : run_model, run_start_t, run_summary_t
@@ -98,7 +99,7 @@ contains
     type(text_t), allocatable :: warnings(:)
     integer :: i
 
-    write (output_unit, '(a)', advance="no") echo_case(case)
+    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)
     call unit_warnings(case, model, warnings)
     do i = 1, size(warnings)
       write (output_unit, '(a)') warnings(i)%s
@@ -207,7 +208,7 @@ contains
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
     end do
-    call log%note(echo_case(case))
+    call log%note(echo_case(case)//tool_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle

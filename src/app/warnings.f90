@@ -1,6 +1,6 @@
 !> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error,
-!> settings that make results inaccurate, loads on held directions. They are not errors: a unit cube
-!> of a model material is a valid case.
+!> settings that make results inaccurate, loads on held directions, tools that probably are not as
+!> meant. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
@@ -8,6 +8,7 @@ module dd3_app_warnings
   use dd3_input_case, only : case_t
   use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
+  use dd3_model_tool_report, only : tool_warnings
   implicit none
   private
   public :: unit_warnings
@@ -67,6 +68,7 @@ contains
     end do
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
+    call tool_warnings(case, model, warnings)
   end subroutine unit_warnings
 
   !> Warn of a tolerance of the corrector and a search distance that make results inaccurate.

@@ -4,7 +4,7 @@ module dd3_contact_surface
   use dd3_contact_bezier, only : patch_t, position_at, normal_at, curve_length
   implicit none
   private
-  public :: surface_t, edge_t, new_surface, edge_parameters, edge_number
+  public :: surface_t, edge_t, new_surface, edge_parameters, edge_number, coincident
 
   !> Number of points at which two edges are compared.
   integer, parameter :: n_compared = 5

@@ -22,6 +22,7 @@ module dd3_model_build
   use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_sheet_faces, only : new_sheet_faces
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
@@ -144,6 +145,7 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     model%thickness = mesh%thickness
     model%tolerance = new_tolerances(mesh%thickness, mesh%x)

@@ -8,6 +8,7 @@ module dd3_model_model
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
   implicit none
   private
@@ -48,6 +49,8 @@ module dd3_model_model
     integer, allocatable :: connectivity(:, :)
     !> Element type of the sheet.
     type(element_t) :: element
+    !> Faces on the boundary of the sheet.
+    type(sheet_faces_t) :: face
     type(material_t), allocatable :: material(:)
     character(len=24), allocatable :: material_name(:)
     !> Internal variables of the materials, for output.

@@ -84,6 +84,12 @@ module dd3_model_state
     real(wp), allocatable :: tool_load(:, :)
     !> Force of the sheet on the tools, fading forces included, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_force(:, :)
+    !> Whether each tool has been in contact since the start of the job, `(n_tool)`.
+    logical, allocatable :: touched(:)
+    !> Depth of each tool in the faces of the sheet between the nodes, its largest value in the
+    !> running phase, `(n_tool)`, mm, and the face of that value, 0 for none.
+    real(wp), allocatable :: tool_depth(:), largest_depth(:)
+    integer, allocatable :: deepest_face(:)
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   end type state_t
@@ -106,6 +112,9 @@ contains
       allocate (self%hint(n_tool, n_contact))
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
       allocate (self%tool_force(3, n_tool), source=0.0_wp)
+      allocate (self%touched(n_tool), source=.false.)
+      allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
+      allocate (self%deepest_face(n_tool), source=0)
     end associate
     self%x(:, :) = model%x0
     do e = 1, model%n_element

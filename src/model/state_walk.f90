@@ -87,6 +87,10 @@ contains
     call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
     call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
     call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
+    call visitor%logicals("touched", size(state%touched), state%touched)
+    call visitor%reals("tool_depth", size(state%tool_depth), state%tool_depth)
+    call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
+    call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 

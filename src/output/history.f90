@@ -89,8 +89,8 @@ contains
     do i = 1, model%n_tool
       call add_vector(names, units, trim(model%tool(i)%name)//"_u", "mm")
       call add_vector(names, units, trim(model%tool(i)%name)//"_f", "N")
-      names = names//","//trim(model%tool(i)%name)//"_contacts"
-      units = units//",-"
+      names = names//","//trim(model%tool(i)%name)//"_contacts,"//trim(model%tool(i)%name)//"_depth"
+      units = units//",-,mm"
     end do
     if (allocated(model%history)) then
       do i = 1, size(model%history)
@@ -162,6 +162,7 @@ contains
       call table%add_reals(state%tool_displacement(:, i))
       call table%add_reals(state%tool_force(:, i))
       call table%add_integer(count(state%contact_tool == i .and. state%status /= status_gap))
+      call table%add_real(state%tool_depth(i))
     end do
     if (.not. allocated(model%history)) return
     do i = 1, size(model%history)

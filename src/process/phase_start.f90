@@ -44,6 +44,8 @@ contains
     state%phase = number
     state%begun = .true.
     state%progress = 0.0_wp
+    state%largest_depth = 0.0_wp
+    state%deepest_face = 0
     associate (phase => model%phase(number), start => state%start)
       start%load = state%load
       start%load_end = phase%load_end

@@ -5,7 +5,7 @@ module dd3_process_run
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted
   use dd3_base_log, only : log_t
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : text_t, to_text
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : solver_options_t
@@ -23,6 +23,8 @@ module dd3_process_run
       support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
   use dd3_process_stepper, only : stepper_t
+  use dd3_process_tool_observation, only : observe_tools
+  use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_system, only : new_system
   implicit none
@@ -149,8 +151,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(error_t), allocatable :: late
+    type(text_t), allocatable :: warnings(:)
     real(wp) :: next_output
-    integer :: done
+    integer :: done, i
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
@@ -175,6 +178,10 @@ contains
       call say_if_any(log, until_warning(phase, committed))
       call say_if_any(log, release_warning(phase, committed))
       call say_if_any(log, reaction_note(model, committed))
+      call tool_warnings(model, committed, warnings)
+      do i = 1, size(warnings)
+        call log%say(warnings(i)%s)
+      end do
       call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
@@ -280,6 +287,7 @@ contains
     type(progress_view_t) :: view
 
     call run%stepper%system%profile%start()
+    call observe_tools(model, run%committed)
     associate (state => run%committed, phase => model%phase(run%committed%phase), &
         attempt => run%stepper%attempt)
       call run%records%write_increment(model, state, &

@@ -1,0 +1,295 @@
+!> Depth by which tools enter the faces of the sheet between its nodes. Contact is nodal: a tool can
+!> pass a face where it is more strongly curved than the mesh resolves, or narrower than an element.
+!> Measured both ways: points of the faces inside the tool, and points of the tool behind the faces.
+module dd3_model_tool_depth
+  use dd3_base_kinds, only : wp
+  use dd3_contact_bezier, only : n_sample, normal_at, patch_t
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_linalg_tensor, only : cross
+  use dd3_model_model, only : model_t
+  use dd3_model_sheet_faces, only : face_normal
+  use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : wrong_side_depth
+  implicit none
+  private
+  public :: tool_depth_t, measure_tool_depth
+
+  !> Fractions of the corners at the points of a face: centre and middles of the edges.
+  real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp
+  real(wp), parameter :: sample_shape(4, 5) = &
+      reshape([q, q, q, q, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], [4, 5])
+  !> Depth below which a tool does not enter a face, in thicknesses.
+  real(wp), parameter :: slight_depth = 1.0e-3_wp
+  !> Margin around a face in which closest points of its points are looked for, in diagonals.
+  real(wp), parameter :: margin = 0.25_wp
+  !> Least -m.n of the normals of sheet and tool that face each other.
+  real(wp), parameter :: facing = 0.05_wp
+
+  !> Largest depth of a tool.
+  type :: tool_depth_t
+    !> mm; 0 if the tool enters no face.
+    real(wp) :: depth = 0.0_wp
+    !> Face of the sheet, as in `sheet_faces_t`; 0 for none.
+    integer :: face = 0
+  end type tool_depth_t
+
+  !> A face of the sheet in the frame of a tool.
+  type :: face_t
+    integer :: number = 0
+    !> Corners, mm, and outward unit normal.
+    real(wp) :: x(3, 4) = 0.0_wp, normal(3) = 0.0_wp
+    !> Longest diagonal, mm.
+    real(wp) :: size = 0.0_wp
+    !> Largest depth that is looked for, mm.
+    real(wp) :: reach = 0.0_wp
+    !> Bounding box of the face and the space behind it within the reach, mm.
+    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
+    !> Largest component of a corner along the normal, mm.
+    real(wp) :: height = 0.0_wp
+  end type face_t
+
+contains
+
+  !> Measure the depth of a tool in the faces whose nodes are its candidates.
+  pure function measure_tool_depth(model, state, tool) result(self)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    type(tool_depth_t) :: self
+
+    type(face_t) :: face
+    integer :: candidate(4), f
+    logical :: near
+
+    self%depth = slight_depth*model%thickness
+    do f = 1, model%face%n
+      candidate = model%candidate_of(model%face%corner(:, f))
+      if (any(candidate == 0)) cycle
+      if (.not. all(model%candidate(tool, candidate))) cycle
+      call set_face(face, model, state, tool, f)
+      call probe_patches(self, model, face, tool, near)
+      if (near) call probe_tool(self, model, face, state%hint(tool, candidate), tool)
+    end do
+    if (self%face == 0) self%depth = 0.0_wp
+  end function measure_tool_depth
+
+  !> Set a face in the frame of a tool.
+  pure subroutine set_face(self, model, state, tool, f)
+    type(face_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool, f
+
+    self%number = f
+    self%x = state%x(:, model%face%corner(:, f)) - spread(state%tool_displacement(:, tool), 2, 4)
+    self%normal = face_normal(self%x)
+    self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
+    self%reach = max(wrong_side_depth*model%thickness, self%size)
+    self%lower = minval(self%x, dim=2) - self%reach*max(self%normal, 0.0_wp)
+    self%upper = maxval(self%x, dim=2) - self%reach*min(self%normal, 0.0_wp)
+    self%height = maxval(matmul(self%normal, self%x))
+  end subroutine set_face
+
+  !> Keep a larger depth.
+  pure subroutine keep_larger(self, depth, face)
+    type(tool_depth_t), intent(inout) :: self
+    real(wp), intent(in) :: depth
+    type(face_t), intent(in) :: face
+
+    if (depth <= self%depth) return
+    self%depth = depth
+    self%face = face%number
+  end subroutine keep_larger
+
+  !> Measure the depth of points of the tool behind a face.
+  pure subroutine probe_patches(self, model, face, tool, near)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(face_t), intent(in) :: face
+    integer, intent(in) :: tool
+    !> Whether a patch may reach behind the face, or behind a margin around it.
+    logical, intent(out) :: near
+
+    real(wp) :: edge
+    integer :: k
+
+    edge = margin*face%size
+    near = .false.
+    associate (surface => model%tool(tool)%surface)
+      if (any(face%lower - edge > surface%upper .or. face%upper + edge < surface%lower)) return
+      do k = 1, size(surface%patch)
+        associate (patch => surface%patch(k))
+          if (any(patch%lower > face%upper + edge .or. patch%upper < face%lower - edge)) cycle
+          if (largest_depth(patch, face) <= self%depth) cycle
+          near = .true.
+          call probe_patch(self, model, face, tool, k)
+        end associate
+      end do
+    end associate
+  end subroutine probe_patches
+
+  !> Measure the depth of points of a face in the tool. All points are in front of the tool if its
+  !> centre is far enough.
+  pure subroutine probe_tool(self, model, face, hint, tool)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(face_t), intent(in) :: face
+    !> Last closest points of the corners.
+    type(hint_t), intent(in) :: hint(4)
+    integer, intent(in) :: tool
+
+    type(hint_t) :: start
+    type(hit_t) :: hit
+    real(wp) :: x(3)
+    integer :: i
+
+    if (is_far(face, hint) .or. is_beside_plane(model, hint, tool)) return
+    start = hint(maxloc(hint%patch, dim=1))
+    do i = 1, size(sample_shape, 2)
+      x = matmul(face%x, sample_shape(:, i))
+      start%due = start%patch == 0
+      start%anchor = x
+      call find_contact(model%tool(tool)%surface, x, start, face%size, face%size, hit)
+      if (.not. hit%found) cycle
+      if (hit%distance > 0.5_wp*face%size) return
+      if (dot_product(hit%normal, face%normal) > -facing) cycle
+      call keep_larger(self, -hit%distance, face)
+    end do
+  end subroutine probe_tool
+
+  !> Whether the last searches of the corners show that the tool is farther than the face's size.
+  pure logical function is_far(face, hint)
+    type(face_t), intent(in) :: face
+    type(hint_t), intent(in) :: hint(4)
+
+    integer :: i
+
+    is_far = .false.
+    do i = 1, 4
+      if (hint(i)%due .or. hint(i)%patch > 0) return
+      if (hint(i)%clearance - norm2(face%x(:, i) - hint(i)%anchor) < face%size) return
+    end do
+    is_far = .true.
+  end function is_far
+
+  !> Whether the closest points of all corners lie on one plane: no other point is deeper then.
+  pure logical function is_beside_plane(model, hint, tool)
+    type(model_t), intent(in) :: model
+    type(hint_t), intent(in) :: hint(4)
+    integer, intent(in) :: tool
+
+    is_beside_plane = hint(1)%patch > 0 .and. all(hint%patch == hint(1)%patch)
+    if (is_beside_plane) is_beside_plane = model%tool(tool)%surface%patch(hint(1)%patch)%flat
+  end function is_beside_plane
+
+  !> Return an upper bound of the depth of a patch behind a face, from its bounding box, mm.
+  pure real(wp) function largest_depth(patch, face)
+    type(patch_t), intent(in) :: patch
+    type(face_t), intent(in) :: face
+
+    largest_depth = face%height - dot_product(face%normal, patch%centre) &
+        + 0.5_wp*dot_product(abs(face%normal), patch%upper - patch%lower)
+  end function largest_depth
+
+  !> Measure the depth of points of a patch behind a face; those of a plane lie on its edges, as no
+  !> inner point is deeper than all of them.
+  pure subroutine probe_patch(self, model, face, tool, k)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(face_t), intent(in) :: face
+    integer, intent(in) :: tool, k
+
+    real(wp) :: point(3), depth
+    integer :: i, j
+
+    associate (patch => model%tool(tool)%surface%patch(k))
+      do j = 0, n_sample
+        do i = 0, n_sample
+          if (patch%flat .and. mod(i, n_sample) > 0 .and. mod(j, n_sample) > 0) cycle
+          point = stored_point(patch, i, j)
+          depth = face%height - dot_product(face%normal, point)
+          if (depth <= self%depth) cycle
+          if (any(point < face%lower .or. point > face%upper)) cycle
+          call locate(face, point, depth)
+          if (depth <= self%depth .or. depth > face%reach) cycle
+          if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
+          if (depth > model%thickness) then
+            if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
+          end if
+          call keep_larger(self, depth, face)
+        end do
+      end do
+    end associate
+  end subroutine probe_patch
+
+  !> Return a point of the stored grid of a patch, mm.
+  pure function stored_point(patch, i, j) result(point)
+    type(patch_t), intent(in) :: patch
+    integer, intent(in) :: i, j
+    real(wp) :: point(3)
+
+    if (patch%flat) then
+      point = patch%control(:, 0, 0) &
+          + real(i, wp)/n_sample*(patch%control(:, 1, 0) - patch%control(:, 0, 0)) &
+          + real(j, wp)/n_sample*(patch%control(:, 0, 1) - patch%control(:, 0, 0))
+    else
+      point = patch%centre + patch%sample(:, i, j)
+    end if
+  end function stored_point
+
+  !> Find the depth of a point behind a face along its normal: behind one of the four triangles
+  !> between the centre and the edges.
+  pure subroutine locate(face, point, depth)
+    type(face_t), intent(in) :: face
+    real(wp), intent(in) :: point(3)
+    !> mm; negative in front of the face, and if the point lies beside it.
+    real(wp), intent(out) :: depth
+
+    real(wp) :: centre(3), a(3), b(3), r(3), area, along(2)
+    integer :: i
+
+    depth = -1.0_wp
+    centre = 0.25_wp*sum(face%x, dim=2)
+    r = point - centre
+    do i = 1, 4
+      a = face%x(:, i) - centre
+      b = face%x(:, mod(i, 4) + 1) - centre
+      area = dot_product(face%normal, cross(a, b))
+      if (area <= 0.0_wp) cycle
+      along(1) = dot_product(face%normal, cross(r, b))/area
+      along(2) = dot_product(face%normal, cross(a, r))/area
+      if (any(along < 0.0_wp) .or. sum(along) > 1.0_wp) cycle
+      depth = dot_product(face%normal, along(1)*a + along(2)*b - r)
+      return
+    end do
+  end subroutine locate
+
+  !> Whether the tool faces the sheet at a point of a patch.
+  pure logical function enters(patch, face, uv)
+    type(patch_t), intent(in) :: patch
+    type(face_t), intent(in) :: face
+    !> Parameters of the point.
+    real(wp), intent(in) :: uv(2)
+
+    real(wp) :: normal(3)
+
+    call normal_at(patch, uv(1), uv(2), normal, enters)
+    enters = enters .and. dot_product(normal, face%normal) < -facing
+  end function enters
+
+  !> Whether a point of a face is inside the tool: a part of the tool deeper than the thickness may
+  !> be one behind the sheet.
+  pure logical function is_inside(model, tool, x, face)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: x(3)
+    type(face_t), intent(in) :: face
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+
+    call find_contact(model%tool(tool)%surface, x, hint, face%reach, face%reach, hit)
+    is_inside = hit%found .and. hit%distance < 0.0_wp
+  end function is_inside
+
+end module dd3_model_tool_depth

@@ -1,0 +1,163 @@
+!> Warnings about the tools at the end of a phase: without contact, entered between the nodes of the
+!> sheet, crossed.
+module dd3_process_tool_warnings
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : text_t, to_text
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_process_tool_crossing, only : crossing_t, find_crossing
+  implicit none
+  private
+  public :: tool_warnings
+
+  !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
+  !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
+  !> quarter circle. A smaller depth than `slight_depth` thicknesses is not reported.
+  real(wp), parameter :: notable_depth = 0.1_wp, notable_slope = acos(-1.0_wp)/64.0_wp
+  real(wp), parameter :: slight_depth = 0.02_wp
+
+contains
+
+  !> Return the warnings at the end of a phase, one line each.
+  subroutine tool_warnings(model, state, warnings)
+    type(model_t), intent(in) :: model
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    type(text_t), allocatable, intent(out) :: warnings(:)
+
+    integer :: a, b
+
+    allocate (warnings(0))
+    associate (active => model%phase(state%phase)%active)
+      do a = 1, model%n_tool
+        if (.not. active(a)) cycle
+        call add(warnings, model, state, contact_warning(model, state, a))
+        call add(warnings, model, state, depth_warning(model, state, a))
+        do b = a + 1, model%n_tool
+          if (active(b)) call add(warnings, model, state, crossing_warning(model, state, a, b))
+        end do
+      end do
+    end associate
+  end subroutine tool_warnings
+
+  !> Add a warning that is not empty.
+  subroutine add(warnings, model, state, message)
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    character(len=*), intent(in) :: message
+
+    type(text_t), allocatable :: longer(:)
+    integer :: i
+
+    if (len(message) == 0) return
+    allocate (longer(size(warnings) + 1))
+    do i = 1, size(warnings)
+      longer(i)%s = warnings(i)%s
+    end do
+    longer(i)%s = "warning: in phase '"//model%phase(state%phase)%name//"' "//message
+    call move_alloc(longer, warnings)
+  end subroutine add
+
+  !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
+  function contact_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    real(wp) :: gap
+    integer :: node
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      if (state%touched(tool)) return
+      if (.not. phase%pressed(tool) .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
+    end associate
+    call find_nearest(model, state, tool, node, gap)
+    text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
+    if (node > 0) then
+      text = text//"the nearest candidate, node "//to_text(node)//", is "//to_text(abs(gap), 3)// &
+          " mm "//trim(merge("behind   ", "in front ", gap < 0.0_wp))//" of its surface"
+    else
+      text = text//"no candidate lies in front of its surface"
+    end if
+    if (state%largest_depth(tool) > 0.0_wp) then
+      text = text//"; it passed between the nodes"
+    else
+      text = text//"; check its place, its normals and its set of candidates"
+    end if
+  end function contact_warning
+
+  !> Find the candidate that is nearest to a tool.
+  subroutine find_nearest(model, state, tool, node, gap)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    !> 0 if no candidate lies in front of or behind the tool's surface.
+    integer, intent(out) :: node
+    !> mm.
+    real(wp), intent(out) :: gap
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    integer :: c
+
+    node = 0
+    gap = huge(1.0_wp)
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      hint = hint_t()
+      associate (distance => model%tolerance%tool_search, n => model%contact_node(c))
+        call find_contact(model%tool(tool)%surface, state%x(:, n) &
+            - state%tool_displacement(:, tool), hint, distance, distance, hit)
+        if (.not. hit%found .or. abs(hit%distance) >= abs(gap)) cycle
+        gap = hit%distance
+        node = n
+      end associate
+    end do
+  end subroutine find_nearest
+
+  !> Return a warning if a tool has entered the faces of the sheet notably between their nodes.
+  function depth_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    real(wp) :: edge(3, 4), length
+
+    text = ""
+    if (state%deepest_face(tool) == 0) return
+    associate (depth => state%largest_depth(tool)/model%thickness, &
+        face => model%face%corner(:, state%deepest_face(tool)))
+      edge = state%x(:, face) - state%x(:, cshift(face, 1))
+      length = maxval(norm2(edge, dim=1))
+      if (depth < slight_depth) return
+      if (depth < notable_depth .and. state%largest_depth(tool) < notable_slope*length) return
+      text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
+          to_text(state%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
+          " thicknesses), at the face of element "//to_text(model%face%element(state%deepest_face(tool)))// &
+          " with edges up to "//to_text(length, 3)//" mm long: the mesh is too coarse for the tool"
+    end associate
+  end function depth_warning
+
+  !> Return a warning if two tools have crossed in the phase.
+  function crossing_warning(model, state, a, b) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: a, b
+    character(len=:), allocatable :: text
+
+    type(crossing_t) :: crossing
+
+    text = ""
+    crossing = find_crossing(model, state, a, b)
+    if (crossing%depth <= 0.0_wp) return
+    text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
+        "' crossed each other: they overlap by "//to_text(crossing%depth, 3)//" mm near "// &
+        to_text(crossing%x(1), 4)//" "//to_text(crossing%x(2), 4)//" "//to_text(crossing%x(3), 4)
+  end function crossing_warning
+
+end module dd3_process_tool_warnings
