@@ -16,7 +16,8 @@ module dd3_input_fill
 
 contains
 
-  !> Fill the case. Members whose entries did not pass the check keep their values.
+  !> Fill the case. Members whose entries did not pass the check keep their values. Of a block that
+  !> may be given only once, the first one counts, as in the check of its values.
   subroutine fill_case(case, deck)
     type(case_t), intent(inout) :: case
     type(deck_t), intent(in) :: deck
@@ -30,6 +31,7 @@ contains
     allocate (case%output%fields_value(0))
     do i = 1, deck%n_block
       associate (block => deck%block(i))
+        if (is_repeated(deck, i)) cycle
         select case (block%keyword)
         case ("title")
           call fill_title(case, block)
@@ -50,6 +52,20 @@ contains
     call fill_process(case, deck)
     case%deck = deck
   end subroutine fill_case
+
+  !> Whether a block of the same kind stands above block i.
+  pure logical function is_repeated(deck, i)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i
+
+    integer :: j
+
+    is_repeated = .false.
+    do j = 1, i - 1
+      if (deck%block(j)%keyword == deck%block(i)%keyword) is_repeated = .true.
+      if (is_repeated) return
+    end do
+  end function is_repeated
 
   !> Fill the sheet, its material and the tools.
   subroutine fill_model(case, deck)
