@@ -19,12 +19,12 @@ program dd3imp
 
   type(options_t) :: options
   type(error_t), allocatable :: error
-  integer :: exit_code
+  integer :: exit_code, ignored
 
   call read_command_line(options, error)
   if (allocated(error)) then
-    write (error_unit, '(a)') "dd3imp: "//error%message
-    write (error_unit, '(a)', advance="no") usage_text()
+    write (error_unit, '(a)', iostat=ignored) "dd3imp: "//error%message
+    write (error_unit, '(a)', advance="no", iostat=ignored) usage_text()
     exit_code = exit_usage
   else if (options%version) then
     call show_version()
@@ -34,7 +34,7 @@ program dd3imp
   else
     call run_job(options, exit_code)
   end if
-  flush (error_unit)
+  flush (error_unit, iostat=ignored)
   call c_exit(int(exit_code, c_int))
 
 end program dd3imp

@@ -3,7 +3,7 @@
 module dd3_input_block
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, location_t
-  use dd3_base_text, only : same_name
+  use dd3_base_text, only : same_name, text_t
   implicit none
   private
   public :: token_t, entry_t, block_t, deck_t
@@ -69,6 +69,8 @@ module dd3_input_block
     integer :: n_block = 0
     !> Blocks, `block(1:n_block)`.
     type(block_t), allocatable :: block(:)
+    !> Names of the files read, the input file first.
+    type(text_t), allocatable :: file(:)
   contains
     procedure :: add_block
   end type deck_t
