@@ -1,7 +1,8 @@
 !> Identity of files, whatever their names: device and inode, by statx (Linux). Symbolic links are
 !> followed.
 module dd3_base_identity
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_int16_t, c_int32_t, c_int64_t, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_int16_t, c_int32_t, c_int64_t, &
+      c_null_char
   implicit none
   private
   public :: is_same_file, is_at, is_regular
