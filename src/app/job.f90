@@ -1,7 +1,9 @@
 !> One job from the options to the exit code.
 module dd3_app_job
+  use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : options_t
+  use dd3_app_memory, only : watch_log
   use dd3_app_overwrite, only : check_overwrite, result_file
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
@@ -125,6 +127,7 @@ contains
     call make_directory(start%directory, error)
     if (.not. allocated(error)) call open_log(log, options%quiet, start, error)
     if (.not. allocated(error)) then
+      call watch_log(log%descriptor())
       call introduce(log, case, model)
       if (.not. allocated(start%source)) call clear_directory(log, start%directory)
       if (size(case%point) > 0) then
@@ -143,6 +146,7 @@ contains
     else
       call log%say("reached the end; results in "//start%directory)
     end if
+    call watch_log(-1_c_int)
     call log%close(error)
     if (.not. allocated(error)) return
     if (exit_code == exit_end) call write_line("dd3imp: "//error%message)

@@ -33,6 +33,7 @@ module dd3_base_log
     procedure :: note => log_note
     procedure :: live => log_live
     procedure :: check => log_check
+    procedure :: descriptor => log_descriptor
     procedure :: close => log_close
   end type log_t
 
@@ -146,6 +147,13 @@ contains
     if (self%file%descriptor >= 0) call self%file%flush(error)
     if (allocated(self%failure)) call move_alloc(self%failure, error)
   end subroutine log_check
+
+  !> Return the descriptor of job.log; negative if it is not open.
+  pure integer(c_int) function log_descriptor(self)
+    class(log_t), intent(in) :: self
+
+    log_descriptor = self%file%descriptor
+  end function log_descriptor
 
   !> Clear the status line and close job.log.
   subroutine log_close(self, error)

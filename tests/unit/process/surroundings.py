@@ -7,6 +7,7 @@ import argparse
 import csv
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -194,7 +195,57 @@ def inputs_in_the_way(program, directory):
             check(victim.read_bytes() == before, f"{name}, {kind}: the input was changed")
 
 
-TESTS = (signals, kept_signals, closed_output, killed, vanished_folder, shared_folder, inputs_in_the_way)
+def little_memory(program, directory):
+    """Test a limited address space: a sentence and exit code 3, or the end; never a hang."""
+    directory.mkdir(parents=True)
+    shutil.copytree(FOLDER, directory, dirs_exist_ok=True)
+    deck = directory / "bending.dat"
+    text = deck.read_text(encoding="utf-8")
+    deck.write_text(text.replace("divisions = 10 3 2", "divisions = 120 60 2"), encoding="utf-8")
+    stopped = 0
+    for megabytes in (90, 120, 160, 220, 300):
+        limit = megabytes << 20
+        done = subprocess.run([program, "--output", directory / str(megabytes), deck], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True, timeout=100, check=False,
+                              preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        if done.returncode == 127:
+            continue  # the libraries cannot be loaded
+        check(done.returncode == 3, f"{megabytes} MB: exit code {done.returncode}:\n{done.stderr}")
+        check(re.search(r"stopped: .*(not enough|lack of) memory", done.stderr), f"{megabytes} MB: it says {done.stderr}")
+        check("Backtrace" not in done.stderr, f"{megabytes} MB: it says {done.stderr}")
+        if (directory / str(megabytes)).exists():
+            said(directory / str(megabytes), " memory; " if "lack of" in done.stderr else "not enough memory")
+        stopped += 1
+    check(stopped > 1, "no limit was low enough")
+    # The threads of OpenBLAS fail under this limit.
+    done = subprocess.run([program, "--quiet", "--check", BENDING], timeout=60, check=False,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20)))
+    check(done.returncode == 0, f"--check: exit code {done.returncode}")
+
+
+def long_inputs(program, directory):
+    """Test very long lines and very many keys, blocks and parameters: an answer in time."""
+    directory.mkdir(parents=True)
+    good, n = TENSION.read_text(encoding="utf-8"), 20000
+    numbers = " ".join(str(i) for i in range(n))
+    for name, text, code in (
+            ("numbers", f"{good}\n*OUTPUT\n  fields = at {numbers}\n", 2),
+            ("nodes", f"{good}\n*SET many\n  nodes = {' 1' * n}\n", 0),
+            ("words", f"{good}\n*BOUNDARY many\n  set = x_min\n  fix = {' x' * n}\n", 2),
+            ("word", f"{good}\n*OUTPUT\n  fields = {'x' * 50 * n}\n", 2),
+            ("keys", f"{good}\n*OUTPUT\n" + "".join(f"  key{i} = 1\n" for i in range(n)), 2),
+            ("blocks", good + "".join(f"\n*SET s{i}\n  plane = x 0" for i in range(n // 4)) + "\n", 0),
+            ("parameters", "*PARAMETER\n" + "".join(f"  p{i} = {i}\n" for i in range(n)) + good, 0),
+            ("continued", f"{good}\n*OUTPUT\n  fields = at" + "".join(f" &\n {i}" for i in range(n)) + "\n", 2)):
+        deck = directory / f"{name}.dat"
+        deck.write_text(text, encoding="utf-8")
+        done = subprocess.run([program, "--check", deck], capture_output=True, text=True, timeout=20, check=False)
+        check(done.returncode == code, f"{name}: exit code {done.returncode}:\n{done.stderr[:2000]}")
+        check(len(done.stderr) < 1_000_000, f"{name}: it says {len(done.stderr)} characters")
+
+
+TESTS = (signals, kept_signals, closed_output, killed, vanished_folder, shared_folder, inputs_in_the_way,
+         little_memory, long_inputs)
 
 
 def main():
