@@ -62,19 +62,21 @@ contains
 
   !> Start the program again with the same arguments; no-op if that fails.
   subroutine start_again()
-    type(text_t), target :: argument(0:command_argument_count())
-    type(c_ptr) :: address(0:command_argument_count() + 1)
-    integer :: i, length
+    type(text_t), allocatable, target :: argument(:)
+    type(c_ptr), allocatable :: address(:)
+    integer :: i, n, length
     integer(c_int) :: ignored
 
-    do i = 0, command_argument_count()
+    n = command_argument_count()
+    allocate (argument(0:n), address(0:n + 1))
+    do i = 0, n
       call get_command_argument(i, length=length)
       allocate (character(len=length + 1) :: argument(i)%s)
       call get_command_argument(i, argument(i)%s)
       argument(i)%s(length + 1:) = c_null_char
       address(i) = c_loc(argument(i)%s)
     end do
-    address(i) = c_null_ptr
+    address(n + 1) = c_null_ptr
     ignored = posix_execv("/proc/self/exe"//c_null_char, address)
   end subroutine start_again
 
