@@ -1,8 +1,21 @@
 #!/usr/bin/env bash
 # Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the utilities.
 # Needs root only if a package is missing.
+#
+#   utils/install_needed.sh              all of it
+#   utils/install_needed.sh --no-python  without .venv
+#   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
 cd "$(dirname "$0")/.."
+usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
+case "$*" in
+  "" | --no-python) ;;
+  --help | -h) usage; exit ;;
+  *)
+    usage >&2
+    echo "error: unknown argument $*" >&2
+    exit 2 ;;
+esac
 
 packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libhdf5-dev
   python3 python3-venv python3-pip libegl1 libgl1-mesa-dri libxrender1)

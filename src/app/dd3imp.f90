@@ -1,30 +1,25 @@
 !> Sheet metal forming with rigid tools: read a keyword file, run the process that it describes and
 !> write the results.
 program dd3imp
-  use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit
   use dd3_app_command_line, only : options_t, read_command_line, usage_text
   use dd3_app_help, only : show_help, show_version
   use dd3_app_job, only : run_job, exit_end, exit_usage
+  use dd3_app_memory, only : end_program, watch_memory
+  use dd3_app_one_blas_thread, only : use_one_blas_thread_if_limited
   use dd3_base_error, only : error_t
   implicit none
 
-  interface
-    !> exit(3): end the program with an exit code, without the message of `stop`.
-    subroutine c_exit(code) bind(c, name="exit")
-      import :: c_int
-      integer(c_int), value :: code
-    end subroutine c_exit
-  end interface
-
   type(options_t) :: options
   type(error_t), allocatable :: error
-  integer :: exit_code
+  integer :: exit_code, ignored
 
+  call use_one_blas_thread_if_limited()
+  call watch_memory()
   call read_command_line(options, error)
   if (allocated(error)) then
-    write (error_unit, '(a)') "dd3imp: "//error%message
-    write (error_unit, '(a)', advance="no") usage_text()
+    write (error_unit, '(a)', iostat=ignored) "dd3imp: "//error%message
+    write (error_unit, '(a)', advance="no", iostat=ignored) usage_text()
     exit_code = exit_usage
   else if (options%version) then
     call show_version()
@@ -34,7 +29,7 @@ program dd3imp
   else
     call run_job(options, exit_code)
   end if
-  flush (error_unit)
-  call c_exit(int(exit_code, c_int))
+  flush (error_unit, iostat=ignored)
+  call end_program(exit_code)
 
 end program dd3imp

@@ -1,7 +1,10 @@
 !> One job from the options to the exit code.
 module dd3_app_job
+  use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : options_t
+  use dd3_app_memory, only : watch_log
+  use dd3_app_overwrite, only : check_overwrite, result_file
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
   use dd3_base_error, only : error_list_t, error_t, fatal_error
@@ -19,7 +22,7 @@ module dd3_app_job
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
   use dd3_model_tool_report, only : tool_report
-  use dd3_output_restart, only : read_restart, restart_name
+  use dd3_output_restart, only : read_restart
   use dd3_point_run, only : run_points
   use dd3_process_run, only : run_model, run_start_t, run_summary_t
   implicit none
@@ -31,9 +34,6 @@ module dd3_app_job
   integer, parameter :: exit_end = 0, exit_usage = 1, exit_input = 2, exit_stopped = 3
   !> Most errors shown.
   integer, parameter :: most_errors = 100
-  !> Files that a run may leave beside job.log.
-  character(len=14), parameter :: result_file(4) = [character(len=14) :: "history.csv", &
-      "status.csv", "fields.vtkhdf", restart_name]
 
 contains
 
@@ -51,6 +51,8 @@ contains
 
     call read_case(case, options%file, options%overrides, errors)
     call new_model(model, case, errors)
+    if (errors%count == 0) call check_overwrite(case, results_directory(options, case), &
+        options%restart, errors)
     if (errors%count > 0) then
       call report_errors(errors, options%file)
       exit_code = exit_input
@@ -58,7 +60,7 @@ contains
     end if
     call set_start(start, options, case, model, error)
     if (allocated(error)) then
-      write (error_unit, '(a)') "dd3imp: "//error%message
+      call write_line("dd3imp: "//error%message)
       exit_code = exit_input
     else if (options%check) then
       if (.not. options%quiet) call show_checked(case, model)
@@ -120,32 +122,46 @@ contains
     type(run_summary_t) :: summary
     type(error_t), allocatable :: error
 
-    exit_code = exit_stopped
+    call watch_interrupts()
+    call log%start(options%quiet)
+    call log%say("dd3imp "//version//": "//case%file)
     call make_directory(start%directory, error)
     if (.not. allocated(error)) call open_log(log, options%quiet, start, error)
     if (.not. allocated(error)) then
+      call watch_log(log%descriptor())
       call introduce(log, case, model)
       if (.not. allocated(start%source)) call clear_directory(log, start%directory)
-      call watch_interrupts()
       if (size(case%point) > 0) then
         call run_points(case, model, start%directory, log, summary%increments, error)
       else
         call run_model(model, start, log, summary, error)
         call conclude(log, summary)
       end if
-      if (.not. allocated(error)) exit_code = exit_end
+      ! A run whose folder has vanished has no results.
+      if (.not. allocated(error)) call log%check(error)
     end if
+    exit_code = merge(exit_stopped, exit_end, allocated(error))
     if (allocated(error)) then
       call log%note("stopped: "//error%message)
-      write (error_unit, '(a)') "dd3imp: stopped: "//error%message
+      call write_line("dd3imp: stopped: "//error%message)
     else
       call log%say("reached the end; results in "//start%directory)
     end if
+    call watch_log(-1_c_int)
     call log%close(error)
     if (.not. allocated(error)) return
-    if (exit_code == exit_end) write (error_unit, '(a)') "dd3imp: "//error%message
+    if (exit_code == exit_end) call write_line("dd3imp: "//error%message)
     exit_code = exit_stopped
   end subroutine run_checked
+
+  !> Write a line on the error stream, which may be closed.
+  subroutine write_line(text)
+    character(len=*), intent(in) :: text
+
+    integer :: ignored
+
+    write (error_unit, '(a)', iostat=ignored) text
+  end subroutine write_line
 
   !> Open job.log; after a restart it continues the log of the earlier run.
   subroutine open_log(log, quiet, start, error)
@@ -182,7 +198,7 @@ contains
     if (names /= "") call log%note("removed from an earlier run:"//names)
   end subroutine clear_directory
 
-  !> Log version, title, sizes and laws; the echo of all values goes into the file only.
+  !> Log title, sizes and laws; the echo of all values goes into the file only.
   subroutine introduce(log, case, model)
     type(log_t), intent(inout) :: log
     type(case_t), intent(in) :: case
@@ -193,7 +209,6 @@ contains
     integer :: i
 
     call date_and_time(date=date, time=time)
-    call log%say("dd3imp "//version//": "//case%file)
     if (len(model%title) > 0) call log%say(model%title)
     call log%note("started "//date(1:4)//"-"//date(5:6)//"-"//date(7:8)//" "//time(1:2)//":"// &
         time(3:4))
@@ -243,14 +258,12 @@ contains
 
     call errors%sort()
     do i = 1, min(errors%count, most_errors)
-      write (error_unit, '(a)') errors%item(i)%message
+      call write_line(errors%item(i)%message)
     end do
-    if (errors%count > most_errors) then
-      write (error_unit, '(a)') "and "//to_text(errors%count - most_errors)//" more errors"
-    end if
-    write (error_unit, '(a)') to_text(errors%count)//trim(merge(" error ", " errors", &
-        errors%count == 1))// &
-      " in "//file//"; nothing was computed"
+    if (errors%count > most_errors) call write_line("and "// &
+        to_text(errors%count - most_errors)//" more errors")
+    call write_line(to_text(errors%count)//trim(merge(" error ", " errors", errors%count == 1))// &
+        " in "//file//"; nothing was computed")
   end subroutine report_errors
 
   !> Return the folder of the results: that of the command line, else that of the input, else one

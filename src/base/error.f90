@@ -4,7 +4,8 @@ module dd3_base_error
   use dd3_base_text, only : newline, same_name, slice
   implicit none
   private
-  public :: location_t, error_t, error_list_t, fatal_error, input_error, as_written, keep_first
+  public :: most_kept, location_t, error_t, error_list_t, fatal_error, input_error, as_written, &
+      keep_first
 
   !> Location of a piece of input.
   type :: location_t
@@ -31,10 +32,13 @@ module dd3_base_error
     integer :: order = huge(0), column = 0
   end type error_t
 
+  !> Number of errors of a list that are kept; further ones are only counted.
+  integer, parameter :: most_kept = 1000
+
   !> A list of errors.
   type :: error_list_t
     integer :: count = 0
-    !> Errors in the order found, `item(1:count)`.
+    !> Errors in the order found, `item(1:min(count, most_kept))`.
     type(error_t), allocatable :: item(:)
   contains
     procedure :: push => error_list_push
@@ -89,7 +93,7 @@ contains
     width = int(max(1, location%width), i8)
     error%order = location%order
     error%column = location%column
-    error%message = "error: "//message
+    error%message = "error: "//shortened(message)
     if (allocated(location%file)) then
       write (number, '(i0)') location%line
       if (location%line > 0) then
@@ -105,8 +109,20 @@ contains
             //repeat("^", width)
       end if
     end if
-    if (present(expected)) error%message = error%message//newline//"  expected: "//expected
+    if (present(expected)) error%message = error%message//newline//"  expected: "// &
+        shortened(expected)
   end subroutine input_error
+
+  !> Return a text without its middle if it is very long, as one that quotes a very long word.
+  pure function shortened(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: shortened
+
+    integer, parameter :: longest = 4000, ends = 1000
+
+    shortened = text
+    if (len(text) > longest) shortened = text(:ends)//" ... "//text(len(text) - ends + 1:)
+  end function shortened
 
   !> Return the blanks before the caret. Tabs are kept; a UTF-8 character has a width of one.
   pure function caret_indent(location) result(indent)
@@ -126,7 +142,7 @@ contains
     end do
   end function caret_indent
 
-  !> Append an error if there is one.
+  !> Append an error if there is one; beyond `most_kept` errors it is only counted.
   subroutine error_list_push(self, error)
     class(error_list_t), intent(inout) :: self
     type(error_t), allocatable, intent(in) :: error
@@ -134,13 +150,14 @@ contains
     type(error_t), allocatable :: larger(:)
 
     if (.not. allocated(error)) return
+    self%count = self%count + 1
+    if (self%count > most_kept) return
     if (.not. allocated(self%item)) allocate (self%item(8))
-    if (self%count == size(self%item)) then
-      allocate (larger(2*self%count))
-      larger(:self%count) = self%item
+    if (self%count > size(self%item)) then
+      allocate (larger(2*size(self%item)))
+      larger(:size(self%item)) = self%item
       call move_alloc(larger, self%item)
     end if
-    self%count = self%count + 1
     self%item(self%count) = error
   end subroutine error_list_push
 
@@ -154,11 +171,15 @@ contains
 
     type(error_t), allocatable :: error
 
-    call input_error(error, location, message, expected)
-    call self%push(error)
+    if (self%count >= most_kept) then
+      self%count = self%count + 1
+    else
+      call input_error(error, location, message, expected)
+      call self%push(error)
+    end if
   end subroutine error_list_push_input
 
-  !> Sort the errors by their position in the input; those without one come last, in the order
+  !> Sort the errors kept by their position in the input; those without one come last, in the order
   !> found.
   subroutine error_list_sort(self)
     class(error_list_t), intent(inout) :: self
@@ -166,7 +187,7 @@ contains
     type(error_t) :: moved
     integer :: i, j
 
-    do i = 2, self%count
+    do i = 2, min(self%count, most_kept)
       moved = self%item(i)
       j = i - 1
       do while (j >= 1)

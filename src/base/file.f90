@@ -2,12 +2,18 @@
 !> these files use the POSIX calls creat, write, ftruncate and close. After a failed write the file
 !> is truncated to its last complete line. A file may reserve disk space for its buffer: a full disk
 !> is then detected while all lines can still be written.
+!>
+!> Text is written in the pieces in which it is put, so that a program that is killed leaves whole
+!> lines if whole lines are put. Each flush checks that the file still has its name: a file that was
+!> removed or replaced, as with its folder, is an error.
 module dd3_base_file
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_ptr, c_null_char, &
-      c_f_pointer, c_associated
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_null_char
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_clock, only : wall_time
+  use dd3_base_identity, only : is_at
+  use dd3_base_lock, only : open_locked
+  use dd3_base_system_error, only : errno, system_message
   use dd3_base_text, only : newline
   implicit none
   private
@@ -15,12 +21,13 @@ module dd3_base_file
 
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
-  !> Size of the buffer in characters.
+  !> Size of the buffer in characters; it grows for longer pieces of text.
   integer(i8), parameter :: buffer_size = 16384
   !> Reserved disk space: a full buffer, and the lines written while a run stops.
   integer(i8), parameter :: room_kept = 2*buffer_size
-  !> Maximum age of the buffer when a line is added, s.
-  real(wp), parameter :: longest_wait = 1.0_wp
+  !> Maximum age of the buffer when text is added, and maximum time between two pieces of text that
+  !> share a write, s: what comes slowly is written at once.
+  real(wp), parameter :: longest_wait = 1.0_wp, longest_pause = 0.05_wp
   !> Error numbers of Linux: interrupted call, file exists, file too large, disk full, over quota.
   integer(c_int), parameter :: eintr = 4, eexist = 17, efbig = 27, enospc = 28, edquot = 122
   !> Resource number of the file size limit (Linux).
@@ -38,8 +45,10 @@ module dd3_base_file
     integer(i8) :: used = 0
     !> Length of the file: up to the last complete line, and in total.
     integer(i8) :: whole = 0, length = 0
-    !> Time of the last flush, s.
-    real(wp) :: flushed = 0.0_wp
+    !> Times of the last flush and of the last text added, s.
+    real(wp) :: flushed = 0.0_wp, added = 0.0_wp
+    !> Whether `path` is the name of the file, to be checked by each flush.
+    logical :: named = .false.
     !> Whether a write failed.
     logical :: failed = .false.
     !> Whether disk space is reserved for the buffer; whether a lack of it was reported.
@@ -49,6 +58,7 @@ module dd3_base_file
     procedure :: attach => file_attach
     procedure :: put => file_put
     procedure :: flush => file_flush
+    procedure :: check_name => file_check_name
     procedure :: keep_room => file_keep_room
     procedure :: reserve => file_reserve
     procedure :: release => file_release
@@ -124,37 +134,38 @@ module dd3_base_file
       character(kind=c_char), intent(out) :: buffer(*)
       integer(c_size_t), value :: size
     end function posix_readlink
-    !> Address of errno.
-    type(c_ptr) function errno_location() bind(c, name="__errno_location")
-      import :: c_ptr
-    end function errno_location
-    !> strerror(3).
-    type(c_ptr) function c_strerror(number) bind(c, name="strerror")
-      import :: c_int, c_ptr
-      integer(c_int), value :: number
-    end function c_strerror
-    !> strlen(3).
-    integer(c_size_t) function c_strlen(text) bind(c, name="strlen")
-      import :: c_ptr, c_size_t
-      !> Address of a null-terminated text.
-      type(c_ptr), value :: text
-    end function c_strlen
   end interface
 
 contains
 
   !> Create an empty file, or truncate an existing one.
-  subroutine file_create(self, path, error)
+  subroutine file_create(self, path, error, locked)
     class(file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
+    !> Lock the file until it is closed; it is an error if another program has locked it.
+    logical, intent(in), optional :: locked
 
     integer(c_int), parameter :: mode = int(o'666', c_int)
+    integer(c_int) :: descriptor
+    logical :: lock, busy
 
-    call self%attach(posix_creat(path//c_null_char, mode), path)
-    if (self%descriptor < 0) then
-      self%failed = .true.
+    lock = .false.
+    busy = .false.
+    if (present(locked)) lock = locked
+    if (lock) then
+      call open_locked(path, descriptor, busy)
+    else
+      descriptor = posix_creat(path//c_null_char, mode)
+    end if
+    call self%attach(descriptor, path)
+    self%named = .true.
+    if (descriptor >= 0) return
+    self%failed = .true.
+    if (busy) then
+      call fatal_error(error, "'"//path//"' is being written by another run")
+    else
       call fatal_error(error, "cannot write '"//path//"': "//system_message(errno()))
     end if
   end subroutine file_create
@@ -175,10 +186,13 @@ contains
     self%failed = .false.
     self%keeps_room = .false.
     self%full = .false.
+    self%named = .false.
     self%flushed = wall_time()
+    self%added = self%flushed
   end subroutine file_attach
 
-  !> Add text to the buffer, which is written when it is full or too old.
+  !> Add text to the buffer, which is written when it is full or too old, and at once if the text
+  !> before it is old.
   subroutine file_put(self, text, error)
     class(file_t), intent(inout) :: self
     !> With line ends.
@@ -187,22 +201,22 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(error_t), allocatable :: late
-    integer(i8) :: first, n
+    integer(i8) :: n
+    real(wp) :: now, pause
 
     if (self%failed) return
-    first = 1
-    do while (first <= len(text, i8))
-      if (self%used == buffer_size) then
-        call self%flush(late)
-        if (allocated(late)) call move_alloc(late, error)
-        if (self%failed) return
-      end if
-      n = min(len(text, i8) - first + 1, buffer_size - self%used)
-      self%buffer(self%used + 1:self%used + n) = text(first:first + n - 1)
-      self%used = self%used + n
-      first = first + n
-    end do
-    if (wall_time() - self%flushed <= longest_wait) return
+    n = len(text, i8)
+    if (self%used + n > len(self%buffer, i8)) then
+      call self%flush(error)
+      if (self%failed) return
+      if (n > len(self%buffer, i8)) self%buffer = repeat(" ", n)
+    end if
+    self%buffer(self%used + 1:self%used + n) = text
+    self%used = self%used + n
+    now = wall_time()
+    pause = now - self%added
+    self%added = now
+    if (pause <= longest_pause .and. now - self%flushed <= longest_wait) return
     call self%flush(late)
     if (allocated(late)) call move_alloc(late, error)
   end subroutine file_put
@@ -219,6 +233,8 @@ contains
 
     self%flushed = wall_time()
     if (self%failed .or. self%descriptor < 0) return
+    if (self%named) call self%check_name(error)
+    if (self%failed) return
     cause = 0
     if (self%keeps_room .and. .not. self%full) then
       call try_to_reserve(self, self%length, self%used + room_kept, cause)
@@ -246,6 +262,19 @@ contains
     if (self%failed .or. cause == 0) return
     call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
   end subroutine file_flush
+
+  !> Check that the file still has its name.
+  subroutine file_check_name(self, error)
+    class(file_t), intent(inout) :: self
+    !> Set if it was removed or replaced; nothing more is written to it.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%failed .or. self%descriptor < 0) return
+    if (is_at(self%descriptor, self%path)) return
+    self%failed = .true.
+    call fatal_error(error, "'"//self%path//"' was removed or replaced while the program was "// &
+        "writing it; what was written to it is lost")
+  end subroutine file_check_name
 
   !> Reserve disk space for the buffer from now on.
   subroutine file_keep_room(self, error)
@@ -281,6 +310,8 @@ contains
 
     integer(c_int) :: cause
 
+    if (self%named) call self%check_name(error)
+    if (allocated(error)) return
     call try_to_reserve(self, size, more, cause)
     if (cause == 0) return
     call self%release()
@@ -370,32 +401,5 @@ contains
     if (posix_readlink(path//c_null_char, target, 1_c_size_t) >= 0) return
     removed = posix_unlink(path//c_null_char) == 0
   end subroutine remove_file
-
-  !> Return the number of the last system error.
-  integer(c_int) function errno()
-    integer(c_int), pointer :: number
-
-    call c_f_pointer(errno_location(), number)
-    errno = number
-  end function errno
-
-  !> Return the message of a system error.
-  function system_message(number) result(message)
-    integer(c_int), intent(in) :: number
-    character(len=:), allocatable :: message
-
-    character(kind=c_char), pointer :: letter(:)
-    type(c_ptr) :: address
-    integer :: i
-
-    message = "unknown cause"
-    address = c_strerror(number)
-    if (.not. c_associated(address)) return
-    call c_f_pointer(address, letter, [c_strlen(address)])
-    message = repeat(" ", size(letter, kind=i8))
-    do i = 1, size(letter)
-      message(i:i) = letter(i)
-    end do
-  end function system_message
 
 end module dd3_base_file

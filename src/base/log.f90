@@ -2,7 +2,7 @@
 !> it is cleared before anything else is written.
 module dd3_base_log
   use, intrinsic :: iso_c_binding, only : c_int
-  use dd3_base_error, only : error_t
+  use dd3_base_error, only : error_t, keep_first
   use dd3_base_file, only : file_t, standard_output
   use dd3_base_text, only : newline
   implicit none
@@ -33,6 +33,7 @@ module dd3_base_log
     procedure :: note => log_note
     procedure :: live => log_live
     procedure :: check => log_check
+    procedure :: descriptor => log_descriptor
     procedure :: close => log_close
   end type log_t
 
@@ -64,20 +65,20 @@ contains
     if (quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
   end subroutine log_start
 
-  !> Open job.log and write the lines kept for it.
+  !> Open job.log, locked against other runs, and write the lines kept for it.
   subroutine log_open(self, path, quiet, error, earlier)
     class(log_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     !> Whether nothing is written to the screen.
     logical, intent(in) :: quiet
-    !> Set if job.log cannot be written.
+    !> Set if job.log cannot be written, or another run writes it.
     type(error_t), allocatable, intent(out) :: error
     !> Log of an earlier run that is continued.
     character(len=*), intent(in), optional :: earlier
 
     if (.not. allocated(self%held)) call self%start(quiet)
     self%quiet = quiet
-    call self%file%create(path, error)
+    call self%file%create(path, error, locked=.true.)
     if (.not. allocated(error)) call self%file%keep_room(error)
     if (allocated(error)) return
     if (present(earlier)) self%held = earlier//self%held
@@ -103,12 +104,12 @@ contains
     call self%note(text)
   end subroutine log_say
 
-  !> Write one or several lines to job.log only.
+  !> Write one or several lines to job.log only, at once: they are there if the program is killed.
   subroutine log_note(self, text)
     class(log_t), intent(inout) :: self
     character(len=*), intent(in) :: text
 
-    type(error_t), allocatable :: error
+    type(error_t), allocatable :: error, late
 
     if (self%file%descriptor < 0) then
       if (.not. allocated(self%held)) call self%start(self%quiet)
@@ -116,6 +117,8 @@ contains
       return
     end if
     call self%file%put(text//newline, error)
+    call self%file%flush(late)
+    call keep_first(error, late)
     if (.not. allocated(error) .or. allocated(self%failure)) return
     call move_alloc(error, self%failure)
   end subroutine log_note
@@ -135,7 +138,7 @@ contains
     self%live_length = len(text)
   end subroutine log_live
 
-  !> Flush job.log, and return its first failed write, once.
+  !> Flush job.log, check that it still has its name, and return its first failed write, once.
   subroutine log_check(self, error)
     class(log_t), intent(inout) :: self
     !> Set if job.log cannot be written.
@@ -144,6 +147,13 @@ contains
     if (self%file%descriptor >= 0) call self%file%flush(error)
     if (allocated(self%failure)) call move_alloc(self%failure, error)
   end subroutine log_check
+
+  !> Return the descriptor of job.log; negative if it is not open.
+  pure integer(c_int) function log_descriptor(self)
+    class(log_t), intent(in) :: self
+
+    log_descriptor = self%file%descriptor
+  end function log_descriptor
 
   !> Clear the status line and close job.log.
   subroutine log_close(self, error)

@@ -3,8 +3,8 @@ module dd3_base_text
   use dd3_base_kinds, only : wp, i8
   implicit none
   private
-  public :: text_t, newline, to_text, lower_case, upper_case, same_name, nearest_name, suggestion, &
-      join, slice
+  public :: text_t, text_buffer_t, newline, to_text, lower_case, upper_case, same_name, &
+      nearest_name, suggestion, join, slice
 
   character(len=1), parameter :: newline = achar(10)
 
@@ -12,6 +12,15 @@ module dd3_base_text
   type :: text_t
     character(len=:), allocatable :: s
   end type text_t
+
+  !> Text that grows at its end.
+  type :: text_buffer_t
+    integer(i8), private :: length = 0
+    character(len=:), allocatable, private :: room
+  contains
+    procedure :: add => buffer_add
+    procedure :: text => buffer_text
+  end type text_buffer_t
 
   !> Return a number or a logical as text without redundant characters.
   interface to_text
@@ -113,8 +122,23 @@ contains
   pure logical function same_name(a, b)
     character(len=*), intent(in) :: a, b
 
-    same_name = lower_case(trim(a)) == lower_case(trim(b))
+    integer :: i, n
+
+    n = len_trim(a)
+    same_name = len_trim(b) == n
+    do i = 1, n
+      if (.not. same_name) return
+      same_name = lower_letter(a(i:i)) == lower_letter(b(i:i))
+    end do
   end function same_name
+
+  !> Return a letter in lower case (ASCII); any other character as it is.
+  pure character function lower_letter(letter)
+    character, intent(in) :: letter
+
+    lower_letter = letter
+    if (letter >= "A" .and. letter <= "Z") lower_letter = achar(iachar(letter) + 32)
+  end function lower_letter
 
   !> Return the known name closest to a misspelt one; empty if none is close. Among equally close
   !> names, one that differs in the last character only is preferred, as C6 for C7.
@@ -129,6 +153,7 @@ contains
     most = min(max(1, (len_trim(name) + 1)/3), len_trim(name) - 1)
     best = huge(1)
     do i = 1, size(known)
+      if (abs(len_trim(known(i)) - len_trim(name)) > most) cycle
       distance = edit_distance(lower_case(trim(name)), lower_case(trim(known(i))))
       if (distance > most .or. distance > best(1)) cycle
       step = last_step(lower_case(trim(name)), lower_case(trim(known(i))))
@@ -182,6 +207,34 @@ contains
     end do
     edit_distance = cost(len(b), 2)
   end function edit_distance
+
+  !> Append a text.
+  subroutine buffer_add(self, text)
+    class(text_buffer_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+
+    character(len=:), allocatable :: larger
+    integer(i8) :: n
+
+    if (.not. allocated(self%room)) allocate (character(len=1000) :: self%room)
+    n = self%length + len(text, i8)
+    if (n > len(self%room, i8)) then
+      allocate (character(len=2*n) :: larger)
+      larger(:self%length) = self%room(:self%length)
+      call move_alloc(larger, self%room)
+    end if
+    self%room(self%length + 1:n) = text
+    self%length = n
+  end subroutine buffer_add
+
+  !> Return the whole text.
+  pure function buffer_text(self) result(text)
+    class(text_buffer_t), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    text = ""
+    if (allocated(self%room)) text = self%room(:self%length)
+  end function buffer_text
 
   !> Return part of a text.
   pure function slice(text, first, last)

@@ -3,7 +3,7 @@
 module dd3_input_block
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, location_t
-  use dd3_base_text, only : same_name
+  use dd3_base_text, only : same_name, text_t
   implicit none
   private
   public :: token_t, entry_t, block_t, deck_t
@@ -25,14 +25,19 @@ module dd3_input_block
     type(location_t) :: at
     !> Words after the equals sign.
     type(token_t), allocatable :: value(:)
-    !> Numbers among the values, in order. This and the following are set by the check.
+    !> Numbers among the values, in order; during the check `number(1:n_number)`. This and the
+    !> following are set by the check.
     real(wp), allocatable :: number(:)
+    integer :: n_number = 0
     !> Whether the value has the expected form and range.
     logical :: valid = .true.
     !> Whether the value is `off` in place of a number.
     logical :: is_off = .false.
     !> Whether this is the default of a key that was left out.
     logical :: defaulted = .false.
+  contains
+    procedure :: add_number
+    procedure :: trim_numbers
   end type entry_t
 
   !> Keyword block of the input.
@@ -69,11 +74,36 @@ module dd3_input_block
     integer :: n_block = 0
     !> Blocks, `block(1:n_block)`.
     type(block_t), allocatable :: block(:)
+    !> Names of the files read, the input file first.
+    type(text_t), allocatable :: file(:)
   contains
     procedure :: add_block
   end type deck_t
 
 contains
+
+  !> Append a number during the check.
+  subroutine add_number(self, value)
+    class(entry_t), intent(inout) :: self
+    real(wp), intent(in) :: value
+
+    real(wp), allocatable :: larger(:)
+
+    if (self%n_number == size(self%number)) then
+      allocate (larger(2*self%n_number + 4))
+      larger(:self%n_number) = self%number
+      call move_alloc(larger, self%number)
+    end if
+    self%n_number = self%n_number + 1
+    self%number(self%n_number) = value
+  end subroutine add_number
+
+  !> End the check: leave no room for further numbers.
+  subroutine trim_numbers(self)
+    class(entry_t), intent(inout) :: self
+
+    self%number = self%number(:self%n_number)
+  end subroutine trim_numbers
 
   !> Return the position of the first entry with a key; 0 if not found.
   pure integer function find(self, key, after)

@@ -2,6 +2,7 @@
 module dd3_input_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : as_written, error_list_t, location_t
+  use dd3_base_name_index, only : name_index_t
   use dd3_base_text, only : upper_case, same_name, nearest_name, suggestion, join, to_text
   use dd3_base_parameter, only : parameter_t
   use dd3_input_block, only : block_t, entry_t, deck_t
@@ -25,6 +26,7 @@ contains
     character(len=*), intent(in) :: file
     type(error_list_t), intent(inout) :: errors
 
+    type(name_index_t) :: given
     integer :: i, k, before
 
     do i = 1, deck%n_block
@@ -36,14 +38,27 @@ contains
         call errors%push_input(deck%block(i)%opened, "*"//upper_case(trim(table(k)%keyword))// &
             " "//not_available)
       else
-        call check_name(deck, i, table(k), errors)
+        call check_name(deck%block(i), table(k), given, errors)
         call check_keys(deck%block(i), table(k)%key, errors)
       end if
-      deck%block(i)%valid = errors%count == before
+      ! An entry without a value was reported when it was read.
+      deck%block(i)%valid = errors%count == before .and. entries_valid(deck%block(i))
     end do
     call check_presence(deck, table, file, errors)
     call add_blocks(deck, table, errors)
   end subroutine check_deck
+
+  !> Whether all entries of a block passed the check.
+  pure logical function entries_valid(block)
+    type(block_t), intent(in) :: block
+
+    integer :: i
+
+    entries_valid = .true.
+    do i = 1, block%n_entry
+      entries_valid = entries_valid .and. block%entry(i)%valid
+    end do
+  end function entries_valid
 
   !> Report a block that is not in the table.
   subroutine unknown_block(block, table, errors)
@@ -59,35 +74,33 @@ contains
         "one of: *"//upper_case(join(table%keyword, " *")))
   end subroutine unknown_block
 
-  !> Check the name of block i, and that the block is not given twice.
-  subroutine check_name(deck, i, row, errors)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: i
+  !> Check the name of a block, and that the block is not given twice.
+  subroutine check_name(block, row, given, errors)
+    type(block_t), intent(in) :: block
     type(block_row_t), intent(in) :: row
+    !> Blocks above: kind and name, or the kind alone of those that may be given only once.
+    type(name_index_t), intent(inout) :: given
     type(error_list_t), intent(inout) :: errors
 
-    character(len=:), allocatable :: title
-    integer :: j
+    character(len=:), allocatable :: title, full_name
 
-    associate (block => deck%block(i))
-      title = "*"//upper_case(block%keyword)
-      if (row%named .and. block%name == "") then
-        call errors%push_input(block%opened, title//" requires a name", title//" name")
-      else if (.not. row%named .and. block%name /= "") then
-        call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
-      else if (row%named .and. .not. is_name(block%name)) then
-        call errors%push_input(block%named, "'"//block%called()//"' is not a valid name", &
-            "a letter, then letters, digits, _ - or ., at most "//to_text(longest_name)// &
-            " characters")
-      end if
-      do j = 1, i - 1
-        if (deck%block(j)%keyword /= block%keyword) cycle
-        if (row%repeatable .and. (deck%block(j)%name /= block%name .or. block%name == "")) cycle
-        call errors%push_input(block%named, trim(title//" "//block%called())// &
-            trim(merge(" is given twice        ", " may be given only once", row%repeatable)))
-        exit
-      end do
-    end associate
+    title = "*"//upper_case(block%keyword)
+    if (row%named .and. block%name == "") then
+      call errors%push_input(block%opened, title//" requires a name", title//" name")
+    else if (.not. row%named .and. block%name /= "") then
+      call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
+    else if (row%named .and. .not. is_name(block%name)) then
+      call errors%push_input(block%named, "'"//block%called()//"' is not a valid name", &
+          "a letter, then letters, digits, _ - or ., at most "//to_text(longest_name)// &
+          " characters")
+    end if
+    if (row%repeatable .and. block%name == "") return
+    full_name = block%keyword
+    if (row%repeatable) full_name = full_name//" "//block%name
+    if (given%find(full_name) > 0) call errors%push_input(block%named, &
+        trim(title//" "//block%called())//trim(merge(" is given twice        ", &
+            " may be given only once", row%repeatable)))
+    call given%add(full_name, 1)
   end subroutine check_name
 
   !> Whether a text is a valid name.
@@ -108,8 +121,10 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k
+    logical :: given(size(key))
 
     if (block%keyword == "title") return
+    given = .false.
     do i = 1, block%n_entry
       k = find_key(key, block%entry(i)%key)
       if (k == 0) then
@@ -118,11 +133,12 @@ contains
         allocate (block%entry(i)%number(0))
         cycle
       end if
-      if (.not. key(k)%repeatable .and. block%find(block%entry(i)%key) < i) then
+      if (.not. key(k)%repeatable .and. given(k)) then
         call errors%push_input(block%entry(i)%at, "'"// &
             as_written(block%entry(i)%key, block%entry(i)%at)//"' is given twice in "// &
             title_of(block))
       end if
+      given(k) = .true.
       call check_value(block%entry(i), key(k), errors)
     end do
     call add_defaults(block, key, errors)

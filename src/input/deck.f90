@@ -48,7 +48,7 @@ contains
     integer :: before
 
     before = errors%count
-    allocate (self%file(0))
+    allocate (self%file(0), self%deck%file(0))
     call new_substitution(self%substitution, overrides, errors)
     whole_file%file = file_name
     call read_file(self, file_name, whole_file, errors)
@@ -82,6 +82,7 @@ contains
     end if
     opened%s = path
     self%file = [self%file, opened]
+    self%deck%file = [self%deck%file, opened]
     line%file = path
     i = 0
     do while (i < size(text))

@@ -1,7 +1,7 @@
 !> The checked input as text, with all defaults filled in and marked, for the log and `--check`.
 module dd3_input_echo
   use dd3_base_kinds, only : i8
-  use dd3_base_text, only : newline, upper_case
+  use dd3_base_text, only : text_buffer_t, newline, upper_case
   use dd3_input_block, only : block_t, entry_t
   use dd3_input_case, only : case_t
   use dd3_input_table, only : block_row_t, block_table, find_block, find_key
@@ -19,15 +19,16 @@ contains
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
 
+    type(text_buffer_t) :: buffer
     type(block_row_t), allocatable :: table(:)
     integer :: i, row
 
     table = block_table()
-    text = ""
     do i = 1, case%deck%n_block
       row = find_block(table, case%deck%block(i)%keyword)
-      if (row > 0) text = text//echo_block(case%deck%block(i), table(row))
+      if (row > 0) call buffer%add(echo_block(case%deck%block(i), table(row)))
     end do
+    text = buffer%text()
   end function echo_case
 
   function echo_block(block, row) result(text)
@@ -35,17 +36,19 @@ contains
     type(block_row_t), intent(in) :: row
     character(len=:), allocatable :: text
 
+    type(text_buffer_t) :: buffer
     integer :: i, k
 
-    text = trim("*"//upper_case(block%keyword)//" "//block%name)//newline
+    call buffer%add(trim("*"//upper_case(block%keyword)//" "//block%name)//newline)
     do i = 1, block%n_entry
       k = find_key(row%key, block%entry(i)%key)
       if (k > 0) then
-        text = text//echo_entry(block%entry(i), trim(row%key(k)%unit))
+        call buffer%add(echo_entry(block%entry(i), trim(row%key(k)%unit)))
       else
-        text = text//"  "//words(block%entry(i))//newline
+        call buffer%add("  "//words(block%entry(i))//newline)
       end if
     end do
+    text = buffer%text()
   end function echo_block
 
   function echo_entry(entry, unit) result(text)
@@ -74,27 +77,28 @@ contains
     type(entry_t), intent(in) :: entry
     character(len=:), allocatable :: text
 
+    type(text_buffer_t) :: buffer
     logical :: glued
     integer :: i
 
-    text = ""
     glued = .true.
     do i = 1, size(entry%value)
       associate (word => entry%value(i)%text)
         if (entry%value(i)%quoted .and. entry%key /= "text") then
-          if (.not. glued) text = text//" "
-          text = text//'"'//word//'"'
+          if (.not. glued) call buffer%add(" ")
+          call buffer%add('"'//word//'"')
           glued = .false.
         else if (word == "=") then
-          text = text//word
+          call buffer%add(word)
           glued = .true.
         else
-          if (.not. glued) text = text//" "
-          text = text//word
+          if (.not. glued) call buffer%add(" ")
+          call buffer%add(word)
           glued = .false.
         end if
       end associate
     end do
+    text = buffer%text()
   end function words
 
 end module dd3_input_echo

@@ -16,7 +16,8 @@ module dd3_input_fill
 
 contains
 
-  !> Fill the case. Members whose entries did not pass the check keep their values.
+  !> Fill the case. Members whose entries did not pass the check keep their values. Of a block that
+  !> may be given only once, the first one counts, as in the check of its values.
   subroutine fill_case(case, deck)
     type(case_t), intent(inout) :: case
     type(deck_t), intent(in) :: deck
@@ -28,28 +29,33 @@ contains
     case%solver%ordering = ""
     case%output%directory = ""
     allocate (case%output%fields_value(0))
-    do i = 1, deck%n_block
-      associate (block => deck%block(i))
-        select case (block%keyword)
-        case ("title")
-          call fill_title(case, block)
-        case ("contact")
-          call fill_contact(case%contact, block)
-        case ("limits")
-          call fill_limits(case%limits, block)
-        case ("newton")
-          call fill_newton(case%newton, block)
-        case ("solver")
-          call fill_solver(case%solver, block)
-        case ("output")
-          call fill_output(case%output, block)
-        end select
-      end associate
-    end do
+    i = first_block(deck, "title")
+    if (i > 0) call fill_title(case, deck%block(i))
+    i = first_block(deck, "contact")
+    if (i > 0) call fill_contact(case%contact, deck%block(i))
+    i = first_block(deck, "limits")
+    if (i > 0) call fill_limits(case%limits, deck%block(i))
+    i = first_block(deck, "newton")
+    if (i > 0) call fill_newton(case%newton, deck%block(i))
+    i = first_block(deck, "solver")
+    if (i > 0) call fill_solver(case%solver, deck%block(i))
+    i = first_block(deck, "output")
+    if (i > 0) call fill_output(case%output, deck%block(i))
     call fill_model(case, deck)
     call fill_process(case, deck)
     case%deck = deck
   end subroutine fill_case
+
+  !> Return the position of the first block of a kind; 0 if not found.
+  pure integer function first_block(deck, keyword) result(i)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: keyword
+
+    do i = 1, deck%n_block
+      if (deck%block(i)%keyword == keyword) return
+    end do
+    i = 0
+  end function first_block
 
   !> Fill the sheet, its material and the tools.
   subroutine fill_model(case, deck)
@@ -124,10 +130,7 @@ contains
 
     integer :: i
 
-    allocate (at(0))
-    do i = 1, deck%n_block
-      if (deck%block(i)%keyword == keyword) at = [at, i]
-    end do
+    at = pack([(i, i=1, deck%n_block)], [(deck%block(i)%keyword == keyword, i=1, deck%n_block)])
   end function positions
 
   !> Return the position of a named block among those of its kind; 0 if not found.

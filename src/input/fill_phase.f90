@@ -67,10 +67,8 @@ contains
 
     integer :: i
 
-    allocate (position(0))
-    do i = 1, block%n_entry
-      if (block%entry(i)%key == key .and. block%entry(i)%valid) position = [position, i]
-    end do
+    position = pack([(i, i=1, block%n_entry)], [(block%entry(i)%key == key .and. &
+        block%entry(i)%valid, i=1, block%n_entry)])
   end function entries
 
   subroutine fill_tool_names(list, case, block, key)

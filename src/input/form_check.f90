@@ -69,7 +69,7 @@ contains
     case ("count")
       call add_count(entry, entry%value(i), row, errors)
     case ("axis")
-      entry%number = [entry%number, real(axis_of(text), wp)]
+      call entry%add_number(real(axis_of(text), wp))
       if (axis_of(text) == 0) call errors%push_input(entry%value(i)%at, "'"// &
           as_written(text, entry%value(i)%at)//"' is not an axis: expected x, y or z", &
           describe(row))
@@ -110,7 +110,7 @@ contains
     before = errors%count
     call add_integer(entry, token, describe(row), errors)
     if (errors%count > before) return
-    if (entry%number(size(entry%number)) >= 1.0_wp) return
+    if (entry%number(entry%n_number) >= 1.0_wp) return
     call errors%push_input(token%at, "'"//token%text// &
         "' is out of range: expected at least 1", describe(row))
   end subroutine add_count
@@ -136,7 +136,8 @@ contains
     end if
     if (ok) ok = first >= 1 .and. last >= first
     if (ok) then
-      entry%number = [entry%number, real(first, wp), real(last, wp)]
+      call entry%add_number(real(first, wp))
+      call entry%add_number(real(last, wp))
     else
       call errors%push_input(token%at, "'"//token%text//"' is not a range of node numbers", &
           describe(row))

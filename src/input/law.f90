@@ -14,6 +14,16 @@ module dd3_input_law
   private
   public :: check_law_name, check_law_values
 
+  !> Values of a law while they are collected: the first `count` of each array.
+  type :: collection_t
+    integer :: count = 0
+    type(law_value_t), allocatable :: value(:)
+    !> Position of each value among the parameters as written; 0 for a default.
+    integer, allocatable :: from(:)
+  contains
+    procedure :: add => collection_add
+  end type collection_t
+
 contains
 
   !> Return the position of the law's name among the known ones; 0, with an error, if not found.
@@ -40,65 +50,80 @@ contains
     integer, allocatable, intent(out), optional :: origin(:)
 
     type(law_value_t) :: value
-    integer, allocatable :: from(:)
+    type(collection_t) :: all
     logical :: ok
     integer :: i, k
 
     do i = 1, size(spec%parameter)
       call check_law_parameter(spec, i, rows, errors)
     end do
-    allocate (values(0), from(0))
+    allocate (all%value(8), all%from(8))
     do k = 1, size(rows)
       value = law_value_t(rows(k)%name)
       i = find_parameter(spec, trim(rows(k)%name))
       if (rows(k)%repeatable) then
-        call add_pairs(spec, values, from)
+        call add_pairs(spec, all)
       else if (i > 0 .and. rows(k)%kind == kind_text) then
-        call read_pairs(spec, i, rows, values, from, errors)
+        call read_pairs(spec, i, rows, all, errors)
       else if (i > 0) then
         value%value = spec%parameter(i)%value
-        values = [values, value]
-        from = [from, i]
+        call all%add(value, i)
       else if (rows(k)%default == "") then
         call errors%push_input(spec%at, "'"//trim(rows(k)%name)//"' is missing for "//spec%name, &
             trim(rows(k)%name)//"=value: "//trim(rows(k)%help))
       else if (rows(k)%default /= "-") then
         call parse_real(trim(rows(k)%default), value%value, ok)
-        values = [values, value]
-        from = [from, 0]
+        call all%add(value, 0)
       end if
     end do
-    if (present(origin)) call move_alloc(from, origin)
+    values = all%value(:all%count)
+    if (present(origin)) origin = all%from(:all%count)
   end subroutine check_law_values
 
+  !> Append a value.
+  subroutine collection_add(self, value, from)
+    class(collection_t), intent(inout) :: self
+    type(law_value_t), intent(in) :: value
+    integer, intent(in) :: from
+
+    type(law_value_t), allocatable :: larger(:)
+    integer, allocatable :: larger_from(:)
+
+    if (self%count == size(self%from)) then
+      allocate (larger(2*self%count), larger_from(2*self%count))
+      larger(:self%count) = self%value
+      larger_from(:self%count) = self%from
+      call move_alloc(larger, self%value)
+      call move_alloc(larger_from, self%from)
+    end if
+    self%count = self%count + 1
+    self%value(self%count) = value
+    self%from(self%count) = from
+  end subroutine collection_add
+
   !> Append the pairs written in the input.
-  subroutine add_pairs(spec, values, from)
+  subroutine add_pairs(spec, all)
     type(law_spec_t), intent(in) :: spec
-    type(law_value_t), allocatable, intent(inout) :: values(:)
-    !> Position in `spec%parameter` of each value.
-    integer, allocatable, intent(inout) :: from(:)
+    type(collection_t), intent(inout) :: all
 
     integer :: i
 
     do i = 1, size(spec%parameter)
       associate (given => spec%parameter(i))
         if (given%key /= pair_name) cycle
-        values = [values, law_value_t(pair_name, given%value, given%abscissa)]
-        from = [from, i]
+        call all%add(law_value_t(pair_name, given%value, given%abscissa), i)
       end associate
     end do
   end subroutine add_pairs
 
   !> Append the pairs of a file: two numbers in each line, separated by blanks, a comma or a
   !> semicolon; `#` begins a comment.
-  subroutine read_pairs(spec, i, rows, values, from, errors)
+  subroutine read_pairs(spec, i, rows, all, errors)
     type(law_spec_t), intent(in) :: spec
     !> Position in `spec%parameter` of the file's name.
     integer, intent(in) :: i
     type(parameter_t), intent(in) :: rows(:)
-    type(law_value_t), allocatable, intent(inout) :: values(:)
-    !> Position in `spec%parameter` of each value.
-    integer, allocatable, intent(inout) :: from(:)
+    type(collection_t), intent(inout) :: all
     type(error_list_t), intent(inout) :: errors
 
     type(text_t), allocatable :: line(:)
@@ -109,7 +134,7 @@ contains
     integer :: n, row
 
     if (spec%parameter(i)%text == "") return
-    if (size(from) > 0) then
+    if (all%count > 0) then
       call errors%push_input(spec%parameter(i)%key_at, &
           "pairs p:Y and a file of pairs cannot be combined", "one of the two")
       return
@@ -134,8 +159,7 @@ contains
       end if
       call check_range(value%value, rows(row), spec%parameter(i)%at, &
           "Y"//range_text(rows(row))//", in line "//to_text(n)//" of '"//path//"'", errors)
-      values = [values, value]
-      from = [from, i]
+      call all%add(value, i)
     end do
   end subroutine read_pairs
 

@@ -69,7 +69,7 @@ contains
 
     call parse_real(token%text, value, ok)
     if (ok) then
-      entry%number = [entry%number, value]
+      call entry%add_number(value)
     else
       call errors%push_input(token%at, not_a_number(token%text), expected)
     end if
@@ -100,7 +100,7 @@ contains
 
     call parse_integer(token%text, value, ok)
     if (ok) then
-      entry%number = [entry%number, real(value, wp)]
+      call entry%add_number(real(value, wp))
     else
       call errors%push_input(token%at, not_an_integer(token%text), expected)
     end if

@@ -1,7 +1,8 @@
 !> Parameters of the input: `name = value` in `*PARAMETER`, used as `${name}` in later values.
 module dd3_input_substitution
   use dd3_base_error, only : as_written, error_list_t, location_t
-  use dd3_base_text, only : text_t, same_name, lower_case, suggestion, join, slice
+  use dd3_base_text, only : text_t, lower_case, suggestion, join, slice
+  use dd3_base_name_index, only : name_index_t
   use dd3_input_block, only : token_t
   use dd3_input_token, only : token_list_t, line_t, split_line, add_token
   implicit none
@@ -10,6 +11,8 @@ module dd3_input_substitution
 
   !> Longest name that is compared.
   integer, parameter :: name_length = 64
+  !> Most names listed in a message.
+  integer, parameter :: most_listed = 40
 
   !> A parameter.
   type :: binding_t
@@ -26,8 +29,10 @@ module dd3_input_substitution
 
   !> All parameters.
   type :: substitution_t
-    !> In the order of the definitions.
+    integer :: count = 0
+    !> In the order of the definitions, `item(1:count)`.
     type(binding_t), allocatable :: item(:)
+    type(name_index_t) :: index
   contains
     procedure :: define
     procedure :: expand
@@ -48,7 +53,6 @@ contains
     logical :: continues
     integer :: i, equals
 
-    allocate (self%item(0))
     do i = 1, size(overrides)
       equals = index(overrides(i)%s, "=")
       binding = binding_t(overridden=.true.)
@@ -65,7 +69,7 @@ contains
       if (position(self, binding%name) > 0) then
         call errors%push_input(binding%at, "parameter '"//binding%name//"' is set twice")
       else
-        self%item = [self%item, binding]
+        call append(self, binding)
       end if
     end do
   end subroutine new_substitution
@@ -84,8 +88,8 @@ contains
     i = position(self, name%text)
     if (i == 0) then
       binding%name = lower_case(name%text)
-      self%item = [self%item, binding]
-      i = size(self%item)
+      call append(self, binding)
+      i = self%count
     else if (self%item(i)%defined) then
       call errors%push_input(name%at, "parameter '"//name%text//"' is defined twice")
       return
@@ -95,6 +99,24 @@ contains
     if (.not. self%item(i)%overridden) self%item(i)%value = value
   end subroutine define
 
+  !> Append a parameter.
+  subroutine append(self, binding)
+    type(substitution_t), intent(inout) :: self
+    type(binding_t), intent(in) :: binding
+
+    type(binding_t), allocatable :: larger(:)
+
+    if (.not. allocated(self%item)) allocate (self%item(8))
+    if (self%count == size(self%item)) then
+      allocate (larger(2*self%count))
+      larger(:self%count) = self%item
+      call move_alloc(larger, self%item)
+    end if
+    self%count = self%count + 1
+    self%item(self%count) = binding
+    call self%index%add(trim(binding%name), self%count)
+  end subroutine append
+
   !> Report overrides of parameters that the input does not define.
   subroutine check_overrides(self, errors)
     class(substitution_t), intent(in) :: self
@@ -102,7 +124,7 @@ contains
 
     integer :: i
 
-    do i = 1, size(self%item)
+    do i = 1, self%count
       if (self%item(i)%defined) cycle
       call errors%push_input(self%item(i)%at, "the input defines no parameter '"// &
           self%item(i)%name//"'"//suggestion(self%item(i)%name, defined_names(self)), &
@@ -177,10 +199,7 @@ contains
     type(substitution_t), intent(in) :: self
     character(len=*), intent(in) :: name
 
-    do position = 1, size(self%item)
-      if (same_name(self%item(position)%name, name)) return
-    end do
-    position = 0
+    position = self%index%find(trim(name))
   end function position
 
   !> Return the names of the parameters defined in the input.
@@ -188,12 +207,18 @@ contains
     type(substitution_t), intent(in) :: self
     character(len=name_length), allocatable :: names(:)
 
-    integer :: i
+    integer :: i, k
 
-    allocate (names(0))
-    do i = 1, size(self%item)
-      if (self%item(i)%defined) names = [character(len=name_length) :: names, &
-          as_written(self%item(i)%name, self%item(i)%at)]
+    k = 0
+    do i = 1, self%count
+      if (self%item(i)%defined) k = k + 1
+    end do
+    allocate (names(k))
+    k = 0
+    do i = 1, self%count
+      if (.not. self%item(i)%defined) cycle
+      k = k + 1
+      names(k) = as_written(self%item(i)%name, self%item(i)%at)
     end do
   end function defined_names
 
@@ -202,10 +227,12 @@ contains
     type(substitution_t), intent(in) :: self
     character(len=:), allocatable :: text
 
-    text = "one of: "//join(defined_names(self), " ")
-    if (size(defined_names(self)) == 0) then
-      text = "a parameter of a *PARAMETER block above; none is defined"
-    end if
+    character(len=name_length), allocatable :: names(:)
+
+    allocate (names, source=defined_names(self))
+    text = "one of: "//join(names(:min(most_listed, size(names))), " ")
+    if (size(names) > most_listed) text = text//" ..."
+    if (size(names) == 0) text = "a parameter of a *PARAMETER block above; none is defined"
   end function expected_names
 
 end module dd3_input_substitution

@@ -48,8 +48,10 @@ contains
     location%order = line%order
     location%column = column
     location%width = width
-    location%text = line%text
-    if (len(line%text) <= shown) return
+    if (len(line%text) <= shown) then
+      location%text = line%text
+      return
+    end if
     start = max(1, min(column - shown/3, len(line%text) - shown + 1))
     location%column = column - start + 1
     location%text = slice(line%text, start, start + shown - 1)

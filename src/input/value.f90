@@ -47,6 +47,7 @@ contains
         call check_words(entry, row, errors)
       end select
     end if
+    call entry%trim_numbers()
     entry%valid = errors%count == before
   end subroutine check_value
 

@@ -11,6 +11,9 @@ module dd3_input_word_check
   private
   public :: check_words, check_known_word
 
+  !> More than there are choices for any key: further words are wrong or repeated among these.
+  integer, parameter :: most_compared = 100
+
 contains
 
   !> Check the words of an entry and bring names to lower case.
@@ -53,16 +56,16 @@ contains
     text = lower_case(entry%value(1)%text)
     select case (text)
     case ("on", "yes", "true")
-      entry%number = [1.0_wp]
+      call entry%add_number(1.0_wp)
     case ("off", "no", "false")
-      entry%number = [0.0_wp]
+      call entry%add_number(0.0_wp)
     case default
       call errors%push_input(entry%value(1)%at, "expected on or off, got '"// &
           entry%value(1)%text//"'", describe(row))
     end select
   end subroutine check_switch
 
-  !> Whether a word of a value also stands before position i.
+  !> Whether a word of a value also stands before position i, among the first `most_compared` words.
   pure logical function occurs_before(entry, i)
     type(entry_t), intent(in) :: entry
     integer, intent(in) :: i
@@ -70,8 +73,9 @@ contains
     integer :: j
 
     occurs_before = .false.
-    do j = 1, i - 1
-      if (entry%value(j)%text == entry%value(i)%text) occurs_before = .true.
+    do j = 1, min(i - 1, most_compared)
+      occurs_before = entry%value(j)%text == entry%value(i)%text
+      if (occurs_before) return
     end do
   end function occurs_before
 

@@ -52,8 +52,25 @@ contains
       call errors%push_input(wanted%source%opened, "set '"//wanted%source%called()// &
           "' contains no node", "at least one node")
     end if
-    mesh%set = [mesh%set, set]
+    call append(mesh%set, set)
   end subroutine add_set
+
+  !> Append a set without copying the nodes of the others.
+  subroutine append(sets, set)
+    type(mesh_set_t), allocatable, intent(inout) :: sets(:)
+    type(mesh_set_t), intent(in) :: set
+
+    type(mesh_set_t), allocatable :: larger(:)
+    integer :: i
+
+    allocate (larger(size(sets) + 1))
+    do i = 1, size(sets)
+      call move_alloc(sets(i)%name, larger(i)%name)
+      call move_alloc(sets(i)%node, larger(i)%node)
+    end do
+    larger(size(larger)) = set
+    call move_alloc(larger, sets)
+  end subroutine append
 
   !> Keep the members with the numbers of the set.
   subroutine keep_numbers(member, wanted, errors)

@@ -3,7 +3,7 @@
 module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : text_buffer_t, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_registry, only : element_names, new_element
@@ -99,13 +99,14 @@ contains
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
 
+    type(text_buffer_t) :: buffer
     integer :: i
 
-    model%title = ""
     do i = 1, size(case%title)
-      if (i > 1) model%title = model%title//" "
-      model%title = model%title//trim(adjustl(case%title(i)%s))
+      if (i > 1) call buffer%add(" ")
+      call buffer%add(trim(adjustl(case%title(i)%s)))
     end do
+    model%title = buffer%text()
   end subroutine set_title
 
   !> Read the surfaces of the tools.

@@ -4,7 +4,7 @@
 module dd3_point_run
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error, keep_first
-  use dd3_base_interrupt, only : interrupted
+  use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_converged, verdict_t
@@ -140,7 +140,7 @@ contains
       if (.not. run%waiting) call write_row(run, model, path, record, error)
       if (allocated(error)) return
       if (interrupted()) then
-        call fatal_error(error, "interrupted by the user in point "//path%name//", step "// &
+        call fatal_error(error, interruption()//" in point "//path%name//", step "// &
             to_text(run%increment))
         return
       end if

@@ -3,7 +3,7 @@ module dd3_process_run
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : profile_t, section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
-  use dd3_base_interrupt, only : interrupted
+  use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
   use dd3_base_text, only : text_t, to_text
   use dd3_base_verdict, only : verdict_converged, verdict_retry
@@ -170,7 +170,7 @@ contains
         end if
         if (allocated(error)) return
         if (interrupted()) then
-          call fatal_error(error, "interrupted by the user after increment " &
+          call fatal_error(error, interruption()//" after increment " &
               //to_text(committed%increment))
           return
         end if

@@ -37,10 +37,11 @@ def main():
                 ("study.sh", ("--program", "nosuch"), "nosuch: no such program"),
                 ("study.sh", ("--sets",), "--sets needs a value"), ("study.sh", ("--cores",), "--cores needs a value"),
                 ("study.sh", ("--cores", "x"), "--cores takes a number"), ("study.sh", ("x",), "unknown argument x"),
-                ("first_run.sh", ("x",), "unknown argument x"), ("run_tests.sh", ("x",), "unknown argument x")):
+                ("first_run.sh", ("x",), "unknown argument x"), ("run_tests.sh", ("x",), "unknown argument x"),
+                ("install_needed.sh", ("x",), "unknown argument x")):
             lines = call(script, *arguments).strip().splitlines()
             assert said in lines[-1] and lines[-1].startswith("error: "), lines
-        for script in ("study.sh", "first_run.sh", "run_tests.sh"):
+        for script in ("study.sh", "first_run.sh", "run_tests.sh", "install_needed.sh"):
             assert f"utils/{script}" in call(script, "--help", expect=0)
         assert not (work / "b-1e3").exists()
     print("messages are plain")

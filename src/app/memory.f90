@@ -1,0 +1,149 @@
+!> Ends of the program that no caller can handle, above all for lack of memory: a sentence on the
+!> error stream and in job.log, and exit code 3.
+!>
+!> gfortran checks the memory of each `allocate` without `stat`, of each automatic array and, by
+!> -fcheck=mem, of each temporary. If there is none, it calls `_gfortran_os_error_at`, which would
+!> end the program with exit code 1; the procedure of that name below takes its place. Any other end
+!> within a library is caught by a procedure that `exit` calls. With another compiler only the
+!> latter is called. Neither may allocate memory, so that texts are written piece by piece. Module
+!> variables hold what the procedures need, as they have no arguments for it.
+module dd3_app_memory
+  use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_null_char, c_size_t
+  implicit none
+  private
+  public :: watch_memory, watch_log, end_program
+
+  !> Descriptor of the error stream.
+  integer(c_int), parameter :: error_stream = 2
+  !> Exit code of a run that stopped before its end.
+  integer(c_int), parameter :: code_stopped = 3
+  !> Most characters shown of a place in the source.
+  integer, parameter :: longest_place = 200
+  !> Remedy in the message.
+  character(len=*), parameter :: remedy = "; a mesh with fewer elements needs less, or raise "// &
+      "the limit (ulimit -v, the memory asked of a batch queue)"
+
+  !> Descriptor of job.log; negative if there is none.
+  integer(c_int), save :: log_descriptor = -1
+  !> Whether the program ends as it should; whether a message is being written.
+  logical, save :: finished = .false., ending = .false.
+
+  interface
+    !> atexit(3).
+    integer(c_int) function c_atexit(handler) bind(c, name="atexit")
+      import :: c_funptr, c_int
+      type(c_funptr), value :: handler
+    end function c_atexit
+    !> exit(3).
+    subroutine c_exit(code) bind(c, name="exit")
+      import :: c_int
+      integer(c_int), value :: code
+    end subroutine c_exit
+    !> _exit(2): end at once.
+    subroutine posix_exit(code) bind(c, name="_exit")
+      import :: c_int
+      integer(c_int), value :: code
+    end subroutine posix_exit
+    !> write(2).
+    integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
+      import :: c_char, c_int, c_size_t
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: buffer(*)
+      integer(c_size_t), value :: count
+    end function posix_write
+  end interface
+
+contains
+
+  !> Watch the ends of the program from now on.
+  subroutine watch_memory()
+    integer(c_int) :: ignored
+
+    finished = .false.
+    ignored = c_atexit(c_funloc(end_in_library))
+  end subroutine watch_memory
+
+  !> Write the message of such an end into job.log too.
+  subroutine watch_log(descriptor)
+    !> Negative if there is none any more.
+    integer(c_int), intent(in) :: descriptor
+
+    log_descriptor = descriptor
+  end subroutine watch_log
+
+  !> End the program.
+  subroutine end_program(code)
+    integer, intent(in) :: code
+
+    finished = .true.
+    call c_exit(int(code, c_int))
+  end subroutine end_program
+
+  !> Called by the compiled program if an array cannot be allocated: `bytes` is given if the message
+  !> has a place for it.
+  subroutine end_without_memory(place, message, bytes) bind(c, name="_gfortran_os_error_at")
+    character(kind=c_char), intent(in) :: place(*), message(*)
+    integer(c_size_t), value :: bytes
+
+    character(len=*), parameter :: has_size = "Error allocating %lu"
+    integer(c_size_t), parameter :: megabyte = 1000000_c_size_t
+    integer :: i
+
+    if (ending) call posix_exit(code_stopped)
+    ending = .true.
+    call put("stopped: not enough memory")
+    do i = 1, len(has_size)
+      if (message(i) /= has_size(i:i)) exit
+    end do
+    if (i > len(has_size)) then
+      call put(": an array of ")
+      call put_integer(bytes/megabyte + merge(1_c_size_t, 0_c_size_t, bytes < megabyte))
+      call put(" MB could not be allocated")
+    end if
+    call put(" (")
+    do i = 1, longest_place
+      if (place(i) == c_null_char) exit
+      call put(place(i))
+    end do
+    call put(")"//remedy//new_line("a"))
+    call posix_exit(code_stopped)
+  end subroutine end_without_memory
+
+  !> Called by `exit`: a library has ended the program.
+  subroutine end_in_library() bind(c)
+    if (finished .or. ending) return
+    ending = .true.
+    call put("stopped: a library ended the program, most often for lack of memory; its own "// &
+        "message is on the error stream"//remedy//new_line("a"))
+    call posix_exit(code_stopped)
+  end subroutine end_in_library
+
+  !> Write a text on the error stream and into job.log.
+  subroutine put(text)
+    character(len=*), intent(in) :: text
+
+    integer(c_size_t) :: ignored
+
+    if (index(text, "stopped") == 1) ignored = posix_write(error_stream, "dd3imp: ", 8_c_size_t)
+    ignored = posix_write(error_stream, text, len(text, c_size_t))
+    if (log_descriptor >= 0) ignored = posix_write(log_descriptor, text, len(text, c_size_t))
+  end subroutine put
+
+  !> Write a number.
+  subroutine put_integer(number)
+    integer(c_size_t), intent(in) :: number
+
+    character(len=20) :: digits
+    integer(c_size_t) :: rest
+    integer :: i
+
+    rest = number
+    do i = len(digits), 1, -1
+      digits(i:i) = achar(iachar("0") + int(mod(rest, 10_c_size_t)))
+      rest = rest/10_c_size_t
+      if (rest == 0) exit
+    end do
+    call put(digits(max(1, i):))
+  end subroutine put_integer
+
+end module dd3_app_memory
