@@ -73,8 +73,8 @@ module dd3_model_model
     logical, allocatable :: candidate(:, :)
     !> Stiffness of the sheet through its thickness under each candidate, `(n_contact)`, N/mm.
     real(wp), allocatable :: contact_stiffness(:)
-    !> Nodes of the faces on which a tool can touch the sheet, `(n_face_node, n_contact_face)`.
-    integer, allocatable :: contact_face(:, :)
+    !> Faces on which a tool can touch the sheet: positions in `face`.
+    integer, allocatable :: contact_face(:)
     !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
     !> tool is never pressed.
     integer, allocatable :: tool_row(:)

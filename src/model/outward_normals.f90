@@ -3,7 +3,6 @@
 module dd3_model_outward_normals
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
-  use dd3_mesh_faces, only : boundary_faces
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -15,18 +14,16 @@ contains
   subroutine find_contact_faces(model)
     type(model_t), intent(inout) :: model
 
-    integer, allocatable :: face(:, :)
     logical, allocatable :: touches(:)
     integer :: f
 
-    face = boundary_faces(model%element%face, model%connectivity)
-    allocate (touches(size(face, 2)), source=.false.)
-    do f = 1, size(face, 2)
-      associate (candidate => model%candidate_of(face(:, f)))
+    allocate (touches(model%face%n), source=.false.)
+    do f = 1, model%face%n
+      associate (candidate => model%candidate_of(model%face%corner(:, f)))
         if (all(candidate > 0)) touches(f) = any(all(model%candidate(:, candidate), dim=2))
       end associate
     end do
-    model%contact_face = face(:, pack([(f, f=1, size(touches))], touches))
+    model%contact_face = pack([(f, f=1, model%face%n)], touches)
   end subroutine find_contact_faces
 
   !> Return the outward unit normals at the candidates, `(3, n_contact)`: the mean over the contact
@@ -41,11 +38,11 @@ contains
     integer :: f, i, c
 
     allocate (normal(3, model%n_contact), source=0.0_wp)
-    do f = 1, size(model%contact_face, 2)
-      associate (node => model%contact_face(:, f))
-        area = cross(x(:, node(3)) - x(:, node(1)), x(:, node(4)) - x(:, node(2)))
-        do i = 1, size(node)
-          c = model%candidate_of(node(i))
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)))
+        area = cross(x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2)))
+        do i = 1, size(corner)
+          c = model%candidate_of(corner(i))
           normal(:, c) = normal(:, c) + area
         end do
       end associate

@@ -38,10 +38,12 @@ contains
     integer :: f
 
     area = 0.0_wp
-    do f = 1, size(model%contact_face, 2)
-      associate (node => model%contact_face(:, f), x => model%x0)
-        area(model%candidate_of(node)) = area(model%candidate_of(node)) + 0.5_wp/size(node)* &
-            norm2(cross(x(:, node(3)) - x(:, node(1)), x(:, node(4)) - x(:, node(2))))
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)), x => model%x0)
+        associate (candidate => model%candidate_of(corner))
+          area(candidate) = area(candidate) + 0.125_wp*norm2(cross( &
+              x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2))))
+        end associate
       end associate
     end do
     mean = model%thickness**2
