@@ -89,7 +89,7 @@ contains
     real(wp) :: largest, smallest
     integer :: c
 
-    largest = maxval(contact%violation, mask=contact%held /= not_held)
+    largest = maxval(contact%violation)
     released = largest > negligible*maxval(norm2(contact%force, dim=1))
     if (.not. released) return
     correction%releases = correction%releases + 1

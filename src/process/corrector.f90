@@ -28,6 +28,9 @@ module dd3_process_corrector
   !> Strain whose force on the square of the thickness is the smallest scale of the criterion: in a
   !> free sheet at rest all forces are round-off.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
+  !> Iterations with the criterion above this value after which an attempt is given up.
+  integer, parameter :: lost_iterations = 12
+  real(wp), parameter :: lost_criterion = 0.5_wp
   !> Largest number of nodes listed in a message.
   integer, parameter :: most_listed = 4
 
@@ -94,6 +97,7 @@ contains
           trial%lambda = system%contact%force
           return
         end if
+        if (phase%newton%damping .and. is_lost(correction%criterion)) exit
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
         call system%profile%add(section_assembly)
@@ -105,9 +109,20 @@ contains
         if (verdict%outcome /= verdict_converged) return
       end do
       verdict%outcome = verdict_retry
-      verdict%norm = correction%criterion(phase%newton%iterations)
+      verdict%norm = correction%criterion(size(correction%criterion))
     end associate
   end subroutine iterate
+
+  !> Whether the iterations do not approach a solution: residuals as large as the forces for long.
+  pure logical function is_lost(criterion)
+    real(wp), intent(in) :: criterion(:)
+
+    integer :: j
+
+    j = size(criterion)
+    is_lost = .false.
+    if (j > lost_iterations) is_lost = all(criterion(j - lost_iterations:) > lost_criterion)
+  end function is_lost
 
   !> Hold candidates whose status cycles, or release them once the iterations have converged.
   subroutine update_active_set(correction, contact, tolerance, verdict, changed)
@@ -156,7 +171,7 @@ contains
             //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
         verdict%node = 0
       end if
-      verdict%reason = reason//" after "//to_text(phase%newton%iterations)//" iterations"
+      verdict%reason = reason//" after "//to_text(verdict%iterations)//" iterations"
     end associate
   end subroutine explain
 
