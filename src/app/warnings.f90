@@ -1,11 +1,13 @@
 !> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error,
-!> settings that make results inaccurate, loads on held directions, tools that probably are not as
-!> meant. They are not errors: a unit cube of a model material is a valid case.
+!> settings and meshes that make results inaccurate, loads on held directions, tools that probably
+!> are not as meant. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_element_length, only : excess_moment, find_long_elements, &
+      long_elements_t, longest_known
   use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   use dd3_model_tool_report, only : tool_warnings
@@ -68,6 +70,7 @@ contains
     end do
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
+    call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
   end subroutine unit_warnings
 
@@ -115,6 +118,26 @@ contains
       end associate
     end do
   end subroutine check_held_loads
+
+  !> Warn of elements too long for bending.
+  subroutine check_element_length(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    character(len=:), allocatable :: bound
+    type(long_elements_t) :: found
+
+    found = find_long_elements(model)
+    if (found%n == 0) return
+    bound = "about "
+    if (found%ratio > longest_known) bound = "more than "
+    call add(warnings, case%blank(1)%source%at("divisions"), "the element faces under the tools "// &
+        "are up to "//to_text(found%ratio, 2)//" thicknesses long ("//to_text(found%n)//" of "// &
+        to_text(size(model%contact_face))//" longer than one)", "where the sheet bends, the "// &
+        "moment is "//bound//to_text(nint(100*excess_moment(found%ratio)))// &
+        " % too high at this length, 17 % at one thickness, 3 % at half of one")
+  end subroutine check_element_length
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.
   subroutine check_criterion(case, model, i, warnings)
