@@ -6,8 +6,8 @@ module dd3_app_warnings
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
-  use dd3_model_element_length, only : excess_moment, find_long_elements, &
-      long_elements_t, longest_known
+  use dd3_model_element_length, only : element_length_t, excess_moment, &
+      longest_known, measure_elements
   use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   use dd3_model_tool_report, only : tool_warnings
@@ -125,19 +125,33 @@ contains
     type(model_t), intent(in) :: model
     type(text_t), allocatable, intent(inout) :: warnings(:)
 
-    character(len=:), allocatable :: bound
-    type(long_elements_t) :: found
+    type(element_length_t) :: length
 
-    found = find_long_elements(model)
-    if (found%n == 0) return
-    bound = "about "
-    if (found%ratio > longest_known) bound = "more than "
-    call add(warnings, case%blank(1)%source%at("divisions"), "the element faces under the tools "// &
-        "are up to "//to_text(found%ratio, 2)//" thicknesses long ("//to_text(found%n)//" of "// &
-        to_text(size(model%contact_face))//" longer than one)", "where the sheet bends, the "// &
-        "moment is "//bound//to_text(nint(100*excess_moment(found%ratio)))// &
-        " % too high at this length, 17 % at one thickness, 3 % at half of one")
+    length = measure_elements(model)
+    if (length%n_long == 0) return
+    call add(warnings, case%blank(1)%source%at("divisions"), "the elements under the tools are "// &
+        span(to_text(length%shortest, 2), to_text(length%longest, 2))//" thicknesses long", &
+        "where the sheet bends, its moment is "//span(excess(length%shortest), &
+        excess(length%longest))//" % too high; expected at most half a thickness there, 3 %")
   end subroutine check_element_length
+
+  !> Return a range, or its only value.
+  pure function span(lower, upper) result(text)
+    character(len=*), intent(in) :: lower, upper
+    character(len=:), allocatable :: text
+
+    text = lower
+    if (lower /= upper) text = lower//" to "//upper
+  end function span
+
+  !> Return the excess of the moment of elements of a length in thicknesses, per cent.
+  function excess(length) result(text)
+    real(wp), intent(in) :: length
+    character(len=:), allocatable :: text
+
+    text = to_text(nint(100*excess_moment(length)))
+    if (length > longest_known) text = "more than "//text
+  end function excess
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.
   subroutine check_criterion(case, model, i, warnings)

@@ -7,7 +7,7 @@ module dd3_model_element_length
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: long_elements_t, find_long_elements, excess_moment, longest_known
+  public :: element_length_t, measure_elements, excess_moment, longest_known
 
   !> Moment over the exact one, less 1, of elements of these lengths, in thicknesses.
   integer, parameter :: n_known = 5
@@ -19,39 +19,39 @@ module dd3_model_element_length
   !> Length up to which the excess is known, in thicknesses.
   real(wp), parameter :: longest_known = known_length(n_known)
 
-  !> Faces of the sheet that tools can touch whose elements are longer than the thickness.
-  type :: long_elements_t
-    integer :: n = 0
-    !> Largest length, in thicknesses, and its element; 0 without such faces.
-    real(wp) :: ratio = 0.0_wp
-    integer :: element = 0
-  end type long_elements_t
+  !> Lengths of the elements at the faces of the sheet that tools can touch.
+  type :: element_length_t
+    !> Number of elements longer than the thickness.
+    integer :: n_long = 0
+    !> In thicknesses; 0 without faces.
+    real(wp) :: shortest = 0.0_wp, longest = 0.0_wp
+  end type element_length_t
 
 contains
 
-  !> Find the elements that are longer than the thickness in both directions of their contact face:
-  !> a strip may be bent along its short edges.
-  pure function find_long_elements(model) result(self)
+  !> Measure the elements, each in the shorter direction of its contact face: a strip is often meshed
+  !> finely only in the direction in which it is bent.
+  pure function measure_elements(model) result(self)
     type(model_t), intent(in) :: model
-    type(long_elements_t) :: self
+    type(element_length_t) :: self
 
     real(wp) :: edge(3, 4), length(4), ratio
     integer :: f
 
     if (model%n_tool == 0) return
+    if (size(model%contact_face) == 0) return
+    self%shortest = huge(1.0_wp)
     do f = 1, size(model%contact_face)
       associate (corner => model%face%corner(:, model%contact_face(f)))
         edge = model%x0(:, corner) - model%x0(:, cshift(corner, 1))
         length = norm2(edge, dim=1)
         ratio = min(length(1) + length(3), length(2) + length(4))/(2.0_wp*model%thickness)
       end associate
-      if (ratio <= 1.0_wp + round_off) cycle
-      self%n = self%n + 1
-      if (ratio <= self%ratio) cycle
-      self%ratio = ratio
-      self%element = model%face%element(model%contact_face(f))
+      if (ratio > 1.0_wp + round_off) self%n_long = self%n_long + 1
+      self%shortest = min(self%shortest, ratio)
+      self%longest = max(self%longest, ratio)
     end do
-  end function find_long_elements
+  end function measure_elements
 
   !> Return the moment over the exact one, less 1, of elements of a length in thicknesses; the last
   !> known value beyond it.
