@@ -1,11 +1,13 @@
 !> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error,
-!> settings that make results inaccurate, loads on held directions, tools that probably are not as
-!> meant. They are not errors: a unit cube of a model material is a valid case.
+!> settings and meshes that make results inaccurate, loads on held directions, tools that probably
+!> are not as meant. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_element_length, only : element_length_t, excess_moment, &
+      longest_known, measure_elements
   use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   use dd3_model_tool_report, only : tool_warnings
@@ -68,6 +70,7 @@ contains
     end do
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
+    call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
   end subroutine unit_warnings
 
@@ -115,6 +118,40 @@ contains
       end associate
     end do
   end subroutine check_held_loads
+
+  !> Warn of elements too long for bending.
+  subroutine check_element_length(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    type(element_length_t) :: length
+
+    length = measure_elements(model)
+    if (length%n_long == 0) return
+    call add(warnings, case%blank(1)%source%at("divisions"), "the elements under the tools are "// &
+        span(to_text(length%shortest, 2), to_text(length%longest, 2))//" thicknesses long", &
+        "where the sheet bends, its moment is "//span(excess(length%shortest), &
+        excess(length%longest))//" % too high; expected at most half a thickness there, 3 %")
+  end subroutine check_element_length
+
+  !> Return a range, or its only value.
+  pure function span(lower, upper) result(text)
+    character(len=*), intent(in) :: lower, upper
+    character(len=:), allocatable :: text
+
+    text = lower
+    if (lower /= upper) text = lower//" to "//upper
+  end function span
+
+  !> Return the excess of the moment of elements of a length in thicknesses, per cent.
+  function excess(length) result(text)
+    real(wp), intent(in) :: length
+    character(len=:), allocatable :: text
+
+    text = to_text(nint(100*excess_moment(length)))
+    if (length > longest_known) text = "more than "//text
+  end function excess
 
   !> Warn if the yield stress in the rolling direction is far from the flow stress.
   subroutine check_criterion(case, model, i, warnings)

@@ -6,7 +6,7 @@ module contact_examples
   implicit none
   private
   public :: random_t, plane_patch, arc_patch, cubic_fillet, octant, random_patch, wave_surface
-  public :: strip_surface, roof_surface, dome_surface, brute_distance
+  public :: strip_surface, roof_surface, rib_surface, dome_surface, brute_distance
 
   !> cos 45 degrees.
   real(wp), parameter :: c45 = sqrt(0.5_wp)
@@ -191,6 +191,18 @@ contains
         [0.0_wp, 10.0_wp, 0.0_wp])
     call new_surface(surface, patch)
   end function roof_surface
+
+  !> Make the walls of a rib, 1 mm thick, at x = 0 and x = 1; normals away from each other.
+  function rib_surface() result(surface)
+    type(surface_t) :: surface
+
+    type(patch_t) :: patch(2)
+    real(wp), parameter :: y(3) = [0.0_wp, 10.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 10.0_wp]
+
+    patch(1) = plane_patch([0.0_wp, -5.0_wp, -5.0_wp], z, y)
+    patch(2) = plane_patch([1.0_wp, -5.0_wp, -5.0_wp], y, z)
+    call new_surface(surface, patch)
+  end function rib_surface
 
   !> Make a hemisphere of four octants, its pole on top.
   function dome_surface(radius) result(surface)
