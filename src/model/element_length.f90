@@ -1,6 +1,6 @@
-!> Length of the elements that tools bend. hex8 with one mean dilatation is too stiff in bending if it
-!> is long compared with the thickness of the sheet, whatever the number of layers: its edges stay
-!> straight.
+!> Length of the elements that tools bend. hex8 with one mean dilatation is too stiff in bending if
+!> it is long compared with the thickness of the sheet, whatever the number of layers: its edges
+!> stay straight.
 !> Source of the numbers: a strip bent to a radius, its moment compared with that of short elements.
 module dd3_model_element_length
   use dd3_base_kinds, only : wp
@@ -29,8 +29,8 @@ module dd3_model_element_length
 
 contains
 
-  !> Measure the elements, each in the shorter direction of its contact face: a strip is often meshed
-  !> finely only in the direction in which it is bent.
+  !> Measure the elements, each in the shorter direction of its contact face: a strip is often
+  !> meshed finely only in the direction in which it is bent.
   pure function measure_elements(model) result(self)
     type(model_t), intent(in) :: model
     type(element_length_t) :: self
