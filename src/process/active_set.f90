@@ -1,10 +1,9 @@
 !> Active set of the contact: remedy for contact status that cycles.
 !>
-!> The corrector evaluates the status in every iteration. Where single nodes open and close, or stick
-!> and slip, again and again, their status is held: the iterations converge with it, as a smooth
-!> problem. Then the status by the contact law is compared with the one held, and the nodes with the
-!> largest violations are released into it, until none violates its status. The converged solution
-!> is that of the contact law.
+!> The corrector evaluates the status in every iteration. Where nodes open and close, or stick and
+!> slip, again and again, their status is held, and the iterations converge on a smooth problem.
+!> Then nodes that violate the contact law are released into their status by it, until none does:
+!> the converged solution is that of the contact law.
 !> Source: Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888 (primal-dual active
 !> set); Alart and Curnier 1991.
 module dd3_process_active_set
@@ -89,7 +88,7 @@ contains
     real(wp) :: largest, smallest
     integer :: c
 
-    largest = maxval(contact%violation)
+    largest = maxval(contact%violation, mask=contact%held /= not_held)
     released = largest > negligible*maxval(norm2(contact%force, dim=1))
     if (.not. released) return
     correction%releases = correction%releases + 1
