@@ -139,7 +139,8 @@ contains
       text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
           to_text(state%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
-          to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "//to_text(length, 3)//" mm long: the mesh is too coarse for the tool"
+          to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "// &
+          to_text(length, 3)//" mm long: the mesh is too coarse for the tool"
     end associate
   end function depth_warning
 
