@@ -47,7 +47,7 @@ contains
       end associate
     end do
     mean = model%thickness**2
-    if (any(area > 0.0_wp)) mean = sum(area)/count(area > 0.0_wp)
+    if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
     where (area <= 0.0_wp) area = mean
     model%contact_stiffness = young*area/model%thickness
   end subroutine set_contact_stiffness

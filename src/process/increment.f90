@@ -104,7 +104,7 @@ contains
       if (newton%target_iterations > 0 .and. &
           attempt%verdict%iterations > newton%target_iterations) then
         factor = max(smallest_factor, &
-            sqrt(real(newton%target_iterations, wp)/attempt%verdict%iterations))
+            sqrt(real(newton%target_iterations, wp)/real(attempt%verdict%iterations, wp)))
         committed%r_cap = attempt%limit%r
       else if (attempt%number > 1) then
         committed%r_cap = attempt%limit%r
