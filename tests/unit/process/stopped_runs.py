@@ -88,7 +88,7 @@ def small_disk(program, directory):
 def full_disk(program, directory):
     """Test a disk that fills up: both tables contain every accepted increment."""
     inner = 'mount -t tmpfs -o size="$1" none "$2" && shift 2 && "$@"'
-    for size in ("1300k", "1500k"):
+    for size in ("1050k", "1100k"):
         disk, copy = directory / size, directory / f"{size}.copy"
         disk.mkdir(parents=True)
         mounted = ["unshare", "--mount", "--map-root-user", "sh", "-c", inner, "sh", size, disk]
@@ -96,7 +96,7 @@ def full_disk(program, directory):
             print("cannot mount a file system of limited size: full_disk is skipped")
             return
         both = '"$1" --output "$2/out" "$3"; code=$?; cp -r "$2/out" "$4"; exit $code'
-        done = subprocess.run(mounted + ["sh", "-c", both, "sh", program, disk, BENDING, copy], stdout=subprocess.PIPE,
+        done = subprocess.run(mounted + ["sh", "-c", both, "sh", program, disk, BEGINNING, copy], stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
         check(done.returncode == 3 and "No space left" in done.stdout, f"{done.returncode}:\n{done.stdout}")
         history, status = table(copy / "history.csv"), table(copy / "status.csv")
