@@ -157,6 +157,8 @@ module dd3_input_case
     type(limit_spec_t) :: force(3)
     !> Floor of the reference contact force.
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
+    !> Maximum predicted depth of a node inside a tool that it meets, over the thickness.
+    type(limit_spec_t) :: depth
     !> Minimum and maximum of the factor r on the trial increment.
     type(limit_spec_t) :: r_min = limit_spec_t(value=0.0_wp), r_max
   end type limits_spec_t
@@ -165,6 +167,8 @@ module dd3_input_case
   type :: newton_spec_t
     !> Tolerance of the convergence criterion.
     real(wp) :: tolerance = 0.0_wp
+    !> Tolerance of the balance of a pressed tool, over its force.
+    real(wp) :: tool_force = 0.0_wp
     !> Maximum number of iterations of an increment.
     integer :: iterations = 0
     !> Whether a failed increment is repeated with a smaller r.

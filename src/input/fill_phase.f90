@@ -199,6 +199,7 @@ contains
       call fill_limit(limits%force(i), off%force(i), block, "force", i)
     end do
     call fill_limit(limits%force_floor, off%force_floor, block, "force_floor")
+    call fill_limit(limits%depth, off%depth, block, "depth")
     call fill_limit(limits%r_min, off%r_min, block, "r_min")
     call fill_limit(limits%r_max, off%r_max, block, "r_max")
   end subroutine fill_limits
@@ -230,6 +231,7 @@ contains
     type(block_t), intent(in) :: block
 
     if (block%has("tolerance")) newton%tolerance = block%number("tolerance")
+    if (block%has("tool_force")) newton%tool_force = block%number("tool_force")
     if (block%has("iterations")) newton%iterations = nint(block%number("iterations"))
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
     if (block%has("cutback_factor")) newton%cutback_factor = block%number("cutback_factor")

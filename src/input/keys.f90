@@ -124,6 +124,8 @@ contains
           count=3), &
       row("force_floor", kind_real, "", "0.1", "floor beta of the reference contact force", &
           lower=zero), &
+      row("depth", kind_real, "", "0.0025", "maximum predicted depth of a node inside a tool "// &
+          "that it meets, over the thickness"), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
       row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
     do i = 1, size(key)
@@ -143,6 +145,8 @@ contains
     key = [ &
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
           lower=zero, upper=0.1_wp, lower_open=.true.), &
+      row("tool_force", kind_real, "", "1e-2", "tolerance of the balance of a pressed tool, "// &
+          "over its force", lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &

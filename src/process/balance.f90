@@ -5,14 +5,15 @@ module dd3_process_balance
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_residual, only : evaluate_forces, pressed_force, tool_force_tolerance
+  use dd3_process_residual, only : evaluate_forces, pressed_force
   use dd3_system_system, only : system_t
   implicit none
   private
   public :: balance_tools
 
-  !> Relative residual up to which the motion of the tool alone restores its balance.
-  real(wp), parameter :: nearly_met = 1.0e-4_wp
+  !> Relative residual of a balanced tool, and the least one up to which the motion of the tool
+  !> alone restores its balance.
+  real(wp), parameter :: balanced = 1.0e-6_wp, nearly_met = 1.0e-4_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4
 
@@ -43,7 +44,8 @@ contains
           if (.not. phase%pressed(tool)) cycle
           associate (residual => abs(system%problem%tool_residual(tool)), &
               force => pressed_force(trial, tool))
-            if (residual > tool_force_tolerance*force .and. residual <= nearly_met*force) &
+            if (residual > balanced*force &
+                .and. residual <= max(nearly_met, phase%newton%tool_force)*force) &
                 distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
           end associate
         end do

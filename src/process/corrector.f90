@@ -14,7 +14,7 @@ module dd3_process_corrector
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
   use dd3_process_balance, only : balance_tools
   use dd3_process_newton_step, only : advance, retreat
-  use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force, tool_force_tolerance
+  use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : contact_work_t, not_held
   use dd3_system_solve, only : solve_reduced
@@ -28,8 +28,9 @@ module dd3_process_corrector
   !> Strain whose force on the square of the thickness is the smallest scale of the criterion: in a
   !> free sheet at rest all forces are round-off.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
-  !> Iterations with the criterion above this value after which an attempt is given up.
-  integer, parameter :: lost_iterations = 12
+  !> Iterations with the criterion above a value after which an attempt is given up, unless it has
+  !> fallen to a new minimum in the last ones.
+  integer, parameter :: lost_iterations = 12, without_progress = 6
   real(wp), parameter :: lost_criterion = 0.5_wp
   !> Largest number of nodes listed in a message.
   integer, parameter :: most_listed = 4
@@ -113,7 +114,8 @@ contains
     end associate
   end subroutine iterate
 
-  !> Whether the iterations do not approach a solution: residuals as large as the forces for long.
+  !> Whether the iterations do not approach a solution: residuals as large as the forces for long,
+  !> and not decreasing.
   pure logical function is_lost(criterion)
     real(wp), intent(in) :: criterion(:)
 
@@ -121,7 +123,8 @@ contains
 
     j = size(criterion)
     is_lost = .false.
-    if (j > lost_iterations) is_lost = all(criterion(j - lost_iterations:) > lost_criterion)
+    if (j > lost_iterations) is_lost = all(criterion(j - lost_iterations:) > lost_criterion) &
+        .and. minloc(criterion, dim=1) <= j - without_progress
   end function is_lost
 
   !> Hold candidates whose status cycles, or release them once the iterations have converged.
@@ -135,6 +138,8 @@ contains
     !> Whether the contact must be evaluated again.
     logical, intent(out) :: changed
 
+    if (minloc(correction%criterion, dim=1) == verdict%iterations .and. correction%held == 0) &
+        correction%changes = 0
     if (verdict%norm < tolerance) then
       call release_violators(correction, contact, changed)
       if (changed) verdict%outcome = verdict_retry
@@ -231,7 +236,7 @@ contains
         end if
         sum_of_squares = sum_of_squares + tool_residual(tool)**2
         forces_met = forces_met &
-            .and. abs(tool_residual(tool)) <= tool_force_tolerance*pressed_force(trial, tool)
+            .and. abs(tool_residual(tool)) <= phase%newton%tool_force*pressed_force(trial, tool)
       end do
       associate (elasticity => model%material(model%material_of(1))%laws%elasticity)
         scale = max(norm2(trial%lambda), norm2(trial%internal_force), &

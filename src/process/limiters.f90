@@ -37,9 +37,6 @@ module dd3_process_limiters
     logical :: above_r_min = .false.
   end type limiter_t
 
-  !> Predicted depth of a candidate inside a tool in contact that limits r, over the thickness.
-  real(wp), parameter :: largest_depth = 0.25_wp
-
 contains
 
   !> Return the limiters in the order of their evaluation; the first of equal bounds wins.
@@ -250,7 +247,8 @@ contains
     integer :: c, node, tool
 
     touching = .false.
-    associate (contact => stepper%system%contact, prediction => stepper%prediction)
+    associate (contact => stepper%system%contact, prediction => stepper%prediction, &
+        allowed => model%phase(state%phase)%limits%depth)
       do c = 1, model%n_contact
         if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
       end do
@@ -262,7 +260,8 @@ contains
         approach = dot_product(prediction%tool_displacement(:, tool) &
             - prediction%displacement(:, node), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
-        depth = merge(largest_depth*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))
+        if (touching(tool) .and. .not. allowed%active) cycle
+        depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
             name=merge("gap          ", "first contact", touching(tool)))

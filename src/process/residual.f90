@@ -9,10 +9,8 @@ module dd3_process_residual
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: evaluate_forces, pressed_force, lost_tool, tool_force_tolerance
+  public :: evaluate_forces, pressed_force, lost_tool
 
-  !> Relative tolerance of the force on a pressed tool.
-  real(wp), parameter :: tool_force_tolerance = 1.0e-6_wp
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: small = 1.0e-3_wp
 

@@ -4,8 +4,9 @@ module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
-      contact_violation, round_off, status_gap, status_stick
+      contact_violation, round_off, status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
@@ -122,7 +123,8 @@ contains
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
-  !> candidates within `touch` of it stick without being pulled, unless it moves away from them.
+  !> candidates within `touch` of it stick without being pulled, unless it moves away from them. With
+  !> the active set, a gap that has closed resists without friction.
   subroutine predictor_contact(self, model, committed)
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -131,7 +133,8 @@ contains
     real(wp), parameter :: no_slip(3) = 0.0_wp
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    logical :: touching(model%n_tool), leaving
+    logical :: touching(model%n_tool)
+    real(wp) :: friction
     integer :: c, tool
 
     self%outward = outward_normals(model, committed%x)
@@ -156,18 +159,42 @@ contains
         end if
         self%distance(c) = hit%distance
         self%normal(:, c) = hit%normal
-        if (.not. touching(tool)) then
-          leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
-          self%status(c) = status_gap
-          if (hit%distance <= model%tolerance%touch .and. .not. leaving) self%status(c) = &
-              status_stick
-        end if
+        friction = model%tool(tool)%friction
+        call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
+            model%tolerance%touch)
         call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-            self%lambda(:, c), no_slip, contact_penalty(model, phase, c), &
-            model%tool(tool)%friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+            self%lambda(:, c), no_slip, contact_penalty(model, phase, c), friction, &
+            self%force(:, c), self%d(:, :, c), self%e(:, :, c))
       end do
     end associate
   end subroutine predictor_contact
+
+  !> Set the status of a candidate in the predictor.
+  pure subroutine set_predictor_status(status, friction, phase, tool, touching, hit, touch)
+    !> Committed on entry.
+    integer, intent(inout) :: status
+    !> Gets the coefficient of friction: 0 if the committed state has no contact force.
+    real(wp), intent(inout) :: friction
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: tool
+    !> Whether any candidate is in contact with the tool.
+    logical, intent(in) :: touching
+    type(hit_t), intent(in) :: hit
+    !> Distance within which a tool without contact is touched, mm.
+    real(wp), intent(in) :: touch
+
+    logical :: leaving
+
+    leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
+    if (.not. touching) then
+      status = status_gap
+      if (hit%distance <= touch .and. .not. leaving) status = status_stick
+    else if (status == status_gap .and. phase%newton%active_set .and. .not. leaving &
+        .and. hit%distance < 0.0_wp) then
+      status = status_slip
+      friction = 0.0_wp
+    end if
+  end subroutine set_predictor_status
 
   !> Set a candidate without a tool near it.
   subroutine open_candidate(self, c)
