@@ -239,11 +239,15 @@ contains
     type(log_t), intent(inout) :: log
     type(run_summary_t), intent(in) :: summary
 
+    character(len=:), allocatable :: linear
     integer :: i
 
+    ! A direct solver has no iterations.
+    linear = ""
+    if (summary%solver_iterations > 0) linear = "; "//to_text(summary%solver_iterations)// &
+        " iterations of the linear solver"
     call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)// &
-        " cut back; "//to_text(summary%iterations)//" iterations; "// &
-        to_text(summary%solver_iterations)//" of the linear solver; "// &
+        " cut back; "//to_text(summary%iterations)//" iterations"//linear//"; "// &
         to_text(summary%seconds, 3)//" s")
     call log%note("time by section, s:")
     do i = 1, size(section_names)
