@@ -92,6 +92,8 @@ module dd3_model_state
     !> running phase, `(n_tool)`, mm, and the face of that value, 0 for none.
     real(wp), allocatable :: tool_depth(:), largest_depth(:)
     integer, allocatable :: deepest_face(:)
+    !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
+    real(wp), allocatable :: deepest_radius(:)
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   end type state_t
@@ -117,6 +119,7 @@ contains
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
       allocate (self%deepest_face(n_tool), source=0)
+      allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     self%x(:, :) = model%x0
     do e = 1, model%n_element

@@ -92,6 +92,7 @@ contains
     call visitor%reals("tool_depth", size(state%tool_depth), state%tool_depth)
     call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
+    call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 

@@ -153,6 +153,7 @@ contains
     type(error_t), allocatable :: late
     type(text_t), allocatable :: warnings(:)
     real(wp) :: next_output
+    logical :: ended
     integer :: done, i
 
     associate (phase => model%phase(number), committed => run%committed)
@@ -168,21 +169,22 @@ contains
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
         end if
-        if (allocated(error)) return
-        if (interrupted()) then
-          call fatal_error(error, interruption()//" after increment " &
-              //to_text(committed%increment))
-          return
-        end if
+        if (allocated(error)) exit
+        if (.not. interrupted()) cycle
+        call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
+        exit
       end do
-      call say_if_any(log, until_warning(phase, committed))
-      call say_if_any(log, release_warning(phase, committed))
-      call say_if_any(log, reaction_note(model, committed))
-      call tool_warnings(model, committed, warnings)
+      ended = .not. allocated(error)
+      if (ended) then
+        call say_if_any(log, until_warning(phase, committed))
+        call say_if_any(log, release_warning(phase, committed))
+        call say_if_any(log, reaction_note(model, committed))
+      end if
+      call tool_warnings(model, committed, ended, warnings)
       do i = 1, size(warnings)
         call log%say(warnings(i)%s)
       end do
-      call run%records%write_phase_end(model, committed, error)
+      if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
 
