@@ -33,6 +33,8 @@ module dd3_process_run
 
   !> Smallest increment of the progress of a phase.
   real(wp), parameter :: least_progress = 1.0e-12_wp
+  !> Ending of the message if an increment is smaller.
+  character(len=*), parameter :: no_progress_remedy = "; try first: a larger value of this limit"
 
   !> Initial data of a run.
   type :: run_start_t
@@ -241,7 +243,7 @@ contains
         call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
             " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
             " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
-            trim(attempt%limit%name))
+            trim(attempt%limit%name)//no_progress_remedy)
         return
       end if
       do
