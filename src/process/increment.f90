@@ -88,9 +88,9 @@ contains
     end associate
   end subroutine shrink_increment
 
-  !> Commit the trial state. A cut-back, and more iterations than the target, set a bound of r, which
-  !> every other accepted increment raises; a failed increment leaves none, so that a restart repeats
-  !> its attempts.
+  !> Commit the trial state. A cut-back, or more iterations than the target, set a bound of r, which
+  !> every other accepted increment raises; a failed increment leaves none, so that a restart
+  !> repeats its attempts.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
