@@ -5,9 +5,9 @@
     tests/benchmark/ablation.py ... --problems capstan,air --settings all,damping --jobs 2
     tests/benchmark/ablation.py ... --problems draw --limit 900 --write
 
---problems and --settings take parts of names. Every run writes its row to `rows` in the work folder; --write puts these
-rows into the table of docs/reports/ablation.md, whose other rows stay. A run that takes longer than --limit seconds is
-ended; its row says how far it came. Runs with `nice` do not disturb others; the times are processor times.
+--problems and --settings take parts of names. Every run writes its row to `rows` in the work folder; --write puts the
+last row of each run there into the table of docs/reports/ablation.md, whose other rows stay; --no-run only does that.
+A run that takes longer than --limit seconds is ended; its row says how far it came. The times are processor times.
 """
 import argparse
 import concurrent.futures
@@ -29,7 +29,7 @@ from scripts import Problem, run  # noqa: E402
 OFF = {"active_set": "active_set = off", "damping": "damping = off", "steering": "target_iterations = 0"}
 SETTINGS = {"all": ((), None), **{f"no {name}": ((key,), None) for name, key in OFF.items()},
             "none of these": (tuple(OFF.values()), None), **{f"p = {p:g}": ((), p) for p in (1e2, 1e3, 1e4, 1e5)},
-            "p = 10000, none of these": (tuple(OFF.values()), 1e4)}
+            "none of these; p = 10000": (tuple(OFF.values()), 1e4)}
 REPORT = ROOT / "docs" / "reports" / "ablation.md"
 HEAD = ("problem", "remedies", "end", "increments", "iterations", "wasted, %", "held", "released", "damped", "time, s",
         "result")
@@ -107,7 +107,9 @@ def result_text(problem, last):
     column, unit = RESULT.get(problem, ("punch_fz", "N"))
     value = float(last[column])
     if unit == "T1/T2":
-        value = -DEAD_LOAD * float(last["progress"]) / value if last["phase"] in ("3", "pull") else float("nan")
+        if last["phase"] not in ("3", "pull"):
+            return ""
+        value = -DEAD_LOAD * float(last["progress"]) / value
     return f"{value:.5g} {unit}"
 
 
@@ -143,20 +145,21 @@ def main():
     parser.add_argument("--limit", type=float, default=600.0, help="processor time of a run, s (600)")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
     parser.add_argument("--write", action="store_true", help="put the rows into docs/reports/ablation.md")
+    parser.add_argument("--no-run", action="store_true", help="run nothing, with --write")
     options = parser.parse_args()
     options.program, options.work = find_program(options.program), options.work.resolve()
     keys = [(problem, setting) for problem in chosen(PROBLEMS, options.problems)
             for setting in chosen(SETTINGS, options.settings)]
     options.work.mkdir(parents=True, exist_ok=True)
-    rows = []
+    if options.no_run:
+        keys = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for row in pool.map(lambda key: measure(options, *key), keys):
             print("| " + " | ".join(row) + " |", flush=True)
-            rows.append(row)
             with (options.work / "rows").open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
     if options.write:
-        write_report(rows)
+        write_report([json.loads(row) for row in (options.work / "rows").read_text(encoding="utf-8").splitlines()])
 
 
 if __name__ == "__main__":

@@ -184,7 +184,8 @@ HALF = """*SET corner
 
 def clamp(force):
     """Return the phase in which the blank-holder is pressed, N."""
-    return f"*PHASE clamp\n  control = load\n  trial = 0.1\n  hold = die\n  hold = punch\n  press = holder 0 0 -{force}\n"
+    return "*PHASE clamp\n  control = load\n  trial = 0.1\n  hold = die\n  hold = punch\n" \
+        f"  press = holder 0 0 -{force}\n"
 
 
 def draw(way):
