@@ -18,6 +18,7 @@ module dd3_app_job
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
   use dd3_model_build, only : new_model
+  use dd3_model_contact_report, only : contact_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
@@ -101,7 +102,8 @@ contains
     type(text_t), allocatable :: warnings(:)
     integer :: i
 
-    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)
+    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
+        contact_report(model)
     call unit_warnings(case, model, warnings)
     do i = 1, size(warnings)
       write (output_unit, '(a)') warnings(i)%s
@@ -223,7 +225,7 @@ contains
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
     end do
-    call log%note(echo_case(case)//tool_report(model))
+    call log%note(echo_case(case)//tool_report(model)//contact_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle
@@ -237,11 +239,15 @@ contains
     type(log_t), intent(inout) :: log
     type(run_summary_t), intent(in) :: summary
 
+    character(len=:), allocatable :: linear
     integer :: i
 
+    ! A direct solver has no iterations.
+    linear = ""
+    if (summary%solver_iterations > 0) linear = "; "//to_text(summary%solver_iterations)// &
+        " iterations of the linear solver"
     call log%say(to_text(summary%increments)//" increments, "//to_text(summary%retries)// &
-        " cut back; "//to_text(summary%iterations)//" iterations; "// &
-        to_text(summary%solver_iterations)//" of the linear solver; "// &
+        " cut back; "//to_text(summary%iterations)//" iterations"//linear//"; "// &
         to_text(summary%seconds, 3)//" s")
     call log%note("time by section, s:")
     do i = 1, size(section_names)

@@ -22,7 +22,7 @@ module dd3_contact_operator
   implicit none
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
-  public :: contact_operator, contact_operator_of_status, contact_violation
+  public :: contact_operator_of_status, contact_violation
 
   !> Contact status of a node: not in contact, sticking or slipping.
   integer, parameter :: status_gap = 0, status_stick = 1, status_slip = 2
@@ -37,19 +37,6 @@ module dd3_contact_operator
   real(wp), parameter :: largest_quotient = 10.0_wp
 
 contains
-
-  !> Kernel: evaluate status, force and linearisation of a node.
-  pure subroutine contact_operator(normal, distance, dnormal, lambda, slip, penalty, friction, &
-      force, d, e, status)
-    real(wp), intent(in) :: normal(3), distance, dnormal(3, 3), lambda(3), slip(3)
-    real(wp), intent(in) :: penalty, friction
-    real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
-    integer, intent(out) :: status
-
-    status = contact_status(normal, distance, lambda, slip, penalty, friction)
-    call contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, penalty, &
-        friction, force, d, e)
-  end subroutine contact_operator
 
   !> Return the status of a node. At zero gap and force it sticks, so that a load can build up.
   pure integer function contact_status(normal, distance, lambda, slip, penalty, friction) &

@@ -4,7 +4,7 @@
 module dd3_mesh_blank
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : blank_spec_t, blank_sets
-  use dd3_mesh_mesh, only : mesh_t, mesh_set_t
+  use dd3_mesh_mesh, only : mesh_t
   implicit none
   private
   public :: new_blank_mesh

@@ -42,8 +42,10 @@ module dd3_model_state
     real(wp) :: progress = 0.0_wp
     !> Path of the controlling tools since the start of the job, mm.
     real(wp) :: travel = 0.0_wp
-    !> Upper bound of r after a cut-back.
+    !> Upper bound of r after a cut-back, or after more iterations than the target.
     real(wp) :: r_cap = huge(1.0_wp)
+    !> Whether the iterations set r_cap.
+    logical :: r_cap_by_iterations = .false.
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
     !> Data that the linear solver keeps from matrix to matrix.
@@ -90,6 +92,8 @@ module dd3_model_state
     !> running phase, `(n_tool)`, mm, and the face of that value, 0 for none.
     real(wp), allocatable :: tool_depth(:), largest_depth(:)
     integer, allocatable :: deepest_face(:)
+    !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
+    real(wp), allocatable :: deepest_radius(:)
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   end type state_t
@@ -115,6 +119,7 @@ contains
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
       allocate (self%deepest_face(n_tool), source=0)
+      allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     self%x(:, :) = model%x0
     do e = 1, model%n_element

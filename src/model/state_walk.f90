@@ -66,6 +66,7 @@ contains
     call visitor%one_real("progress", state%progress)
     call visitor%one_real("travel", state%travel)
     call visitor%one_real("r_cap", state%r_cap)
+    call visitor%one_logical("r_cap_by_iterations", state%r_cap_by_iterations)
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)
     call visitor%integers("solver_memory", size(state%solver_memory), state%solver_memory)
@@ -91,6 +92,7 @@ contains
     call visitor%reals("tool_depth", size(state%tool_depth), state%tool_depth)
     call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
+    call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 

@@ -31,6 +31,8 @@ module dd3_model_tool_depth
     real(wp) :: depth = 0.0_wp
     !> Face of the sheet, as in `sheet_faces_t`; 0 for none.
     integer :: face = 0
+    !> Deepest point, in the frame of the tool, mm.
+    real(wp) :: x(3) = 0.0_wp
   end type tool_depth_t
 
   !> A face of the sheet in the frame of a tool.
@@ -91,14 +93,16 @@ contains
   end subroutine set_face
 
   !> Keep a larger depth.
-  pure subroutine keep_larger(self, depth, face)
+  pure subroutine keep_larger(self, depth, x, face)
     type(tool_depth_t), intent(inout) :: self
-    real(wp), intent(in) :: depth
+    !> Depth and place, mm.
+    real(wp), intent(in) :: depth, x(3)
     type(face_t), intent(in) :: face
 
     if (depth <= self%depth) return
     self%depth = depth
     self%face = face%number
+    self%x = x
   end subroutine keep_larger
 
   !> Measure the depth of points of the tool behind a face.
@@ -153,7 +157,7 @@ contains
       if (.not. hit%found) cycle
       if (hit%distance > 0.5_wp*face%size) return
       if (dot_product(hit%normal, face%normal) > -facing) cycle
-      call keep_larger(self, -hit%distance, face)
+      call keep_larger(self, -hit%distance, x, face)
     end do
   end subroutine probe_tool
 
@@ -216,7 +220,7 @@ contains
           if (depth > model%thickness) then
             if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
           end if
-          call keep_larger(self, depth, face)
+          call keep_larger(self, depth, point, face)
         end do
       end do
     end associate

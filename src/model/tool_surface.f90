@@ -8,7 +8,7 @@ module dd3_model_tool_surface
   use dd3_input_bezier_file, only : patch_spec_t, read_patches, push_file_errors
   implicit none
   private
-  public :: read_tool_surface, new_tool_surface
+  public :: read_tool_surface
 
 contains
 

@@ -1,7 +1,6 @@
 !> Records of a run: history.csv, status.csv, fields.vtkhdf and restart.h5.
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first
-  use dd3_base_text, only : to_text
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t

@@ -5,11 +5,9 @@ module dd3_process_attempt_report
   use dd3_base_verdict, only : verdict_converged
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
-  use dd3_model_penalty, only : contact_penalty
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
-  use dd3_process_attempt, only : attempt_t
+  use dd3_process_remedy, only : first_remedy
   use dd3_process_stepper, only : stepper_t
   implicit none
   private
@@ -97,32 +95,8 @@ contains
     character(len=:), allocatable :: message
 
     message = failure(model, committed, stepper)//"; try first: "// &
-        first_remedy(model, model%phase(committed%phase), stepper%attempt)
+        first_remedy(model, committed, stepper%attempt)
   end function failure_message
-
-  !> Return the first remedy to try after a failed increment.
-  function first_remedy(model, phase, attempt) result(remedy)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(attempt_t), intent(in) :: attempt
-    character(len=:), allocatable :: remedy
-
-    integer :: c
-
-    c = 0
-    if (attempt%verdict%node > 0) c = model%candidate_of(attempt%verdict%node)
-    if (attempt%verdict%tool > 0) then
-      remedy = "a tool that lies before the sheet along its force, a support of the sheet"
-    else if (index(attempt%verdict%reason, "linear solver") == 1) then
-      remedy = "method = umfpack in *SOLVER, supports that stop rigid motion"
-    else if (.not. phase%newton%cutback) then
-      remedy = "cutback = on in *NEWTON"
-    else if (c > 0) then
-      remedy = "penalty = "//to_text(0.1_wp*contact_penalty(model, phase, c), 1)//" in *CONTACT"
-    else
-      remedy = "rotation = 0.5 in *LIMITS, elements as long as wide"
-    end if
-  end function first_remedy
 
   !> Return the location and the reason of a failed increment.
   function failure(model, committed, stepper) result(message)

@@ -88,8 +88,9 @@ contains
     end associate
   end subroutine shrink_increment
 
-  !> Commit the trial state. A cut-back sets a bound of r, which every accepted increment raises; a
-  !> failed increment leaves none, so that a restart repeats its attempts.
+  !> Commit the trial state. A cut-back, or more iterations than the target, set a bound of r, which
+  !> every other accepted increment raises; a failed increment leaves none, so that a restart
+  !> repeats its attempts.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -106,8 +107,10 @@ contains
         factor = max(smallest_factor, &
             sqrt(real(newton%target_iterations, wp)/real(attempt%verdict%iterations, wp)))
         committed%r_cap = attempt%limit%r
+        committed%r_cap_by_iterations = .true.
       else if (attempt%number > 1) then
         committed%r_cap = attempt%limit%r
+        committed%r_cap_by_iterations = .false.
       end if
     end associate
     if (committed%r_cap < huge(1.0_wp)/r_cap_factor) committed%r_cap = committed%r_cap*factor

@@ -53,7 +53,7 @@ contains
   end function limiter_table
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
-  !> overrides, then the bound after a cut-back, the end of the phase and the other limiters.
+  !> overrides, then the bound by earlier increments, the end of the phase and the other limiters.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.
@@ -71,7 +71,8 @@ contains
         limit%r = limits%r_min%value
         limit%name = "r_min"
       end if
-      call keep_smaller(limit, limit_t(r=state%r_cap, name="cutback"))
+      call keep_smaller(limit, limit_t(r=state%r_cap, &
+          name=merge("iterations", "cutback   ", state%r_cap_by_iterations)))
       call keep_smaller(limit, &
           limit_t(r=(1.0_wp - state%progress)/stepper%prediction%progress, name="phase"))
       call apply(pack(table, .not. table%above_r_min), model, state, stepper)

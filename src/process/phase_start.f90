@@ -46,6 +46,7 @@ contains
     state%progress = 0.0_wp
     state%largest_depth = 0.0_wp
     state%deepest_face = 0
+    state%deepest_radius = huge(1.0_wp)
     associate (phase => model%phase(number), start => state%start)
       start%load = state%load
       start%load_end = phase%load_end

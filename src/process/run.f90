@@ -33,6 +33,8 @@ module dd3_process_run
 
   !> Smallest increment of the progress of a phase.
   real(wp), parameter :: least_progress = 1.0e-12_wp
+  !> Ending of the message if an increment is smaller.
+  character(len=*), parameter :: no_progress_remedy = "; try first: a larger value of this limit"
 
   !> Initial data of a run.
   type :: run_start_t
@@ -153,6 +155,7 @@ contains
     type(error_t), allocatable :: late
     type(text_t), allocatable :: warnings(:)
     real(wp) :: next_output
+    logical :: ended
     integer :: done, i
 
     associate (phase => model%phase(number), committed => run%committed)
@@ -168,21 +171,22 @@ contains
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
         end if
-        if (allocated(error)) return
-        if (interrupted()) then
-          call fatal_error(error, interruption()//" after increment " &
-              //to_text(committed%increment))
-          return
-        end if
+        if (allocated(error)) exit
+        if (.not. interrupted()) cycle
+        call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
+        exit
       end do
-      call say_if_any(log, until_warning(phase, committed))
-      call say_if_any(log, release_warning(phase, committed))
-      call say_if_any(log, reaction_note(model, committed))
-      call tool_warnings(model, committed, warnings)
+      ended = .not. allocated(error)
+      if (ended) then
+        call say_if_any(log, until_warning(phase, committed))
+        call say_if_any(log, release_warning(phase, committed))
+        call say_if_any(log, reaction_note(model, committed))
+      end if
+      call tool_warnings(model, committed, ended, warnings)
       do i = 1, size(warnings)
         call log%say(warnings(i)%s)
       end do
-      call run%records%write_phase_end(model, committed, error)
+      if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
 
@@ -239,7 +243,7 @@ contains
         call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
             " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
             " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
-            trim(attempt%limit%name))
+            trim(attempt%limit%name)//no_progress_remedy)
         return
       end if
       do

@@ -2,6 +2,7 @@
 !> how deep they enter its faces between the nodes.
 module dd3_process_tool_observation
   use dd3_base_kinds, only : wp
+  use dd3_contact_curvature, only : smallest_radius
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -31,6 +32,10 @@ contains
       if (found%depth <= state%largest_depth(tool)) cycle
       state%largest_depth(tool) = found%depth
       state%deepest_face(tool) = found%face
+      associate (x => state%x(:, model%face%corner(:, found%face)))
+        state%deepest_radius(tool) = smallest_radius(model%tool(tool)%surface, found%x, &
+            norm2(x(:, 3) - x(:, 1)))
+      end associate
     end do
   end subroutine observe_tools
 

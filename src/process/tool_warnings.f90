@@ -1,5 +1,5 @@
-!> Warnings about the tools at the end of a phase: without contact, entered between the nodes of the
-!> sheet, crossed.
+!> Warnings about the tools at the end of a phase, or of a run that stops within one: without
+!> contact, entered between the nodes of the sheet, crossed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
@@ -19,11 +19,13 @@ module dd3_process_tool_warnings
 
 contains
 
-  !> Return the warnings at the end of a phase, one line each.
-  subroutine tool_warnings(model, state, warnings)
+  !> Return the warnings, one line each.
+  subroutine tool_warnings(model, state, ended, warnings)
     type(model_t), intent(in) :: model
-    !> State at the end of the phase.
+    !> Last state of the phase.
     type(state_t), intent(in) :: state
+    !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
+    logical, intent(in) :: ended
     type(text_t), allocatable, intent(out) :: warnings(:)
 
     integer :: a, b
@@ -32,7 +34,7 @@ contains
     associate (active => model%phase(state%phase)%active)
       do a = 1, model%n_tool
         if (.not. active(a)) cycle
-        call add(warnings, model, state, contact_warning(model, state, a))
+        if (ended) call add(warnings, model, state, contact_warning(model, state, a))
         call add(warnings, model, state, depth_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (active(b)) call add(warnings, model, state, crossing_warning(model, state, a, b))
@@ -140,9 +142,28 @@ contains
           to_text(state%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
           to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "// &
-          to_text(length, 3)//" mm long: the mesh is too coarse for the tool"
+          to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "// &
+          suitable_mesh(state%deepest_radius(tool), model%thickness)
     end associate
   end function depth_warning
+
+  !> Return the mesh with which a radius of a tool gives no warning: the depth l**2/(8R) of elements
+  !> of length l is slight, or notable neither for the thickness nor for the length.
+  function suitable_mesh(radius, thickness) result(text)
+    !> Radius of curvature, mm; huge for an edge without radius.
+    real(wp), intent(in) :: radius
+    real(wp), intent(in) :: thickness
+    character(len=:), allocatable :: text
+
+    real(wp) :: length
+
+    text = "a line of nodes along the edge of the tool, or a radius there"
+    if (radius >= huge(1.0_wp)) return
+    length = max(sqrt(8.0_wp*radius*slight_depth*thickness), &
+        min(sqrt(8.0_wp*radius*notable_depth*thickness), 8.0_wp*radius*notable_slope))
+    text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
+        to_text(radius, 3)//" mm"
+  end function suitable_mesh
 
   !> Return a warning if two tools have crossed in the phase.
   function crossing_warning(model, state, a, b) result(text)

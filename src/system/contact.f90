@@ -39,6 +39,8 @@ module dd3_system_contact
     real(wp), allocatable :: violation(:)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
+    !> Distance up to which the tools are looked for, mm.
+    real(wp) :: search_distance = 0.0_wp
   end type contact_work_t
 
 contains
@@ -73,15 +75,14 @@ contains
     integer :: c, node, tool
 
     associate (phase => model%phase(trial%phase))
+      self%search_distance = phase%search_distance
       do c = 1, model%n_contact
         node = model%contact_node(c)
-        tool = trial%contact_tool(c)
         hint = trial%hint(:, c)
-        call find_nearest_tool(model, committed, trial, c, self%outward(:, c), &
-            phase%search_distance, tool, hint, hit)
+        call find_nearest_tool(self, model, committed, trial, c, hint, hit)
+        tool = self%tool(c)
         trial%contact_tool(c) = tool
         trial%hint(:, c) = hint
-        self%tool(c) = tool
         self%lambda(:, c) = trial%lambda(:, c)
         if (tool == 0) then
           call open_candidate(self, c)
@@ -138,6 +139,7 @@ contains
     integer :: c, tool
 
     self%outward = outward_normals(model, committed%x)
+    self%search_distance = model%tolerance%tool_search
     associate (phase => model%phase(committed%phase))
       touching = .false.
       do c = 1, model%n_contact
@@ -147,10 +149,8 @@ contains
       end do
       do c = 1, model%n_contact
         hint = committed%hint(:, c)
-        tool = committed%contact_tool(c)
-        call find_nearest_tool(model, committed, committed, c, self%outward(:, c), &
-            model%tolerance%tool_search, tool, hint, hit)
-        self%tool(c) = tool
+        call find_nearest_tool(self, model, committed, committed, c, hint, hit)
+        tool = self%tool(c)
         self%lambda(:, c) = committed%lambda(:, c)
         self%status(c) = committed%status(c)
         if (tool == 0) then
@@ -214,18 +214,14 @@ contains
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools; since then it cannot have come deeper
   !> inside a tool than it moved relative to it.
-  subroutine find_nearest_tool(model, committed, trial, c, outward, search_distance, tool, hint, &
-      nearest)
+  subroutine find_nearest_tool(self, model, committed, trial, c, hint, nearest)
+    !> Gets the tool, 0 if none is within the search distance.
+    type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> The trial state has the tool so far.
     type(state_t), intent(in) :: committed, trial
     !> Number of the candidate.
     integer, intent(in) :: c
-    !> Outward normal of the sheet.
-    real(wp), intent(in) :: outward(3)
-    !> Distance up to which the tools are looked for, mm.
-    real(wp), intent(in) :: search_distance
-    !> Tool so far; gets the nearest, 0 if none is within the search distance.
-    integer, intent(inout) :: tool
     !> Last closest point on each tool, `(n_tool)`.
     type(hint_t), intent(inout) :: hint(:)
     !> Closest point on the nearest tool.
@@ -233,10 +229,9 @@ contains
 
     type(hit_t) :: hit
     real(wp) :: best, distance, x(3), moved(3)
-    integer :: previous, t, node
+    integer :: t, node
 
-    previous = tool
-    tool = 0
+    self%tool(c) = 0
     best = huge(1.0_wp)
     node = model%contact_node(c)
     associate (phase => model%phase(trial%phase))
@@ -244,14 +239,14 @@ contains
         if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
         x = trial%x(:, node) - trial%tool_displacement(:, t)
         moved = x - committed%x(:, node) + committed%tool_displacement(:, t)
-        call find_contact(model%tool(t)%surface, x, hint(t), search_distance, &
-            model%tolerance%committed_depth + norm2(moved), hit, outward)
+        call find_contact(model%tool(t)%surface, x, hint(t), self%search_distance, &
+            model%tolerance%committed_depth + norm2(moved), hit, self%outward(:, c))
         if (.not. hit%found) cycle
         distance = hit%distance
-        if (t == previous) distance = distance - model%tolerance%hysteresis
+        if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis
         if (distance >= best) cycle
         best = distance
-        tool = t
+        self%tool(c) = t
         nearest = hit
       end do
     end associate

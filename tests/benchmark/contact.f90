@@ -8,7 +8,7 @@ program benchmark_contact
   use dd3_contact_surface, only : surface_t
   use dd3_model_tool_surface, only : read_tool_surface
   use dd3_contact_closest, only : hint_t, hit_t, find_contact
-  use dd3_contact_operator, only : contact_operator
+  use dd3_contact_operator, only : contact_operator_of_status, contact_status
   implicit none
 
   !> Number of queries per measurement, and of the nodes that make them.
@@ -100,8 +100,9 @@ contains
     start = wall_time()
     do i = 1, n_query
       lambda = -100.0_wp*hit%normal + [0.0_wp, 1.0_wp, 1.0e-5_wp*i]
-      call contact_operator(hit%normal, hit%distance, hit%dnormal, lambda, slip, 1.0e3_wp, &
-          0.144_wp, force, d, e, status)
+      status = contact_status(hit%normal, hit%distance, lambda, slip, 1.0e3_wp, 0.144_wp)
+      call contact_operator_of_status(status, hit%normal, hit%distance, hit%dnormal, lambda, &
+          slip, 1.0e3_wp, 0.144_wp, force, d, e)
       total = total + force(1) + d(1, 2) + e(2, 3)
     end do
     call report("operator", wall_time() - start, n_query, total)

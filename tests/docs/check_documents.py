@@ -8,6 +8,7 @@
 - Scripts, input files and presets named in the documents exist, and the program and the scripts have every `--option`
   that is used there.
 - Code blocks that are complete input files pass `dd3imp --check`; those of single points run to their end.
+- docs/status.md has the remedies that the program proposes when a run stops.
 - Each law has a page docs/laws/<law>.md with its picture, linked from the page of its kind. The table of the page has
   the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
   input_files/laws/<law>.dat runs to its end.
@@ -28,6 +29,7 @@ GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "bac
 LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")
+REMEDY = re.compile(r"parameter :: \w+_remedy = (.*?)\n(?! {6})", re.DOTALL)
 SCRIPT = re.compile(r"(?:utils|tests)/[\w/]+\.(?:py|sh)")
 
 
@@ -108,6 +110,19 @@ def broken_examples(program, text):
                 yield f"an example is refused or fails:\n{said}"
 
 
+def missing_remedies():
+    """Yield the remedies of messages that docs/status.md does not contain."""
+    text = " ".join((ROOT / "docs" / "status.md").read_text(encoding="utf-8").split())
+    for name in ("remedy", "run"):
+        source = (ROOT / "src" / "process" / f"{name}.f90").read_text(encoding="utf-8")
+        found = ["".join(re.findall(r'"(.*?)"', value)) for value in REMEDY.findall(source)]
+        if not found:
+            yield f"src/process/{name}.f90 has no remedy"
+        for remedy in found:
+            if remedy.removeprefix("; try first: ") not in text:
+                yield f"docs/status.md does not contain the remedy {remedy!r}"
+
+
 def laws_of(reference):
     """Return the laws of the keyword reference: kind and name."""
     kind, laws = "", []
@@ -183,7 +198,7 @@ def main():
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:
             wrong.append(f"{path.relative_to(ROOT)}: {problem}")
-    wrong += broken_laws(program, printed)
+    wrong += [*broken_laws(program, printed), *missing_remedies()]
     if wrong:
         sys.exit("\n".join(wrong))
 

@@ -282,6 +282,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the decks and the results")
     parser.add_argument("--seed", type=int, default=1, help="number of the series (1)")
     parser.add_argument("--count", type=int, default=400, help="number of decks (400)")
+    parser.add_argument("--first", type=int, default=0, help="number of the first deck (0), to share a series")
     parser.add_argument("--only", type=int, help="number of the only deck to be run")
     parser.add_argument("--runs", action="store_true", help="short runs with mutated numbers in place of --check")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="programs at a time (number of cores)")
@@ -291,7 +292,7 @@ def main():
     options.program, options.work = options.program.resolve(), options.work.resolve()
     options.work.mkdir(parents=True, exist_ok=True)
     corpus = Corpus(options.work / "decks", options.runs)
-    numbers = range(options.count) if options.only is None else [options.only]
+    numbers = range(options.first, options.count) if options.only is None else [options.only]
     codes, failed = {}, 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for index, code, faults in pool.map(lambda index: try_deck(index, options, corpus), numbers):

@@ -75,10 +75,11 @@ def inside_out(program, directory):
 
 
 def small_disk(program, directory):
-    """Test a limit of the file size reached in the middle of a run."""
+    """Test a limit of the file size reached in the middle of a phase; what is known of the tools is said."""
     output = run(program, directory, BEGINNING,
                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (SIZE_LIMIT, SIZE_LIMIT)))
     check("cannot write" in output, f"the file is not named:\n{output}")
+    check("tool 'punch' entered the sheet between its nodes" in output, f"the depth is not named:\n{output}")
     check(len(table(directory / "history.csv")) > 20, "the history is lost")
     table(directory / "status.csv")
     fields = (directory / "fields.vtkhdf").read_bytes()

@@ -1,0 +1,63 @@
+!> Penalty and search distance of the contact as text, for `--check` and the log: without values in
+!> the input they follow from the model.
+module dd3_model_contact_report
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : newline, to_text
+  use dd3_model_model, only : model_t
+  use dd3_model_penalty, only : contact_penalty
+  use dd3_model_phase, only : phase_t
+  implicit none
+  private
+  public :: contact_report
+
+contains
+
+  !> Return a line for the first phase and for each later one with other values; empty without
+  !> candidates.
+  function contact_report(model) result(text)
+    type(model_t), intent(in) :: model
+    character(len=:), allocatable :: text
+
+    integer :: i
+
+    text = ""
+    if (model%n_contact == 0) return
+    do i = 1, size(model%phase)
+      if (i > 1) then
+        if (same_values(model%phase(i), model%phase(i - 1))) cycle
+        text = text//"from phase '"//model%phase(i)%name//"': "
+      end if
+      text = text//values(model, model%phase(i))//newline
+    end do
+  end function contact_report
+
+  !> Whether two phases have the same penalty and search distance.
+  pure logical function same_values(a, b)
+    type(phase_t), intent(in) :: a, b
+
+    same_values = abs(a%penalty - b%penalty) <= 0.0_wp .and. &
+        abs(a%search_distance - b%search_distance) <= 0.0_wp
+  end function same_values
+
+  !> Return the values of a phase: the smallest and the largest penalty of the candidates.
+  function values(model, phase) result(text)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: smallest, largest
+    real(wp) :: penalty(model%n_contact)
+    integer :: c
+
+    penalty = [(contact_penalty(model, phase, c), c=1, model%n_contact)]
+    smallest = to_text(minval(penalty), 4)
+    largest = to_text(maxval(penalty), 4)
+    text = "contact: penalty "//smallest
+    if (smallest /= largest) text = text//" to "//largest
+    text = text//" N/mm"
+    if (phase%penalty <= 0.0_wp) text = text//" (automatic)"
+    text = text//", search distance "//to_text(phase%search_distance, 4)//" mm"
+    if (abs(phase%search_distance - model%thickness) <= 0.0_wp) text = text//" (the thickness)"
+  end function values
+
+end module dd3_model_contact_report

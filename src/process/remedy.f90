@@ -1,0 +1,99 @@
+!> First remedy to try after a failed increment. docs/status.md contains the same texts; a test
+!> compares them.
+module dd3_process_remedy
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_model_model, only : model_t
+  use dd3_model_penalty, only : contact_penalty
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_process_attempt, only : attempt_t
+  implicit none
+  private
+  public :: first_remedy
+
+  character(len=*), parameter :: contact_remedy = "a tool that lies before the sheet along its "// &
+      "force, a support of the sheet"
+  character(len=*), parameter :: memory_remedy = "method = cgs in *SOLVER"
+  character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
+      "stop rigid motion"
+  character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
+  character(len=*), parameter :: cutback_remedy = "cutback = on in *NEWTON"
+  character(len=*), parameter :: active_set_remedy = "active_set = on in *NEWTON"
+  character(len=*), parameter :: damping_remedy = "damping = on in *NEWTON"
+  character(len=*), parameter :: material_remedy = "units and parameters of the material"
+  character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
+
+  !> Factors on the penalty, on the limit of rotation and on the number of iterations that are
+  !> proposed; rotation that is proposed if it is not limited, degrees.
+  real(wp), parameter :: penalty_factor = 0.1_wp, rotation_factor = 0.25_wp
+  integer, parameter :: iterations_factor = 2
+  real(wp), parameter :: usual_rotation = 0.5_wp
+
+contains
+
+  !> Return the first remedy to try.
+  function first_remedy(model, committed, attempt) result(remedy)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(attempt_t), intent(in) :: attempt
+    character(len=:), allocatable :: remedy
+
+    associate (phase => model%phase(committed%phase), reason => attempt%verdict%reason)
+      if (begins(reason, "nothing resists")) then
+        remedy = contact_remedy
+      else if (begins(reason, "linear solver: not enough memory")) then
+        remedy = memory_remedy
+      else if (begins(reason, "linear solver")) then
+        remedy = solver_remedy
+        if (begins(attempt%solver%solver, "umfpack")) remedy = support_remedy
+      else if (committed%increment == 0 .and. begins(reason, "an iteration moved")) then
+        remedy = support_remedy
+      else if (.not. phase%newton%cutback) then
+        remedy = cutback_remedy
+      else if (.not. phase%newton%active_set .and. begins(reason, "contact status")) then
+        remedy = active_set_remedy
+      else if (.not. phase%newton%damping) then
+        remedy = damping_remedy
+      else
+        remedy = remedy_of_reason(model, phase, attempt)
+      end if
+    end associate
+  end function first_remedy
+
+  !> Return the first remedy if all automatic ones are on.
+  function remedy_of_reason(model, phase, attempt) result(remedy)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    type(attempt_t), intent(in) :: attempt
+    character(len=:), allocatable :: remedy
+
+    real(wp) :: rotation
+    integer :: c
+
+    rotation = usual_rotation
+    if (phase%limits%rotation%active) rotation = rotation_factor*phase%limits%rotation%value
+    c = 0
+    if (attempt%verdict%node > 0) c = model%candidate_of(attempt%verdict%node)
+    associate (reason => attempt%verdict%reason)
+      if (begins(reason, "an iteration moved") .or. begins(reason, "an element")) then
+        remedy = "rotation = "//to_text(rotation, 3)//" in *LIMITS"//mesh_remedy
+      else if (attempt%verdict%element > 0) then
+        remedy = material_remedy
+      else if (c > 0) then
+        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
+            " in *CONTACT"
+      else
+        remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)//" in *NEWTON"
+      end if
+    end associate
+  end function remedy_of_reason
+
+  !> Whether a text begins with another.
+  pure logical function begins(text, start)
+    character(len=*), intent(in) :: text, start
+
+    begins = index(text, start) == 1
+  end function begins
+
+end module dd3_process_remedy
