@@ -1,7 +1,8 @@
 !> Active set of the contact: remedy for contact status that cycles.
 !>
 !> The corrector evaluates the status in every iteration. Where nodes open and close, or stick and
-!> slip, again and again, their status is held, and the iterations converge on a smooth problem.
+!> slip, again and again while the criterion of convergence does not decrease, their status is held,
+!> and the iterations converge on a smooth problem.
 !> Then nodes that violate the contact law are released into their status by it, until none does:
 !> the converged solution is that of the contact law.
 !> Source: Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888 (primal-dual active

@@ -127,7 +127,8 @@ contains
         .and. minloc(criterion, dim=1) <= j - without_progress
   end function is_lost
 
-  !> Hold candidates whose status cycles, or release them once the iterations have converged.
+  !> Hold candidates whose status cycles, or release them once the iterations have converged. Changes
+  !> of status count from the last minimum of the criterion on: while it decreases, none is held.
   subroutine update_active_set(correction, contact, tolerance, verdict, changed)
     type(correction_t), intent(inout) :: correction
     type(contact_work_t), intent(inout) :: contact
