@@ -167,7 +167,8 @@ module dd3_input_case
   type :: newton_spec_t
     !> Tolerance of the convergence criterion.
     real(wp) :: tolerance = 0.0_wp
-    !> Tolerance of the balance of a pressed tool, over its force.
+    !> Tolerance of the balance of a pressed tool under which nodes keep opening and closing, over
+    !> its force.
     real(wp) :: tool_force = 0.0_wp
     !> Maximum number of iterations of an increment.
     integer :: iterations = 0

@@ -9,10 +9,10 @@ module dd3_process_balance
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: balance_tools
+  public :: balance_tools, balanced
 
-  !> Relative residual of a balanced tool, and the least one up to which the motion of the tool
-  !> alone restores its balance.
+  !> Relative residual of a balanced tool, and the one up to which the motion of the tool alone
+  !> restores its balance.
   real(wp), parameter :: balanced = 1.0e-6_wp, nearly_met = 1.0e-4_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4
@@ -44,8 +44,7 @@ contains
           if (.not. phase%pressed(tool)) cycle
           associate (residual => abs(system%problem%tool_residual(tool)), &
               force => pressed_force(trial, tool))
-            if (residual > balanced*force &
-                .and. residual <= max(nearly_met, phase%newton%tool_force)*force) &
+            if (residual > balanced*force .and. residual <= nearly_met*force) &
                 distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
           end associate
         end do

@@ -12,7 +12,7 @@ module dd3_process_corrector
   use dd3_model_state, only : state_t
   use dd3_process_active_set, only : hold_cycling, record_status, release_violators
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
-  use dd3_process_balance, only : balance_tools
+  use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
   use dd3_system_internal, only : assemble_stiffness, update_material
@@ -84,8 +84,8 @@ contains
         if (verdict%outcome /= verdict_converged) return
         call record_status(correction, system%contact, j)
         call check_convergence(model, trial, system, attempt)
-        if (verdict%outcome /= verdict_converged .and. j > 1 &
-            .and. verdict%norm < settled*phase%newton%tolerance) then
+        if (verdict%outcome == verdict_converged &
+            .or. (j > 1 .and. verdict%norm < settled*phase%newton%tolerance)) then
           call balance_tools(model, committed, trial, system, moved)
           if (moved) call check_convergence(model, trial, system, attempt)
         end if
@@ -220,7 +220,7 @@ contains
     !> Gets criterion, contact status and verdict: converged, or retry.
     type(attempt_t), intent(inout) :: attempt
 
-    real(wp) :: sum_of_squares, scale
+    real(wp) :: sum_of_squares, scale, tool_force
     integer :: j, tool
     logical :: forces_met, outside
 
@@ -229,6 +229,8 @@ contains
         correction => attempt%correction, contact => system%contact, &
         tool_residual => system%problem%tool_residual)
       forces_met = .true.
+      tool_force = balanced
+      if (keeps_changing(correction%status)) tool_force = max(balanced, phase%newton%tool_force)
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (.not. any(contact%tool == tool .and. contact%status /= status_gap)) then
@@ -237,7 +239,7 @@ contains
         end if
         sum_of_squares = sum_of_squares + tool_residual(tool)**2
         forces_met = forces_met &
-            .and. abs(tool_residual(tool)) <= phase%newton%tool_force*pressed_force(trial, tool)
+            .and. abs(tool_residual(tool)) <= tool_force*pressed_force(trial, tool)
       end do
       associate (elasticity => model%material(model%material_of(1))%laws%elasticity)
         scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
@@ -320,6 +322,15 @@ contains
       listed = listed + 1
     end do
   end function status_changes
+
+  !> Whether the status of some candidate changed in each of the last two iterations.
+  pure logical function keeps_changing(status)
+    !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
+    integer, intent(in) :: status(:, :)
+
+    keeps_changing = any(status(:, 1) /= status(:, 2)) .and. any(status(:, 2) /= status(:, 3)) &
+        .and. all(status(:, 3) >= 0)
+  end function keeps_changing
 
   !> Whether the status of each candidate changed in the last iterations.
   pure function unsettled(status) result(changing)
