@@ -14,6 +14,9 @@ module dd3_input_law
   private
   public :: check_law_name, check_law_values
 
+  !> Largest size of a parameter: beyond any unit, and its powers in a law are numbers.
+  real(wp), parameter :: largest_size = 1.0e30_wp
+
   !> Values of a law while they are collected: the first `count` of each array.
   type :: collection_t
     integer :: count = 0
@@ -211,6 +214,9 @@ contains
       else if (.not. given%numeric) then
         call errors%push_input(given%at, not_a_number(given%text), &
             trim(rows(k)%name)//"=number"//range_text(rows(k)))
+      else if (abs(given%value) > largest_size) then
+        call errors%push_input(given%at, trim(rows(k)%name)//" = "//to_text(given%value)// &
+            " is out of range", "at most 1e30 in size")
       else
         call check_range(given%value, rows(k), given%at, trim(rows(k)%name)//"=number"// &
             range_text(rows(k)), errors)
