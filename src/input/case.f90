@@ -9,7 +9,8 @@ module dd3_input_case
   use dd3_input_block, only : block_t, deck_t
   implicit none
   private
-  public :: case_t, blank_spec_t, node_set_spec_t, law_spec_t, law_parameter_t, material_spec_t
+  public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
+  public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
   public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
@@ -36,8 +37,13 @@ module dd3_input_case
     character(len=:), allocatable :: name
     !> Corner with the smallest coordinates, and edge lengths, mm.
     real(wp) :: origin(3) = 0.0_wp, size(3) = 0.0_wp
-    !> Number of elements along x, y, z.
+    !> Number of elements along x, y, z; of a round blank along a side of the core in a quarter,
+    !> from the core to the rim, and through the thickness.
     integer :: divisions(3) = 1
+    !> Radius of a round blank, mm; 0 for a box. Its thickness is `size(3)`.
+    real(wp) :: radius = 0.0_wp
+    !> Part of the circle that is meshed: quarter, half or full.
+    character(len=:), allocatable :: portion
     !> Node abscissae as fractions from 0 to 1, `(0:divisions)`; uniform if not given.
     real(wp), allocatable :: grading_x(:), grading_y(:), grading_z(:)
     !> Shift of the interior node lines, in mean element lengths.
@@ -48,6 +54,28 @@ module dd3_input_case
     integer :: material = 0
     type(block_t) :: source
   end type blank_spec_t
+
+  !> Material of an element set.
+  type :: material_of_t
+    character(len=:), allocatable :: set
+    !> Name of the material and its position in `case%material`.
+    character(len=:), allocatable :: name
+    integer :: material = 0
+    type(location_t) :: at
+  end type material_of_t
+
+  !> A mesh from a file.
+  type :: mesh_spec_t
+    character(len=:), allocatable :: name
+    !> Path relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Name of the element type, not yet checked against the element registry.
+    character(len=:), allocatable :: element
+    !> Position in `case%material` for the elements of no set below; 0 for none.
+    integer :: material = 0
+    type(material_of_t), allocatable :: material_of(:)
+    type(block_t) :: source
+  end type mesh_spec_t
 
   !> A node set, selected by the initial coordinates.
   type :: node_set_spec_t
@@ -332,6 +360,7 @@ module dd3_input_case
     !> Lines of the title.
     type(text_t), allocatable :: title(:)
     type(blank_spec_t), allocatable :: blank(:)
+    type(mesh_spec_t), allocatable :: mesh(:)
     !> Node sets of the input file, in its order.
     type(node_set_spec_t), allocatable :: set(:)
     type(material_spec_t), allocatable :: material(:)

@@ -19,10 +19,17 @@ contains
 
     key = [ &
       row("origin", kind_reals, "mm", "0 0 0", "corner with the smallest coordinates", count=3), &
-      row("size", kind_reals, "mm", "", "lengths along x, y and z (thickness)", count=3, &
-          lower=zero, lower_open=.true.), &
-      row("divisions", kind_integers, "", "", "number of elements along x, y and z", count=3, &
-          lower=1.0_wp, upper=1.0e6_wp), &
+      row("size", kind_reals, "mm", "-", "lengths of a box along x, y and z (thickness)", &
+          count=3, lower=zero, lower_open=.true.), &
+      row("radius", kind_real, "mm", "-", "radius of a round blank; origin is the centre of "// &
+          "its lower face", lower=zero, lower_open=.true.), &
+      row("thickness", kind_real, "mm", "-", "thickness of a round blank", lower=zero, &
+          lower_open=.true.), &
+      row("portion", kind_name, "", "-", "part of a round blank: quarter (x, y >= 0), half "// &
+          "(x >= 0) or full; default: quarter", choices="quarter half full"), &
+      row("divisions", kind_integers, "", "", "number of elements along x, y and z; of a round "// &
+          "blank: along a side of the core in a quarter, from the core to the rim, layers", &
+          count=3, lower=1.0_wp, upper=1.0e6_wp), &
       row("grading_x", kind_reals, "", "-", &
           "node abscissae as fractions, one more than divisions, increasing from 0 to 1", count=0, &
           lower=zero, upper=1.0_wp), &
@@ -40,10 +47,11 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     key = [ &
-      row("file", kind_text, "", "", &
-          "mesh file: Gmsh .msh 2.2 or 4.1, Abaqus or CalculiX .inp, GiD .msh"), &
+      row("file", kind_text, "", "", "mesh of hexahedra as an Abaqus or CalculiX .inp file; "// &
+          "utils/mesh.py makes one of other formats"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
-      row("material", kind_name, "", "-", "material", form="material"), &
+      row("material", kind_name, "", "-", "material of the elements without material_of", &
+          form="material"), &
       row("material_of", kind_other, "", "-", "material of the elements of a set", &
           repeatable=.true., form="set material")]
   end function mesh_keys

@@ -61,8 +61,10 @@ module dd3_model_model
     integer, allocatable :: material_digest(:)
     !> Orthotropy axes of each material at the start, columns RD, TD, ND, `(3, 3, n_material)`.
     real(wp), allocatable :: axes(:, :, :)
-    !> Thickness of the sheet at the start, mm.
+    !> Thickness of the sheet at the start, mm; the smallest if it varies.
     real(wp) :: thickness = 0.0_wp
+    !> Thickness at each node, `(n_node)`, mm; not allocated if it does not vary.
+    real(wp), allocatable :: node_thickness(:)
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.
@@ -86,6 +88,42 @@ module dd3_model_model
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
     type(output_t) :: output
+  contains
+    procedure :: thickness_at
+    procedure :: largest_thickness
+    procedure :: least_shear
   end type model_t
+
+contains
+
+  !> Return the thickness of the sheet at a node at the start, mm.
+  pure real(wp) function thickness_at(self, node)
+    class(model_t), intent(in) :: self
+    integer, intent(in) :: node
+
+    thickness_at = self%thickness
+    if (allocated(self%node_thickness)) thickness_at = self%node_thickness(node)
+  end function thickness_at
+
+  !> Return the largest thickness of the sheet at the start, mm.
+  pure real(wp) function largest_thickness(self)
+    class(model_t), intent(in) :: self
+
+    largest_thickness = self%thickness
+    if (allocated(self%node_thickness)) largest_thickness = maxval(self%node_thickness)
+  end function largest_thickness
+
+  !> Return the smallest shear modulus of the elements, MPa.
+  pure real(wp) function least_shear(self)
+    class(model_t), intent(in) :: self
+
+    integer :: m
+
+    least_shear = huge(1.0_wp)
+    do m = 1, size(self%material)
+      if (any(self%material_of == m)) &
+          least_shear = min(least_shear, self%material(m)%laws%elasticity%shear)
+    end do
+  end function least_shear
 
 end module dd3_model_model

@@ -89,7 +89,7 @@ contains
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
-    if (phase%search_distance <= 0.0_wp) phase%search_distance = model%thickness
+    if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()
   end subroutine set_settings
 
   !> Set the motion and load of the tools, and the trial increment as a fraction of the phase. A

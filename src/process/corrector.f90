@@ -233,10 +233,8 @@ contains
         forces_met = forces_met &
             .and. abs(tool_residual(tool)) <= tool_force_tolerance*pressed_force(trial, tool)
       end do
-      associate (elasticity => model%material(model%material_of(1))%laws%elasticity)
-        scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-            negligible_strain*elasticity%shear*model%thickness**2)
-      end associate
+      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
+          negligible_strain*model%least_shear()*model%thickness**2)
       j = verdict%iterations
       correction%criterion = [correction%criterion(:j - 1), &
           (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]

@@ -119,7 +119,7 @@ contains
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
           state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
-          model%tolerance%start_search, wrong_side_depth*model%thickness, hit)
+          model%tolerance%start_search, wrong_side_depth*model%largest_thickness(), hit)
       if (.not. hit%found .or. -hit%distance <= depth) cycle
       depth = -hit%distance
       node = model%contact_node(c)
