@@ -180,9 +180,9 @@ contains
           lower=1.0e-15_wp, upper=0.01_wp), &
       row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs", &
           lower=1.0_wp, upper=1.0e6_wp), &
-      row("ordering", kind_name, "", "none", &
-          "ordering of the unknowns; none: as the nodes are numbered", &
-          choices="none amd rcm")]
+      row("ordering", kind_name, "", "auto", &
+          "ordering of the unknowns; none: as the nodes are numbered; auto: the cheapest one", &
+          choices="auto none amd rcm")]
   end function solver_keys
 
   !> Keys of a phase: its own, then those of limits, newton and contact, without defaults.
