@@ -14,6 +14,7 @@ module dd3_input_case
   public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
   public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
+  public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
   public :: point_spec_t, point_goal_t, gradient_values
@@ -266,6 +267,27 @@ module dd3_input_case
     type(location_t) :: at
   end type load_spec_t
 
+  !> A rotation of nodes about an axis, or the motion of the end section of a bar that is bent.
+  type :: motion_spec_t
+    !> Node set.
+    character(len=:), allocatable :: set
+    !> Whether the set is the end section of a bent bar.
+    logical :: bends = .false.
+    !> Point and direction of the axis (mm), and the angle (degrees): over the phase, of a bend at its
+    !> end.
+    real(wp) :: value(7) = 0.0_wp
+    type(location_t) :: at
+  end type motion_spec_t
+
+  !> A pressure on the faces with all nodes in a set.
+  type :: pressure_spec_t
+    !> Node set.
+    character(len=:), allocatable :: set
+    !> Pressure at the end of the phase, MPa.
+    real(wp) :: value = 0.0_wp
+    type(location_t) :: at
+  end type pressure_spec_t
+
   !> Condition that ends a phase early.
   type :: until_spec_t
     !> One of the `until_*` values.
@@ -293,6 +315,10 @@ module dd3_input_case
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
+    type(motion_spec_t), allocatable :: motion(:)
+    type(pressure_spec_t), allocatable :: pressure(:)
+    !> Progress and factor on displacements and loads, in pairs; size 0 if not given.
+    real(wp), allocatable :: table(:)
     type(until_spec_t) :: until
     !> Settings in this phase, with those inherited from the phases before.
     type(limits_spec_t) :: limits
@@ -307,7 +333,7 @@ module dd3_input_case
     !> Node set.
     character(len=:), allocatable :: set
     !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false.
+    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
     type(block_t) :: source
   end type history_spec_t
 

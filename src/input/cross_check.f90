@@ -56,6 +56,7 @@ contains
 
     before = errors%count
     call check_form(blank%source, errors)
+    if (errors%count > before) return
     n_element = product(real(blank%divisions, wp))
     if (blank%radius > 0.0_wp) n_element = n_element*(8.0_wp + 4.0_wp* &
         real(blank%divisions(1), wp)/real(blank%divisions(2), wp))

@@ -246,6 +246,8 @@ contains
           history%reaction = .true.
         case ("position")
           history%position = .true.
+        case ("moment")
+          history%moment = .true.
         end select
       end do
     end associate

@@ -217,9 +217,17 @@ contains
           repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &
-      row("pressure", kind_other, "MPa", "-", &
-          "pressure on the faces with all nodes in the set", repeatable=.true., &
-          form="set number", later="*"), &
+      row("pressure", kind_other, "MPa", "-", "pressure at the end of the phase on the faces "// &
+          "with all nodes in the set; follows the faces", repeatable=.true., form="set number"), &
+      row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point and "// &
+          "direction of the axis, angle", repeatable=.true., &
+          form="set number number number number number number number"), &
+      row("bend", kind_other, "mm, degrees", "-", "angle at the end of the phase of the end "// &
+          "section of a bar bent to an arc: set, point at its fixed end, direction of the "// &
+          "axis, angle", repeatable=.true., &
+          form="set number number number number number number number"), &
+      row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
+          "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
@@ -237,8 +245,9 @@ contains
 
     key = [ &
       row("set", kind_name, "", "", "node set", form="set"), &
-      row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean position", &
-          count=0, choices="displacement reaction position")]
+      row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean "// &
+          "position, moment of the reactions about it", count=0, &
+          choices="displacement reaction position moment")]
   end function history_keys
 
   function output_keys() result(key)

@@ -117,13 +117,13 @@ contains
 
     logical :: moved(3, mesh%n_node)
     integer, allocatable :: node(:)
-    integer :: i
+    integer :: i, axis
 
     moved = .false.
     do i = 1, size(phase%displace)
       node = mesh%nodes_of(phase%displace(i)%set)
-      associate (axis => phase%displace(i)%axis, set => phase%displace(i)%set, &
-          at => phase%displace(i)%at)
+      associate (set => phase%displace(i)%set, at => phase%displace(i)%at)
+        axis = phase%displace(i)%axis
         if (any(held(axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
           call errors%push_input(at, "a node of '"//set// &
               "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
@@ -134,7 +134,31 @@ contains
         moved(axis, node) = .true.
       end associate
     end do
+    do i = 1, size(phase%motion)
+      node = mesh%nodes_of(phase%motion(i)%set)
+      do axis = 1, 3
+        if (is_along(phase%motion(i)%value(4:6), axis)) cycle
+        if (any(held(axis, node))) then
+          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
+              "' is fixed along "//axis_name(axis)//" by *BOUNDARY", &
+              "nodes that are free in the plane of the rotation")
+        else if (any(moved(axis, node))) then
+          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
+              "' is displaced twice along "//axis_name(axis)//" in this phase", &
+              "one of displace, rotate and bend for each node")
+        end if
+        moved(axis, node) = .true.
+      end do
+    end do
     led = led .or. (moved .and. .not. held)
   end subroutine check_displacements
+
+  !> Whether a vector is along a coordinate axis.
+  pure logical function is_along(vector, axis)
+    real(wp), intent(in) :: vector(3)
+    integer, intent(in) :: axis
+
+    is_along = norm2(vector) - abs(vector(axis)) <= 1.0e-12_wp*norm2(vector)
+  end function is_along
 
 end module dd3_mesh_build

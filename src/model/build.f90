@@ -289,6 +289,7 @@ contains
       model%history(h)%displacement = case%history(h)%displacement
       model%history(h)%reaction = case%history(h)%reaction
       model%history(h)%position = case%history(h)%position
+      model%history(h)%moment = case%history(h)%moment
     end do
   end subroutine set_output
 

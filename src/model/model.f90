@@ -8,6 +8,7 @@ module dd3_model_model
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
   implicit none
@@ -20,7 +21,7 @@ module dd3_model_model
     character(len=:), allocatable :: name
     integer, allocatable :: node(:)
     !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false.
+    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
   end type history_set_t
 
   !> Output and its intervals.
@@ -84,6 +85,8 @@ module dd3_model_model
     logical, allocatable :: fixed(:, :)
     !> Sets that carry a load in some phase.
     type(load_set_t), allocatable :: load_set(:)
+    !> Sets that carry a pressure in some phase.
+    type(pressure_set_t), allocatable :: pressure_set(:)
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)

@@ -50,6 +50,10 @@ contains
       start%load = state%load
       start%load_end = phase%load_end
       where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
+      start%pressure = state%pressure
+      start%pressure_end = phase%pressure_end
+      where (phase%keeps_pressure) start%pressure_end = start%pressure
+      start%x = state%x
       call set_tool_loads(phase, state)
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
