@@ -15,6 +15,7 @@ A case is a folder with a case.json:
     tolerance   per column {"relative": r, "absolute": a}; "*" holds for the columns not named. A value passes if
                 |value - reference| <= a + r |reference|
     last        per column [value, tolerance]: the last row of history.csv
+    equal       lists [column, column, tolerance] of columns that agree in every row of history.csv
     status      per column of status.csv [lowest, highest]: bounds of every row
     contains    texts that the program's output must contain, a list
     files       files that the results must contain, default ["history.csv", "status.csv", "job.log"]
@@ -34,7 +35,7 @@ from results import command, find_program, launch, number, read_table  # noqa: E
 from scripts import Problem  # noqa: E402
 
 SELECTS = ("phase", "point")
-KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "status", "contains", "files",
+KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains", "files",
          "variants", "labels", "timeout", "description"}
 
 
@@ -109,6 +110,13 @@ def compare_ends(case, history, path, results):
         compared += 1
         if not abs(value - expected) <= tolerance:
             raise Mismatch(f"last row: {column} = {value:.9g}, expected {expected:.9g} +- {tolerance:.3g}")
+    for left, right, tolerance in case.get("equal", []):
+        for row in history:
+            values = number(row, left, path), number(row, right, path)
+            compared += 1
+            if not abs(values[0] - values[1]) <= tolerance:
+                raise Mismatch(f"increment {row['increment']}: {left} = {values[0]:.9g}, {right} = {values[1]:.9g}, "
+                               f"expected equal +- {tolerance:.3g}")
     for column, (lowest, highest) in case.get("status", {}).items():
         for row in read_table(results / "status.csv"):
             value = number(row, column, "status.csv")

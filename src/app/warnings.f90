@@ -54,13 +54,7 @@ contains
         call check_flow_stress(case, model, i, warnings)
       end associate
     end do
-    do i = 1, size(case%blank)
-      associate (blank => case%blank(i))
-        if (.not. outside(blank%size(3), least_thickness, largest_thickness)) cycle
-        call add(warnings, blank%source%at("size"), "thickness = "//to_text(blank%size(3))// &
-            " mm of blank '"//blank%source%called()//"'", unusual_unit)
-      end associate
-    end do
+    call check_thickness(case, model, warnings)
     do i = 1, size(case%tool)
       associate (tool => case%tool(i))
         if (tool%friction > largest_friction) call add(warnings, tool%source%at("friction"), &
@@ -73,6 +67,31 @@ contains
     call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
   end subroutine unit_warnings
+
+  !> Warn of an unusual thickness.
+  subroutine check_thickness(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    integer :: i
+
+    do i = 1, size(case%blank)
+      associate (blank => case%blank(i))
+        if (.not. outside(blank%size(3), least_thickness, largest_thickness)) cycle
+        call add(warnings, blank%source%at(trim(merge("thickness", "size     ", &
+            blank%radius > 0.0_wp))), "thickness = "//to_text(blank%size(3))// &
+            " mm of blank '"//blank%source%called()//"'", unusual_unit)
+      end associate
+    end do
+    do i = 1, size(case%mesh)
+      associate (mesh => case%mesh(i))
+        if (.not. outside(model%thickness, least_thickness, largest_thickness)) cycle
+        call add(warnings, mesh%source%at("file"), "thickness = "//to_text(model%thickness, 4)// &
+            " mm of mesh '"//mesh%source%called()//"'", unusual_unit)
+      end associate
+    end do
+  end subroutine check_thickness
 
   !> Warn of a tolerance of the corrector and a search distance that make results inaccurate.
   subroutine check_settings(case, model, warnings)
@@ -126,10 +145,13 @@ contains
     type(text_t), allocatable, intent(inout) :: warnings(:)
 
     type(element_length_t) :: length
+    type(location_t) :: at
 
     length = measure_elements(model)
     if (length%n_long == 0) return
-    call add(warnings, case%blank(1)%source%at("divisions"), "the elements under the tools are "// &
+    if (size(case%blank) > 0) at = case%blank(1)%source%at("divisions")
+    if (size(case%mesh) > 0) at = case%mesh(1)%source%at("file")
+    call add(warnings, at, "the elements under the tools are "// &
         span(to_text(length%shortest, 2), to_text(length%longest, 2))//" thicknesses long", &
         "where the sheet bends, its moment is "//span(excess(length%shortest), &
         excess(length%longest))//" % too high; expected at most half a thickness there, 3 %")

@@ -9,10 +9,12 @@ module dd3_input_case
   use dd3_input_block, only : block_t, deck_t
   implicit none
   private
-  public :: case_t, blank_spec_t, node_set_spec_t, law_spec_t, law_parameter_t, material_spec_t
+  public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
+  public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
   public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
+  public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
   public :: point_spec_t, point_goal_t, gradient_values
@@ -36,8 +38,13 @@ module dd3_input_case
     character(len=:), allocatable :: name
     !> Corner with the smallest coordinates, and edge lengths, mm.
     real(wp) :: origin(3) = 0.0_wp, size(3) = 0.0_wp
-    !> Number of elements along x, y, z.
+    !> Number of elements along x, y, z; of a round blank along a side of the core in a quarter,
+    !> from the core to the rim, and through the thickness.
     integer :: divisions(3) = 1
+    !> Radius of a round blank, mm; 0 for a box. Its thickness is `size(3)`.
+    real(wp) :: radius = 0.0_wp
+    !> Part of the circle that is meshed: quarter, half or full.
+    character(len=:), allocatable :: portion
     !> Node abscissae as fractions from 0 to 1, `(0:divisions)`; uniform if not given.
     real(wp), allocatable :: grading_x(:), grading_y(:), grading_z(:)
     !> Shift of the interior node lines, in mean element lengths.
@@ -48,6 +55,28 @@ module dd3_input_case
     integer :: material = 0
     type(block_t) :: source
   end type blank_spec_t
+
+  !> Material of an element set.
+  type :: material_of_t
+    character(len=:), allocatable :: set
+    !> Name of the material and its position in `case%material`.
+    character(len=:), allocatable :: name
+    integer :: material = 0
+    type(location_t) :: at
+  end type material_of_t
+
+  !> A mesh from a file.
+  type :: mesh_spec_t
+    character(len=:), allocatable :: name
+    !> Path relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Name of the element type, not yet checked against the element registry.
+    character(len=:), allocatable :: element
+    !> Position in `case%material` for the elements of no set below; 0 for none.
+    integer :: material = 0
+    type(material_of_t), allocatable :: material_of(:)
+    type(block_t) :: source
+  end type mesh_spec_t
 
   !> A node set, selected by the initial coordinates.
   type :: node_set_spec_t
@@ -243,6 +272,27 @@ module dd3_input_case
     type(location_t) :: at
   end type load_spec_t
 
+  !> A rotation of nodes about an axis, or the motion of the end section of a bar that is bent.
+  type :: motion_spec_t
+    !> Node set.
+    character(len=:), allocatable :: set
+    !> Whether the set is the end section of a bent bar.
+    logical :: bends = .false.
+    !> Point and direction of the axis (mm), and the angle (degrees): over the phase, of a bend at its
+    !> end.
+    real(wp) :: value(7) = 0.0_wp
+    type(location_t) :: at
+  end type motion_spec_t
+
+  !> A pressure on the faces with all nodes in a set.
+  type :: pressure_spec_t
+    !> Node set.
+    character(len=:), allocatable :: set
+    !> Pressure at the end of the phase, MPa.
+    real(wp) :: value = 0.0_wp
+    type(location_t) :: at
+  end type pressure_spec_t
+
   !> Condition that ends a phase early.
   type :: until_spec_t
     !> One of the `until_*` values.
@@ -270,6 +320,10 @@ module dd3_input_case
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
+    type(motion_spec_t), allocatable :: motion(:)
+    type(pressure_spec_t), allocatable :: pressure(:)
+    !> Progress and factor on displacements and loads, in pairs; size 0 if not given.
+    real(wp), allocatable :: table(:)
     type(until_spec_t) :: until
     !> Settings in this phase, with those inherited from the phases before.
     type(limits_spec_t) :: limits
@@ -284,7 +338,7 @@ module dd3_input_case
     !> Node set.
     character(len=:), allocatable :: set
     !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false.
+    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
     type(block_t) :: source
   end type history_spec_t
 
@@ -337,6 +391,7 @@ module dd3_input_case
     !> Lines of the title.
     type(text_t), allocatable :: title(:)
     type(blank_spec_t), allocatable :: blank(:)
+    type(mesh_spec_t), allocatable :: mesh(:)
     !> Node sets of the input file, in its order.
     type(node_set_spec_t), allocatable :: set(:)
     type(material_spec_t), allocatable :: material(:)

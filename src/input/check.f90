@@ -218,7 +218,15 @@ contains
     if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. &
         has_block(deck, "point"))) then
       call errors%push_input(whole_file, "the block *BLANK is missing", &
-          "*BLANK name for a sheet, or *POINT name for a single material point")
+          "*BLANK name for a sheet, *MESH name for one from a mesh file, or *POINT name for a "// &
+          "single material point")
+    end if
+    if (has_block(deck, "blank") .and. has_block(deck, "mesh")) then
+      do i = 1, deck%n_block
+        if (deck%block(i)%keyword /= "mesh") cycle
+        call errors%push_input(deck%block(i)%opened, "there is a *BLANK as well", &
+            "one sheet, by *BLANK or by *MESH")
+      end do
     end if
     if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
       call errors%push_input(whole_file, "the block *CONTACT is missing", &

@@ -46,23 +46,28 @@ contains
     end do
   end subroutine cross_check
 
-  !> Check a blank's gradings and skew.
+  !> Check that a blank is a box or round, and its gradings and skew.
   subroutine check_blank(blank, errors)
     type(blank_spec_t), intent(in) :: blank
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: shift, room
+    real(wp) :: shift, room, n_element
     integer :: before
 
     before = errors%count
+    call check_form(blank%source, errors)
+    if (errors%count > before) return
+    n_element = product(real(blank%divisions, wp))
+    if (blank%radius > 0.0_wp) n_element = n_element*(8.0_wp + 4.0_wp* &
+        real(blank%divisions(1), wp)/real(blank%divisions(2), wp))
     call check_grading(blank%source, "grading_x", blank%divisions(1), errors)
     call check_grading(blank%source, "grading_y", blank%divisions(2), errors)
     call check_grading(blank%source, "grading_z", blank%divisions(3), errors)
-    if (product(real(blank%divisions, wp)) > 5.0e6_wp) then
+    if (n_element > 5.0e6_wp) then
       call errors%push_input(blank%source%at("divisions"), &
           "more than 5 million elements", "at most 5 million")
     end if
-    if (errors%count > before .or. blank%divisions(1) < 2) return
+    if (errors%count > before .or. blank%divisions(1) < 2 .or. blank%radius > 0.0_wp) return
     associate (x => blank%grading_x, n => blank%divisions(1))
       shift = 0.5_wp*abs(blank%skew)/real(n, wp)
       room = min(x(1) - x(0), x(n) - x(n - 1))
@@ -73,6 +78,36 @@ contains
       end if
     end associate
   end subroutine check_blank
+
+  !> Check that a blank has the keys of a box or those of a round one.
+  subroutine check_form(block, errors)
+    type(block_t), intent(in) :: block
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=*), parameter :: box_keys(5) = [character(len=9) :: "size", "grading_x", &
+        "grading_y", "grading_z", "skew"]
+    character(len=*), parameter :: round_keys(2) = [character(len=9) :: "thickness", "portion"]
+    integer :: i
+
+    if (block%find("radius") == 0) then
+      if (block%find("size") == 0) call errors%push_input(block%opened, &
+          "'size' is missing in *BLANK "//block%called(), "size = lx ly lz for a box, or "// &
+          "radius = R and thickness = t for a round blank")
+      do i = 1, size(round_keys)
+        if (given(block, trim(round_keys(i)))) call errors%push_input( &
+            block%at(trim(round_keys(i))), "'"//trim(round_keys(i))//"' is a key of a round "// &
+            "blank", "radius, thickness and portion, or size alone")
+      end do
+      return
+    end if
+    if (block%find("thickness") == 0) call errors%push_input(block%opened, &
+        "'thickness' is missing in *BLANK "//block%called(), "thickness = t with radius = R")
+    do i = 1, size(box_keys)
+      if (given(block, trim(box_keys(i)))) call errors%push_input(block%at(trim(box_keys(i))), &
+          "'"//trim(box_keys(i))//"' is a key of a box; this blank is round", &
+          "radius, thickness, portion and divisions")
+    end do
+  end subroutine check_form
 
   !> Check a grading of n elements: one number per node line, increasing from 0 to 1.
   subroutine check_grading(block, key, n, errors)

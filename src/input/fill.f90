@@ -4,7 +4,7 @@ module dd3_input_fill
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, history_spec_t, output_spec_t, &
       solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
-  use dd3_input_fill_blank, only : fill_blank, fill_set
+  use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set
   use dd3_input_fill_material, only : fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
@@ -71,6 +71,7 @@ contains
       call fill_blank(case%blank(i), deck%block(at(i)))
       case%blank(i)%material = position(deck, "material", deck%block(at(i))%word("material"))
     end do
+    call fill_meshes(case, deck)
     at = positions(deck, "set")
     allocate (case%set(size(at)))
     do i = 1, size(at)
@@ -92,6 +93,27 @@ contains
       call fill_boundary(case%boundary(i), deck%block(at(i)))
     end do
   end subroutine fill_model
+
+  !> Fill the meshes from files, with the positions of their materials.
+  subroutine fill_meshes(case, deck)
+    type(case_t), intent(inout) :: case
+    type(deck_t), intent(in) :: deck
+
+    integer, allocatable :: at(:)
+    integer :: i, k
+
+    at = positions(deck, "mesh")
+    allocate (case%mesh(size(at)))
+    do i = 1, size(at)
+      associate (mesh => case%mesh(i), block => deck%block(at(i)))
+        call fill_mesh(mesh, block)
+        mesh%material = position(deck, "material", block%word("material"))
+        do k = 1, size(mesh%material_of)
+          mesh%material_of(k)%material = position(deck, "material", mesh%material_of(k)%name)
+        end do
+      end associate
+    end do
+  end subroutine fill_meshes
 
   !> Fill phases and points, which refer to tools and materials, and the history table's columns.
   subroutine fill_process(case, deck)
@@ -224,6 +246,8 @@ contains
           history%reaction = .true.
         case ("position")
           history%position = .true.
+        case ("moment")
+          history%moment = .true.
         end select
       end do
     end associate

@@ -1,11 +1,13 @@
-!> Fills the blank and the node sets of the case.
+!> Fills the blank, the mesh and the node sets of the case.
 module dd3_input_fill_blank
   use dd3_base_kinds, only : wp
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : blank_spec_t, node_set_spec_t, set_plane, set_box, set_nodes, set_near
+  use dd3_input_case, only : blank_spec_t, mesh_spec_t, node_set_spec_t, set_plane, set_box, &
+      set_nodes, set_near
+  use dd3_input_text_file, only : resolve_path
   implicit none
   private
-  public :: fill_blank, fill_set
+  public :: fill_blank, fill_mesh, fill_set
 
 contains
 
@@ -23,7 +25,40 @@ contains
     call fill_grading(blank%grading_z, block, "grading_z", blank%divisions(3))
     blank%skew = block%number("skew")
     blank%element = block%word("element")
+    blank%radius = block%number("radius")
+    blank%portion = block%word("portion")
+    if (block%has("radius")) blank%size = [blank%radius, blank%radius, block%number("thickness")]
   end subroutine fill_blank
+
+  !> Fill a mesh; the positions of the materials are left to the caller.
+  subroutine fill_mesh(mesh, block)
+    type(mesh_spec_t), intent(inout) :: mesh
+    type(block_t), intent(in) :: block
+
+    integer :: i, n
+
+    mesh%name = block%name
+    mesh%source = block
+    mesh%file = resolve_path(block%folder, block%word("file"))
+    mesh%element = block%word("element")
+    allocate (mesh%material_of(count([(is_material_of(block, i), i=1, block%n_entry)])))
+    n = 0
+    do i = 1, block%n_entry
+      if (.not. is_material_of(block, i)) cycle
+      n = n + 1
+      mesh%material_of(n)%set = block%entry(i)%value(1)%text
+      mesh%material_of(n)%name = block%entry(i)%value(2)%text
+      mesh%material_of(n)%at = block%entry(i)%value(1)%at
+    end do
+  end subroutine fill_mesh
+
+  !> Whether an entry of a block assigns a material to a set.
+  pure logical function is_material_of(block, i)
+    type(block_t), intent(in) :: block
+    integer, intent(in) :: i
+
+    is_material_of = block%entry(i)%key == "material_of" .and. block%entry(i)%valid
+  end function is_material_of
 
   !> Set the node abscissae of n elements as given, or uniform.
   subroutine fill_grading(grading, block, key, n)

@@ -5,7 +5,7 @@ module dd3_input_fill_phase
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
       newton_spec_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, &
-      until_spec_t, until_displacement, until_force
+      motion_spec_t, pressure_spec_t, until_spec_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -44,6 +44,9 @@ contains
     call fill_displacements(phase%displace, block)
     call fill_freed(phase%free, block)
     call fill_loads(phase%load, block)
+    call fill_motions(phase%motion, block)
+    call fill_pressures(phase%pressure, block)
+    phase%table = block%numbers("table")
     call fill_until(phase%until, case, block)
     case%phase(i) = phase
   end subroutine fill_phase
@@ -166,6 +169,44 @@ contains
       end associate
     end do
   end subroutine fill_loads
+
+  !> Fill the rotations, then the bends.
+  subroutine fill_motions(list, block)
+    type(motion_spec_t), allocatable, intent(out) :: list(:)
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = [entries(block, "rotate"), entries(block, "bend")]
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%set = entry%value(1)%text
+        list(i)%bends = entry%key == "bend"
+        list(i)%value = entry%number(:7)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_motions
+
+  subroutine fill_pressures(list, block)
+    type(pressure_spec_t), allocatable, intent(out) :: list(:)
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "pressure")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%set = entry%value(1)%text
+        list(i)%value = entry%number(1)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_pressures
 
   subroutine fill_until(until, case, block)
     type(until_spec_t), intent(inout) :: until

@@ -19,10 +19,17 @@ contains
 
     key = [ &
       row("origin", kind_reals, "mm", "0 0 0", "corner with the smallest coordinates", count=3), &
-      row("size", kind_reals, "mm", "", "lengths along x, y and z (thickness)", count=3, &
-          lower=zero, lower_open=.true.), &
-      row("divisions", kind_integers, "", "", "number of elements along x, y and z", count=3, &
-          lower=1.0_wp, upper=1.0e6_wp), &
+      row("size", kind_reals, "mm", "-", "lengths of a box along x, y and z (thickness)", &
+          count=3, lower=zero, lower_open=.true.), &
+      row("radius", kind_real, "mm", "-", "radius of a round blank; origin is the centre of "// &
+          "its lower face", lower=zero, lower_open=.true.), &
+      row("thickness", kind_real, "mm", "-", "thickness of a round blank", lower=zero, &
+          lower_open=.true.), &
+      row("portion", kind_name, "", "-", "part of a round blank: quarter (x, y >= 0), half "// &
+          "(x >= 0) or full; default: quarter", choices="quarter half full"), &
+      row("divisions", kind_integers, "", "", "number of elements along x, y and z; of a round "// &
+          "blank: along a side of the core in a quarter, from the core to the rim, layers", &
+          count=3, lower=1.0_wp, upper=1.0e6_wp), &
       row("grading_x", kind_reals, "", "-", &
           "node abscissae as fractions, one more than divisions, increasing from 0 to 1", count=0, &
           lower=zero, upper=1.0_wp), &
@@ -40,10 +47,11 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     key = [ &
-      row("file", kind_text, "", "", &
-          "mesh file: Gmsh .msh 2.2 or 4.1, Abaqus or CalculiX .inp, GiD .msh"), &
+      row("file", kind_text, "", "", "mesh of hexahedra as an Abaqus or CalculiX .inp file; "// &
+          "utils/mesh.py makes one of other formats"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
-      row("material", kind_name, "", "-", "material", form="material"), &
+      row("material", kind_name, "", "-", "material of the elements without material_of", &
+          form="material"), &
       row("material_of", kind_other, "", "-", "material of the elements of a set", &
           repeatable=.true., form="set material")]
   end function mesh_keys
@@ -176,9 +184,9 @@ contains
           lower=1.0e-15_wp, upper=0.01_wp), &
       row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs", &
           lower=1.0_wp, upper=1.0e6_wp), &
-      row("ordering", kind_name, "", "none", &
-          "ordering of the unknowns; none: as the nodes are numbered", &
-          choices="none amd rcm")]
+      row("ordering", kind_name, "", "auto", &
+          "ordering of the unknowns; none: as the nodes are numbered; auto: the cheapest one", &
+          choices="auto none amd rcm")]
   end function solver_keys
 
   !> Keys of a phase: its own, then those of limits, newton and contact, without defaults.
@@ -213,9 +221,17 @@ contains
           repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &
-      row("pressure", kind_other, "MPa", "-", &
-          "pressure on the faces with all nodes in the set", repeatable=.true., &
-          form="set number", later="*"), &
+      row("pressure", kind_other, "MPa", "-", "pressure at the end of the phase on the faces "// &
+          "with all nodes in the set; follows the faces", repeatable=.true., form="set number"), &
+      row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point and "// &
+          "direction of the axis, angle", repeatable=.true., &
+          form="set number number number number number number number"), &
+      row("bend", kind_other, "mm, degrees", "-", "angle at the end of the phase of the end "// &
+          "section of a bar bent to an arc: set, point at its fixed end, direction of the "// &
+          "axis, angle", repeatable=.true., &
+          form="set number number number number number number number"), &
+      row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
+          "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
@@ -233,8 +249,9 @@ contains
 
     key = [ &
       row("set", kind_name, "", "", "node set", form="set"), &
-      row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean position", &
-          count=0, choices="displacement reaction position")]
+      row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean "// &
+          "position, moment of the reactions about it", count=0, &
+          choices="displacement reaction position moment")]
   end function history_keys
 
   function output_keys() result(key)

@@ -34,6 +34,8 @@ contains
       call check_control(case, case%phase(i), errors)
       call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
+      call check_motions(case%phase(i), errors)
+      call check_table(case%phase(i), errors)
     end do
   end subroutine check_phases
 
@@ -138,10 +140,12 @@ contains
 
     n_actions = size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
     n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
+    n_actions = n_actions + size(phase%motion) + size(phase%pressure)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, press, displace, free, load, release, unload")
+            "at least one of move, press, displace, free, load, release, unload, rotate, "// &
+            "bend, pressure")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &
@@ -194,6 +198,45 @@ contains
       end if
     end associate
   end subroutine check_trial
+
+  !> Check the axes of rotations and bends.
+  subroutine check_motions(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i
+
+    do i = 1, size(phase%motion)
+      if (norm2(phase%motion(i)%value(4:6)) > 0.0_wp) cycle
+      call errors%push_input(phase%motion(i)%at, "the axis has no direction", &
+          "set, x y z of a point, three components of a direction, angle")
+    end do
+  end subroutine check_motions
+
+  !> Check that the table begins at 0 0, and that its progress increases to 1.
+  subroutine check_table(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=*), parameter :: form = "table = 0 0  s1 f1 ... 1 fn, with the progress s "// &
+        "increasing from 0 to 1"
+    type(location_t) :: at
+    integer :: n
+
+    n = size(phase%table)
+    if (n == 0) return
+    at = phase%source%at("table")
+    associate (x => phase%table(1::2))
+      if (mod(n, 2) == 1 .or. n < 4) then
+        call errors%push_input(at, "expected pairs of progress and factor, at least two, got "// &
+            to_text(n)//" numbers", form)
+      else if (any(abs(phase%table(:2)) > 0.0_wp) .or. abs(x(size(x)) - 1.0_wp) > 0.0_wp) then
+        call errors%push_input(at, "the table does not go from 0 0 to a progress of 1", form)
+      else if (any(x(2:) - x(:size(x) - 1) < 1.0e-6_wp)) then
+        call errors%push_input(at, "the progress in the table does not increase", form)
+      end if
+    end associate
+  end subroutine check_table
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

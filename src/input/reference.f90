@@ -2,12 +2,12 @@
 module dd3_input_reference
   use dd3_base_error, only : as_written, error_list_t
   use dd3_base_name_index, only : name_index_t
-  use dd3_base_text, only : join, lower_case, suggestion, same_name, upper_case
+  use dd3_base_text, only : join, suggestion, same_name, text_t, upper_case
   use dd3_base_parameter, only : parameter_t, kind_name, kind_other
   use dd3_input_block, only : block_t, token_t, deck_t
-  use dd3_input_case, only : blank_sets
   use dd3_input_describe, only : word_length
   use dd3_input_form_check, only : form_for
+  use dd3_input_sheet_sets, only : sheet_sets
   use dd3_input_table, only : block_row_t, find_block, find_key
   implicit none
   private
@@ -17,56 +17,88 @@ module dd3_input_reference
   integer, parameter :: name_length = 80
   !> Number of known names shown in an error.
   integer, parameter :: most_listed = 20
-  !> Entry of the index if there is a *MESH; no block has such a name.
+  !> Entry of the index if there is a mesh whose sets are not known; no block has such a name.
   character(len=*), parameter :: any_mesh = "mesh, any"
+  !> Number in the index of a set that the sheet has.
+  integer, parameter :: of_sheet = -1
+
+  !> Names that can be referred to.
+  type :: known_t
+    !> Kind and name of all blocks and of the sheet's sets, with the position of the block.
+    type(name_index_t) :: index
+    !> Sets of the sheet.
+    character(len=name_length), allocatable :: sheet_set(:)
+    !> Whether the sheet is a mesh from a file.
+    logical :: of_mesh = .false.
+  end type known_t
 
 contains
 
-  !> Check all names of sets, tools and materials.
-  subroutine check_references(deck, table, errors)
+  !> Check all names of sets, tools and materials. Names of sets are left out if there is a mesh
+  !> file; when it has been read, only they are checked.
+  subroutine check_references(deck, table, errors, mesh_sets)
     type(deck_t), intent(inout) :: deck
     type(block_row_t), intent(in) :: table(:)
     type(error_list_t), intent(inout) :: errors
+    !> Sets of the mesh file.
+    type(text_t), intent(in), optional :: mesh_sets(:)
 
-    type(name_index_t) :: known
+    type(known_t) :: known
     integer :: i, j, k, row, before
 
-    known = index_of(deck)
+    call new_known(known, deck, mesh_sets)
     do i = 1, deck%n_block
       row = find_block(table, deck%block(i)%keyword)
       if (row == 0) cycle
       if (table(row)%later) cycle
       before = errors%count
-      call check_reserved_name(deck%block(i), errors)
+      call check_reserved_name(deck%block(i), known, errors)
       do j = 1, deck%block(i)%n_entry
         if (.not. deck%block(i)%entry(j)%valid) cycle
         k = find_key(table(row)%key, deck%block(i)%entry(j)%key)
-        if (k > 0) call check_entry(deck, i, j, table(row)%key(k), known, errors)
+        if (k == 0) cycle
+        if (present(mesh_sets) .and. index(table(row)%key(k)%form, "set") == 0) cycle
+        call check_entry(deck, i, j, table(row)%key(k), known, errors)
       end do
       if (errors%count > before) deck%block(i)%valid = .false.
     end do
   end subroutine check_references
 
-  !> Return the index of all blocks with a name: kind and name, with the position of the first one.
-  function index_of(deck) result(known)
+  !> List the sheet's sets and all blocks with a name; of equal names the first one counts.
+  subroutine new_known(known, deck, mesh_sets)
+    type(known_t), intent(out) :: known
     type(deck_t), intent(in) :: deck
-    type(name_index_t) :: known
+    type(text_t), intent(in), optional :: mesh_sets(:)
 
     integer :: i
 
-    do i = 1, deck%n_block
-      call known%add(deck%block(i)%keyword//" "//deck%block(i)%name, i)
-      if (deck%block(i)%keyword == "mesh") call known%add(any_mesh, i)
+    known%sheet_set = sheet_sets(deck)
+    if (present(mesh_sets)) then
+      do i = 1, size(mesh_sets)
+        if (any(known%sheet_set == mesh_sets(i)%s)) cycle
+        known%sheet_set = [character(len=name_length) :: known%sheet_set, mesh_sets(i)%s]
+      end do
+    end if
+    do i = 1, size(known%sheet_set)
+      call known%index%add("set "//trim(known%sheet_set(i)), of_sheet)
     end do
-  end function index_of
+    do i = 1, deck%n_block
+      call known%index%add(deck%block(i)%keyword//" "//deck%block(i)%name, i)
+      if (deck%block(i)%keyword /= "mesh") cycle
+      known%of_mesh = .true.
+      if (.not. present(mesh_sets)) call known%index%add(any_mesh, i)
+    end do
+  end subroutine new_known
 
   !> Report sets and tools with a reserved name.
-  subroutine check_reserved_name(block, errors)
+  subroutine check_reserved_name(block, known, errors)
     type(block_t), intent(in) :: block
+    type(known_t), intent(in) :: known
     type(error_list_t), intent(inout) :: errors
 
-    if (block%keyword == "set" .and. any(blank_sets == block%name)) then
-      call errors%push_input(block%named, "'"//block%called()//"' is a set of the blank", &
+    if (block%keyword == "set" .and. known%index%find("set "//block%name) == of_sheet) then
+      call errors%push_input(block%named, "'"//block%called()//"' is a set of the "// &
+          trim(merge("mesh ", "blank", known%of_mesh)), &
           "another name")
     end if
     if (block%keyword == "tool" .and. block%name == "load") then
@@ -79,8 +111,7 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i, j
     type(parameter_t), intent(in) :: row
-    !> Index of the blocks.
-    type(name_index_t), intent(in) :: known
+    type(known_t), intent(in) :: known
     type(error_list_t), intent(inout) :: errors
 
     character(len=word_length), allocatable :: form(:)
@@ -113,8 +144,7 @@ contains
     type(token_t), intent(in) :: token
     !> "set", "tool" or "material".
     character(len=*), intent(in) :: what
-    !> Index of the blocks.
-    type(name_index_t), intent(in) :: known
+    type(known_t), intent(in) :: known
     type(error_list_t), intent(inout) :: errors
     !> A word that is allowed in place of a name.
     character(len=*), intent(in), optional :: also
@@ -125,12 +155,11 @@ contains
 
     last = deck%n_block
     if (what == "set" .and. deck%block(i)%keyword == "set") last = i - 1
-    k = known%find(what//" "//trim(token%text))
-    if (k > 0 .and. k <= last) return
-    if (what == "set" .and. any(blank_sets == lower_case(token%text))) return
-    ! The groups of a mesh file are not known here.
-    if (what == "set" .and. known%find(any_mesh) > 0) return
-    names = names_of(deck, what, last)
+    k = known%index%find(what//" "//trim(token%text))
+    if (k /= 0 .and. k <= last) return
+    ! The sets of a mesh file are not known here.
+    if (what == "set" .and. known%index%find(any_mesh) > 0) return
+    names = names_of(deck, what, last, known)
     if (present(also)) then
       if (same_name(also, token%text)) return
       names = [character(len=name_length) :: names, also]
@@ -152,19 +181,20 @@ contains
   end function listed
 
   !> Return the names of all sets, tools or materials among the blocks up to `last`.
-  pure function names_of(deck, what, last) result(name)
+  pure function names_of(deck, what, last, known) result(name)
     type(deck_t), intent(in) :: deck
     !> "set", "tool" or "material".
     character(len=*), intent(in) :: what
     integer, intent(in) :: last
+    type(known_t), intent(in) :: known
     character(len=name_length), allocatable :: name(:)
 
     integer :: i, k
 
     k = 0
-    if (what == "set") k = size(blank_sets)
+    if (what == "set") k = size(known%sheet_set)
     allocate (name(k + count([(deck%block(i)%keyword == what, i=1, last)])))
-    name(:k) = blank_sets(:k)
+    name(:k) = known%sheet_set(:k)
     do i = 1, last
       if (deck%block(i)%keyword /= what) cycle
       k = k + 1

@@ -41,10 +41,11 @@ contains
     call add(table, "include", "many", "Inserts another file here.", nothing)
     call add(table, "parameter", "many", "name = value; used as ${name} in later values. "// &
         "--set name=value on the command line overrides it.", nothing)
-    call add(table, "blank", "named", "A structured blank. Defines the node sets "// &
-        join(blank_sets, " ")//".", blank_keys())
-    call add(table, "mesh", "named later", "A mesh from a file; its groups become node sets.", &
-        mesh_keys())
+    call add(table, "blank", "named", "A structured blank. A box (size) has the node sets "// &
+        join(blank_sets, " ")//", a round one (radius) x_min y_min rim z_min z_max all.", &
+        blank_keys())
+    call add(table, "mesh", "named", "A mesh from a file. Its sets become node sets; z_min and "// &
+        "z_max are the two faces of the sheet, all has all nodes.", mesh_keys())
     call add(table, "set", "named many", "A node set selected by the initial coordinates.", &
         set_keys())
     call add(table, "material", "named many required", "A material.", material_keys())

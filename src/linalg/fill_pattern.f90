@@ -7,7 +7,10 @@ module dd3_linalg_fill_pattern
   use dd3_linalg_matrix, only : block_matrix_t
   implicit none
   private
-  public :: fill_pattern_t, new_fill_pattern, elimination_cost
+  public :: fill_pattern_t, new_fill_pattern, elimination_cost, fill_limit
+
+  !> Most blocks of a complete factorisation, as a multiple of the matrix's.
+  integer, parameter :: fill_limit = 12
 
   !> Pattern of L, diagonal and U together.
   type :: fill_pattern_t

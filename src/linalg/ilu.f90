@@ -13,7 +13,8 @@ module dd3_linalg_ilu
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
-  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern, elimination_cost
+  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern, elimination_cost, &
+      fill_limit
   use dd3_linalg_ilu_factor, only : load_row, eliminate_row, finish_row
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_preconditioner, only : preconditioner_t
@@ -49,8 +50,6 @@ module dd3_linalg_ilu
     procedure :: apply => ilu_apply
   end type ilu_t
 
-  !> Most blocks of a complete factorisation, as a multiple of the matrix's.
-  integer, parameter :: fill_limit = 12
   !> Assumed cost of the iterative solve, in iterations (about 40, which read the blocks from memory
   !> and so take twice the time of the same number of block products of an elimination).
   integer, parameter :: assumed_iterations = 80

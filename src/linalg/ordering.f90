@@ -1,17 +1,25 @@
 !> Orderings of the block rows for the incomplete factorisation: none, approximate minimum degree
 !> (Amestoy, Davis and Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start
-!> node after George and Liu 1979).
+!> node after George and Liu 1979), or the one of these that suits the matrix.
 module dd3_linalg_ordering
   use, intrinsic :: iso_c_binding, only : c_int, c_ptr, c_null_ptr
+  use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : join
+  use dd3_linalg_fill_pattern, only : fill_limit
   use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_ordering_cost, only : factor_cost
   implicit none
   private
   public :: find_ordering, ordering_names
 
   !> Names of the orderings, as written in the input.
-  character(len=4), parameter :: ordering_names(3) = [character(len=4) :: "none", "amd", "rcm"]
+  character(len=4), parameter :: ordering_names(4) = [character(len=4) :: "auto", "none", "amd", &
+      "rcm"]
+  !> The given numbering is kept unless another one costs less than this fraction.
+  real(wp), parameter :: worth_while = 0.8_wp
+  !> Most blocks of the factors in the comparison of band-like numberings, in blocks of the matrix.
+  integer, parameter :: most_fill = 100
   !> Rows with more than this many times the average number of blocks, such as those of pressed
   !> tools, are numbered last by reverse Cuthill-McKee.
   integer, parameter :: dense_factor = 3
@@ -46,6 +54,8 @@ contains
     integer :: i
 
     select case (name)
+    case ("auto")
+      call best_ordering(matrix, order, error)
     case ("none")
       order = [(i, i=1, matrix%n)]
     case ("amd")
@@ -57,6 +67,30 @@ contains
           //join(ordering_names, ", "))
     end select
   end subroutine find_ordering
+
+  !> Find the ordering with the least cost. If none of them allows a complete factorisation, an
+  !> incomplete one is likely, for which minimum degree is not suitable.
+  subroutine best_ordering(matrix, order, error)
+    type(block_matrix_t), intent(in) :: matrix
+    integer, allocatable, intent(out) :: order(:)
+    type(error_t), allocatable, intent(out) :: error
+
+    integer, allocatable :: other(:)
+    real(wp) :: least, cost
+    integer :: i, most, n_block
+
+    order = [(i, i=1, matrix%n)]
+    most = most_fill*min(size(matrix%column), huge(1)/(2*most_fill))
+    call factor_cost(matrix, order, most, least, n_block)
+    call minimum_degree(matrix, other, error)
+    if (allocated(error)) return
+    call factor_cost(matrix, other, most, cost, n_block)
+    if (n_block > fill_limit*size(matrix%column)) then
+      call reverse_cuthill_mckee(matrix, other)
+      call factor_cost(matrix, other, most, cost, n_block)
+    end if
+    if (cost < worth_while*least) order = other
+  end subroutine best_ordering
 
   !> Find the approximate minimum degree ordering.
   subroutine minimum_degree(matrix, order, error)

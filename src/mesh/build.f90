@@ -3,9 +3,15 @@
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : text_t
+  use dd3_input_block, only : deck_t
   use dd3_input_case, only : case_t, phase_spec_t
+  use dd3_input_reference, only : check_references
+  use dd3_input_table, only : block_table
   use dd3_mesh_blank, only : new_blank_mesh
+  use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
+  use dd3_mesh_round_blank, only : new_round_mesh
   use dd3_mesh_select, only : add_set
   implicit none
   private
@@ -30,7 +36,15 @@ contains
     integer :: i, before
 
     before = errors%count
-    call new_blank_mesh(mesh, case%blank(1), natural)
+    if (size(case%mesh) > 0) then
+      call new_inp_mesh(mesh, case%mesh(1), natural, errors)
+      if (errors%count == before) call check_sets(mesh, case, errors)
+      if (errors%count > before) return
+    else if (case%blank(1)%radius > 0.0_wp) then
+      call new_round_mesh(mesh, case%blank(1), natural)
+    else
+      call new_blank_mesh(mesh, case%blank(1), natural)
+    end if
     do i = 1, size(case%set)
       call add_set(mesh, case%set(i), errors)
     end do
@@ -44,6 +58,23 @@ contains
       call check_displacements(mesh, case%phase(i), held, led, errors)
     end do
   end subroutine new_mesh
+
+  !> Check the names of sets in the input, now that those of the mesh file are known.
+  subroutine check_sets(mesh, case, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    type(deck_t) :: deck
+    type(text_t) :: name(size(mesh%set))
+    integer :: i
+
+    do i = 1, size(name)
+      name(i)%s = mesh%set(i)%name
+    end do
+    deck = case%deck
+    call check_references(deck, block_table(), errors, name)
+  end subroutine check_sets
 
   !> Report freed directions that no earlier phase displaced.
   subroutine check_freed(mesh, phase, held, led, errors)
@@ -86,13 +117,13 @@ contains
 
     logical :: moved(3, mesh%n_node)
     integer, allocatable :: node(:)
-    integer :: i
+    integer :: i, axis
 
     moved = .false.
     do i = 1, size(phase%displace)
       node = mesh%nodes_of(phase%displace(i)%set)
-      associate (axis => phase%displace(i)%axis, set => phase%displace(i)%set, &
-          at => phase%displace(i)%at)
+      associate (set => phase%displace(i)%set, at => phase%displace(i)%at)
+        axis = phase%displace(i)%axis
         if (any(held(axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
           call errors%push_input(at, "a node of '"//set// &
               "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
@@ -103,7 +134,31 @@ contains
         moved(axis, node) = .true.
       end associate
     end do
+    do i = 1, size(phase%motion)
+      node = mesh%nodes_of(phase%motion(i)%set)
+      do axis = 1, 3
+        if (is_along(phase%motion(i)%value(4:6), axis)) cycle
+        if (any(held(axis, node))) then
+          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
+              "' is fixed along "//axis_name(axis)//" by *BOUNDARY", &
+              "nodes that are free in the plane of the rotation")
+        else if (any(moved(axis, node))) then
+          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
+              "' is displaced twice along "//axis_name(axis)//" in this phase", &
+              "one of displace, rotate and bend for each node")
+        end if
+        moved(axis, node) = .true.
+      end do
+    end do
     led = led .or. (moved .and. .not. held)
   end subroutine check_displacements
+
+  !> Whether a vector is along a coordinate axis.
+  pure logical function is_along(vector, axis)
+    real(wp), intent(in) :: vector(3)
+    integer, intent(in) :: axis
+
+    is_along = norm2(vector) - abs(vector(axis)) <= 1.0e-12_wp*norm2(vector)
+  end function is_along
 
 end module dd3_mesh_build

@@ -4,7 +4,7 @@ module dd3_mesh_mesh
   use dd3_base_text, only : same_name
   implicit none
   private
-  public :: mark_directions, mesh_t, mesh_set_t
+  public :: mark_directions, mesh_t, mesh_set_t, element_set_t
 
   !> A named list of nodes.
   type :: mesh_set_t
@@ -13,6 +13,14 @@ module dd3_mesh_mesh
     !> Node numbers, ascending.
     integer, allocatable :: node(:)
   end type mesh_set_t
+
+  !> A named list of elements.
+  type :: element_set_t
+    !> In lower case.
+    character(len=:), allocatable :: name
+    !> Element numbers, ascending.
+    integer, allocatable :: element(:)
+  end type element_set_t
 
   !> The mesh of the sheet.
   type :: mesh_t
@@ -24,12 +32,18 @@ module dd3_mesh_mesh
     integer, allocatable :: connectivity(:, :)
     !> Position in `case%material`, `(n_element)`.
     integer, allocatable :: material(:)
-    !> Thickness of the sheet, mm.
+    !> Thickness of a structured blank, mm; 0 for a mesh from a file, which may vary.
     real(wp) :: thickness = 0.0_wp
+    !> Labels of the nodes in the mesh file; not allocated for a structured blank.
+    integer, allocatable :: node_label(:)
     !> Node sets of the blank, then those of the input file in its order.
     type(mesh_set_t), allocatable :: set(:)
+    !> Element sets of the mesh file.
+    type(element_set_t), allocatable :: element_set(:)
   contains
     procedure :: find_set
+    procedure :: find_element_set
+    procedure :: append_set
     procedure :: nodes_of
     procedure :: model_size
   end type mesh_t
@@ -48,6 +62,36 @@ contains
     end if
     find_set = 0
   end function find_set
+
+  !> Return the position of an element set; 0 if not found.
+  pure integer function find_element_set(self, name) result(position)
+    class(mesh_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    if (allocated(self%element_set)) then
+      do position = 1, size(self%element_set)
+        if (same_name(self%element_set(position)%name, name)) return
+      end do
+    end if
+    position = 0
+  end function find_element_set
+
+  !> Append a node set without copying the nodes of the others.
+  subroutine append_set(self, set)
+    class(mesh_t), intent(inout) :: self
+    type(mesh_set_t), intent(in) :: set
+
+    type(mesh_set_t), allocatable :: larger(:)
+    integer :: i
+
+    allocate (larger(size(self%set) + 1))
+    do i = 1, size(self%set)
+      call move_alloc(self%set(i)%name, larger(i)%name)
+      call move_alloc(self%set(i)%node, larger(i)%node)
+    end do
+    larger(size(larger)) = set
+    call move_alloc(larger, self%set)
+  end subroutine append_set
 
   !> Return the nodes of a set; size 0 if not found.
   pure function nodes_of(self, name) result(node)

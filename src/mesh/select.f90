@@ -42,7 +42,7 @@ contains
                  .and. mesh%x(i, :) <= wanted%value(2*i) + tolerance
       end do
     case (set_nodes)
-      call keep_numbers(member, wanted, errors)
+      call keep_numbers(member, mesh, wanted, errors)
     case default
       call keep_nearest(member, mesh%x, wanted%value, tolerance)
     end select
@@ -52,45 +52,33 @@ contains
       call errors%push_input(wanted%source%opened, "set '"//wanted%source%called()// &
           "' contains no node", "at least one node")
     end if
-    call append(mesh%set, set)
+    call mesh%append_set(set)
   end subroutine add_set
 
-  !> Append a set without copying the nodes of the others.
-  subroutine append(sets, set)
-    type(mesh_set_t), allocatable, intent(inout) :: sets(:)
-    type(mesh_set_t), intent(in) :: set
-
-    type(mesh_set_t), allocatable :: larger(:)
-    integer :: i
-
-    allocate (larger(size(sets) + 1))
-    do i = 1, size(sets)
-      call move_alloc(sets(i)%name, larger(i)%name)
-      call move_alloc(sets(i)%node, larger(i)%node)
-    end do
-    larger(size(larger)) = set
-    call move_alloc(larger, sets)
-  end subroutine append
-
-  !> Keep the members with the numbers of the set.
-  subroutine keep_numbers(member, wanted, errors)
+  !> Keep the members with the numbers of the set; of a mesh file these are its labels.
+  subroutine keep_numbers(member, mesh, wanted, errors)
     !> Whether each node is a member.
     logical, intent(inout) :: member(:)
+    type(mesh_t), intent(in) :: mesh
     type(node_set_spec_t), intent(in) :: wanted
     type(error_list_t), intent(inout) :: errors
 
-    logical :: named(size(member))
+    integer :: label(size(member))
+    logical :: named(size(member)), inside(size(member))
     integer :: i
 
+    label = [(i, i=1, size(member))]
+    if (allocated(mesh%node_label)) label = mesh%node_label
     named = .false.
     do i = 1, size(wanted%range, 2)
-      if (wanted%range(2, i) > size(member)) then
+      inside = label >= wanted%range(1, i) .and. label <= wanted%range(2, i)
+      if (wanted%range(2, i) > maxval(label) .or. .not. any(inside)) then
         call errors%push_input(wanted%source%entry(wanted%source%find("nodes"))%value(i)%at, &
-            "there is no node "//to_text(wanted%range(2, i)), "numbers from 1 to "// &
-            to_text(size(member)))
+            "there is no node "//to_text(wanted%range(2, i)), "numbers from "// &
+            to_text(minval(label))//" to "//to_text(maxval(label)))
         cycle
       end if
-      named(wanted%range(1, i):wanted%range(2, i)) = .true.
+      named = named .or. inside
     end do
     member = member .and. named
   end subroutine keep_numbers

@@ -2,17 +2,19 @@
 !> tools is checked. All errors of the input are collected.
 module dd3_model_build
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_error, only : error_list_t, error_t, location_t
   use dd3_base_text, only : text_buffer_t, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
   use dd3_input_known_name, only : check_known_name
   use dd3_linalg_solver_registry, only : solver_names
   use dd3_mesh_build, only : new_mesh
+  use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
@@ -23,6 +25,7 @@ module dd3_model_build
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_sheet_faces, only : new_sheet_faces
+  use dd3_model_thickness_columns, only : set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
@@ -47,7 +50,10 @@ contains
     call check_solver(case, errors)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
-    if (errors%count > 0) return
+    if (errors%count > 0) then
+      call check_mesh_file(model, case, errors)
+      return
+    end if
     call new_variables(model%internal_variable, model%material)
     if (size(case%point) > 0) return
     call new_mesh(mesh, case, model%element%node, errors)
@@ -69,18 +75,46 @@ contains
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
 
-    type(error_t), allocatable :: error
-    character(len=16), allocatable :: name(:)
-    integer :: b, position
+    integer :: i
 
-    name = element_names()
-    do b = 1, size(case%blank)
-      if (.not. case%blank(b)%source%has("element")) cycle
-      call check_known_name(case%blank(b)%element, case%blank(b)%source%at("element"), &
-          "element type", name, position, errors)
-      if (position > 0) call new_element(model%element, name(position), error)
+    do i = 1, size(case%blank)
+      call set_from(case%blank(i)%source, case%blank(i)%element)
     end do
+    do i = 1, size(case%mesh)
+      call set_from(case%mesh(i)%source, case%mesh(i)%element)
+    end do
+
+  contains
+
+    subroutine set_from(block, element)
+      type(block_t), intent(in) :: block
+      character(len=*), intent(in) :: element
+
+      type(error_t), allocatable :: error
+      character(len=16), allocatable :: name(:)
+      integer :: position
+
+      if (.not. block%has("element")) return
+      name = element_names()
+      call check_known_name(element, block%at("element"), "element type", name, position, errors)
+      if (position > 0) call new_element(model%element, name(position), error)
+    end subroutine set_from
+
   end subroutine set_element
+
+  !> Read the mesh file of an input with errors, to report its errors with the others.
+  subroutine check_mesh_file(model, case, errors)
+    !> With its element, if that is known.
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    type(mesh_t) :: mesh
+
+    if (model%element%n_node == 0) return
+    if (size(case%mesh) /= 1) return
+    if (case%mesh(1)%source%has("file")) call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
+  end subroutine check_mesh_file
 
   !> Report a linear solver that is not in the registry.
   subroutine check_solver(case, errors)
@@ -148,17 +182,26 @@ contains
     model%connectivity = mesh%connectivity
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
-    model%thickness = mesh%thickness
-    model%tolerance = new_tolerances(mesh%thickness, mesh%x)
+    call set_thickness(model, mesh%thickness)
+    model%tolerance = new_tolerances(model%thickness, mesh%x)
     call new_element_work(work, model%element)
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
-      call errors%push_input(case%blank(1)%source%opened, "element "//to_text(e)// &
-          " has no volume", "a blank whose node lines do not cross")
+      call errors%push_input(sheet_location(case), "element "//to_text(e)// &
+          " has no volume", "a sheet whose node lines do not cross")
       return
     end do
   end subroutine set_mesh
+
+  !> Return where the sheet is defined.
+  function sheet_location(case) result(at)
+    type(case_t), intent(in) :: case
+    type(location_t) :: at
+
+    if (size(case%blank) > 0) at = case%blank(1)%source%opened
+    if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
+  end function sheet_location
 
   !> Number the contact candidates, and the block rows of the tools that are pressed in some phase.
   subroutine find_candidates(model, case, mesh)
@@ -179,7 +222,7 @@ contains
     allocate (model%candidate_of(model%n_node), source=0)
     model%candidate_of(model%contact_node) = [(i, i=1, model%n_contact)]
     call find_contact_faces(model)
-    call set_contact_stiffness(model, model%material(model%material_of(1))%young)
+    call set_contact_stiffness(model)
     allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool
@@ -246,6 +289,7 @@ contains
       model%history(h)%displacement = case%history(h)%displacement
       model%history(h)%reaction = case%history(h)%reaction
       model%history(h)%position = case%history(h)%position
+      model%history(h)%moment = case%history(h)%moment
     end do
   end subroutine set_output
 
@@ -273,7 +317,8 @@ contains
             model%tolerance%start_search, model%tolerance%start_search, hit)
         if (.not. hit%found) cycle
         if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
-        if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth*model%thickness) cycle
+        if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth* &
+            model%thickness_at(node)) cycle
         deepest = hit%distance
         worst = node
       end do

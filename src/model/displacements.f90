@@ -1,8 +1,10 @@
 !> Prescribed displacements of the phases. A direction that a phase displaces stays prescribed in
 !> later phases, with no further displacement, until one frees it.
 module dd3_model_displacements
+  use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t
   use dd3_mesh_mesh, only : mark_directions, mesh_t
+  use dd3_model_motions, only : motion_t, new_motion
   use dd3_model_phase, only : phase_t
   implicit none
   private
@@ -24,6 +26,7 @@ contains
     logical, intent(inout) :: led(:, :)
     type(phase_t), intent(inout) :: phase
 
+    type(motion_t), allocatable :: motion(:)
     logical :: fixed(3, mesh%n_node), displaced(3, mesh%n_node)
     integer, allocatable :: node(:)
     integer :: k
@@ -44,10 +47,43 @@ contains
         displaced(spec%displace(k)%axis, node) = .true.
         phase%displacement(spec%displace(k)%axis, node) = spec%displace(k)%value
       end do
+      allocate (motion(size(spec%motion)))
+      do k = 1, size(spec%motion)
+        node = mesh%nodes_of(spec%motion(k)%set)
+        call new_motion(motion(k), node, mesh%x, spec%motion(k)%bends, spec%motion(k)%value, &
+            bend_before(case, i, spec%motion(k)%set))
+        call mark_directions(displaced, node, motion(k)%prescribes)
+      end do
+      call move_alloc(motion, phase%motion)
     end associate
     led = led .or. displaced
     call list_kept(case, i, mesh, led .and. .not. (fixed .or. displaced), phase%kept_displacements)
   end subroutine set_displacements
+
+  !> Return the angle to which earlier phases have bent a set, rad.
+  pure real(wp) function bend_before(case, i, set) result(angle)
+    type(case_t), intent(in) :: case
+    !> Number of the phase.
+    integer, intent(in) :: i
+    character(len=*), intent(in) :: set
+
+    integer :: j, k
+
+    angle = 0.0_wp
+    do j = 1, i - 1
+      do k = 1, size(case%phase(j)%motion)
+        associate (motion => case%phase(j)%motion(k), table => case%phase(j)%table)
+          if (.not. motion%bends .or. motion%set /= set) cycle
+          ! The table may end the phase at a fraction of its motion.
+          if (size(table) > 0) then
+            angle = angle + table(size(table))*(acos(-1.0_wp)/180.0_wp*motion%value(7) - angle)
+          else
+            angle = acos(-1.0_wp)/180.0_wp*motion%value(7)
+          end if
+        end associate
+      end do
+    end do
+  end function bend_before
 
   !> List the directions that earlier phases displaced and a phase holds.
   subroutine list_kept(case, i, mesh, kept, text)
@@ -59,21 +95,38 @@ contains
     logical, intent(in) :: kept(:, :)
     character(len=:), allocatable, intent(out) :: text
 
-    character(len=:), allocatable :: item
-    integer :: j, k
+    integer :: j, k, axis
 
     text = ""
     do j = 1, i - 1
-      do k = 1, size(case%phase(j)%displace)
-        associate (displace => case%phase(j)%displace(k))
-          if (.not. any(kept(displace%axis, mesh%nodes_of(displace%set)))) cycle
-          item = axis_name(displace%axis)//" of '"//displace%set//"'"
-          if (index(text, item) > 0) cycle
-          if (len(text) > 0) text = text//", "
-          text = text//item
-        end associate
-      end do
+      associate (spec => case%phase(j))
+        do k = 1, size(spec%displace)
+          call add(spec%displace(k)%axis, spec%displace(k)%set)
+        end do
+        do k = 1, size(spec%motion)
+          do axis = 1, 3
+            call add(axis, spec%motion(k)%set)
+          end do
+        end do
+      end associate
     end do
+
+  contains
+
+    !> Add a direction of a set if it is held, and new in the list.
+    subroutine add(axis, set)
+      integer, intent(in) :: axis
+      character(len=*), intent(in) :: set
+
+      character(len=:), allocatable :: item
+
+      if (.not. any(kept(axis, mesh%nodes_of(set)))) return
+      item = axis_name(axis)//" of '"//set//"'"
+      if (index(text, item) > 0) return
+      if (len(text) > 0) text = text//", "
+      text = text//item
+    end subroutine add
+
   end subroutine list_kept
 
 end module dd3_model_displacements

@@ -46,7 +46,8 @@ contains
       associate (corner => model%face%corner(:, model%contact_face(f)))
         edge = model%x0(:, corner) - model%x0(:, cshift(corner, 1))
         length = norm2(edge, dim=1)
-        ratio = min(length(1) + length(3), length(2) + length(4))/(2.0_wp*model%thickness)
+        ratio = min(length(1) + length(3), length(2) + length(4)) &
+            /(2.0_wp*model%thickness_at(corner(1)))
       end associate
       if (ratio > 1.0_wp + round_off) self%n_long = self%n_long + 1
       self%shortest = min(self%shortest, ratio)

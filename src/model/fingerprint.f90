@@ -166,6 +166,20 @@ contains
         call digest%add(phase%load_end(:, s))
         call digest%add(model%load_set(s)%node)
       end do
+      do s = 1, size(model%pressure_set)
+        if (phase%keeps_pressure(s)) cycle
+        call digest%add([phase%pressure_end(s)])
+        call digest%add(reshape(model%pressure_set(s)%corner, &
+            [size(model%pressure_set(s)%corner)]))
+      end do
+      do s = 1, size(phase%motion)
+        associate (motion => phase%motion(s))
+          call digest%add([motion%bends])
+          call digest%add([motion%point, motion%axis, motion%start, motion%angle])
+          call digest%add(motion%node)
+        end associate
+      end do
+      if (allocated(phase%table)) call digest%add(reshape(phase%table, [size(phase%table)]))
     end associate
     phase_digest = digest%value()
   end function phase_digest

@@ -8,6 +8,7 @@ module dd3_model_model
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
   implicit none
@@ -20,7 +21,7 @@ module dd3_model_model
     character(len=:), allocatable :: name
     integer, allocatable :: node(:)
     !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false.
+    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
   end type history_set_t
 
   !> Output and its intervals.
@@ -61,8 +62,10 @@ module dd3_model_model
     integer, allocatable :: material_digest(:)
     !> Orthotropy axes of each material at the start, columns RD, TD, ND, `(3, 3, n_material)`.
     real(wp), allocatable :: axes(:, :, :)
-    !> Thickness of the sheet at the start, mm.
+    !> Thickness of the sheet at the start, mm; the smallest if it varies.
     real(wp) :: thickness = 0.0_wp
+    !> Thickness at each node, `(n_node)`, mm; not allocated if it does not vary.
+    real(wp), allocatable :: node_thickness(:)
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.
@@ -82,10 +85,48 @@ module dd3_model_model
     logical, allocatable :: fixed(:, :)
     !> Sets that carry a load in some phase.
     type(load_set_t), allocatable :: load_set(:)
+    !> Sets that carry a pressure in some phase.
+    type(pressure_set_t), allocatable :: pressure_set(:)
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
     type(output_t) :: output
+  contains
+    procedure :: thickness_at
+    procedure :: largest_thickness
+    procedure :: least_shear
   end type model_t
+
+contains
+
+  !> Return the thickness of the sheet at a node at the start, mm.
+  pure real(wp) function thickness_at(self, node)
+    class(model_t), intent(in) :: self
+    integer, intent(in) :: node
+
+    thickness_at = self%thickness
+    if (allocated(self%node_thickness)) thickness_at = self%node_thickness(node)
+  end function thickness_at
+
+  !> Return the largest thickness of the sheet at the start, mm.
+  pure real(wp) function largest_thickness(self)
+    class(model_t), intent(in) :: self
+
+    largest_thickness = self%thickness
+    if (allocated(self%node_thickness)) largest_thickness = maxval(self%node_thickness)
+  end function largest_thickness
+
+  !> Return the smallest shear modulus of the elements, MPa.
+  pure real(wp) function least_shear(self)
+    class(model_t), intent(in) :: self
+
+    integer :: m
+
+    least_shear = huge(1.0_wp)
+    do m = 1, size(self%material)
+      if (any(self%material_of == m)) &
+          least_shear = min(least_shear, self%material(m)%laws%elasticity%shear)
+    end do
+  end function least_shear
 
 end module dd3_model_model

@@ -28,28 +28,31 @@ contains
   end function contact_penalty
 
   !> Set the stiffness of the sheet through its thickness under each candidate, E A/t, with its
-  !> tributary area A. A candidate that belongs to no face gets the mean.
-  subroutine set_contact_stiffness(model, young)
+  !> tributary area A, the thickness there, and Young's modulus of the last element at the node. A
+  !> candidate that belongs to no face gets the mean area, and the modulus of the first element.
+  subroutine set_contact_stiffness(model)
     type(model_t), intent(inout) :: model
-    !> Young's modulus, MPa.
-    real(wp), intent(in) :: young
 
-    real(wp) :: area(model%n_contact), mean
-    integer :: f
+    real(wp) :: area(model%n_contact), young(model%n_contact), mean
+    integer :: f, c
 
     area = 0.0_wp
+    young = model%material(model%material_of(1))%young
     do f = 1, size(model%contact_face)
       associate (corner => model%face%corner(:, model%contact_face(f)), x => model%x0)
         associate (candidate => model%candidate_of(corner))
           area(candidate) = area(candidate) + 0.125_wp*norm2(cross( &
               x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2))))
+          young(candidate) = model%material(model%material_of(model%face%element( &
+              model%contact_face(f))))%young
         end associate
       end associate
     end do
     mean = model%thickness**2
     if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
     where (area <= 0.0_wp) area = mean
-    model%contact_stiffness = young*area/model%thickness
+    model%contact_stiffness = young*area/[(model%thickness_at(model%contact_node(c)), &
+        c=1, model%n_contact)]
   end subroutine set_contact_stiffness
 
 end module dd3_model_penalty

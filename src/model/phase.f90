@@ -3,11 +3,16 @@
 module dd3_model_phase
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
+  use dd3_model_motions, only : motion_t
   implicit none
   private
   public :: phase_t
 
-  !> Phase in which all displacements and loads are linear in the progress, 0 to 1.
+  !> Progress by which two places in a phase differ.
+  real(wp), parameter :: step = 1.0e-9_wp
+
+  !> Phase in which all displacements and loads are linear in the progress, 0 to 1, but for those of
+  !> nodes if it has a table.
   type :: phase_t
     character(len=:), allocatable :: name
     !> Controlling tool; 0 if loads control.
@@ -41,6 +46,15 @@ module dd3_model_phase
     !> meaning for those whose load the phase leaves unchanged, `(n_load)`.
     real(wp), allocatable :: load_end(:, :)
     logical, allocatable :: keeps_load(:)
+    !> Rotations and bends of node sets.
+    type(motion_t), allocatable :: motion(:)
+    !> Pressures at the end of the phase, `(n_pressure)`, MPa; without meaning for those that the
+    !> phase leaves unchanged, `(n_pressure)`.
+    real(wp), allocatable :: pressure_end(:)
+    logical, allocatable :: keeps_pressure(:)
+    !> Progress and the factor on displacements, motions, loads and pressures there, `(2, n)`; not
+    !> allocated if the factor is the progress.
+    real(wp), allocatable :: table(:, :)
     !> Early end.
     type(until_spec_t) :: until
     type(limits_spec_t) :: limits
@@ -49,6 +63,61 @@ module dd3_model_phase
     real(wp) :: penalty = 0.0_wp
     !> Distance up to which a tool's surface is looked for, mm.
     real(wp) :: search_distance = 0.0_wp
+  contains
+    procedure :: factor
+    procedure :: slope
+    procedure :: next_kink
   end type phase_t
+
+contains
+
+  !> Return the factor on displacements and loads at a progress.
+  pure real(wp) function factor(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    integer :: i
+
+    factor = progress
+    if (.not. allocated(self%table)) return
+    i = interval(self%table(1, :), progress)
+    associate (x => self%table(1, i:i + 1), y => self%table(2, i:i + 1))
+      factor = y(1) + (y(2) - y(1))*((progress - x(1))/(x(2) - x(1)))
+    end associate
+  end function factor
+
+  !> Return the derivative of the factor behind a progress.
+  pure real(wp) function slope(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    integer :: i
+
+    slope = 1.0_wp
+    if (.not. allocated(self%table)) return
+    i = interval(self%table(1, :), progress + step)
+    slope = (self%table(2, i + 1) - self%table(2, i))/(self%table(1, i + 1) - self%table(1, i))
+  end function slope
+
+  !> Return the next place of the table behind a progress; 1 without a table.
+  pure real(wp) function next_kink(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    next_kink = 1.0_wp
+    if (allocated(self%table)) next_kink = self%table(1, &
+        interval(self%table(1, :), progress + step) + 1)
+  end function next_kink
+
+  !> Return the number of the interval that holds a value.
+  pure integer function interval(x, value) result(i)
+    !> Ascending.
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(in) :: value
+
+    do i = 1, size(x) - 2
+      if (value < x(i + 1)) return
+    end do
+  end function interval
 
 end module dd3_model_phase

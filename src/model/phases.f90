@@ -7,6 +7,7 @@ module dd3_model_phases
   use dd3_model_displacements, only : set_displacements
   use dd3_model_loads, only : face_load_weights, load_set_t
   use dd3_model_model, only : model_t
+  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   implicit none
@@ -27,6 +28,7 @@ contains
     integer :: i
 
     call new_load_sets(model, case, mesh)
+    call new_pressure_sets(model, case, mesh)
     call new_idle_phase(before, model)
     led = model%fixed
     unloaded = .false.
@@ -60,6 +62,9 @@ contains
     allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
     allocate (phase%keeps_load(n_load), source=.true.)
     allocate (phase%displacement(3, n_node), source=0.0_wp)
+    allocate (phase%motion(0))
+    allocate (phase%pressure_end(size(model%pressure_set)), source=0.0_wp)
+    allocate (phase%keeps_pressure(size(model%pressure_set)), source=.true.)
     phase%prescribed = model%fixed
   end subroutine new_idle_phase
 
@@ -73,6 +78,9 @@ contains
     phase%displacement = 0.0_wp
     phase%keeps_tool_load = .true.
     phase%keeps_load = .true.
+    phase%keeps_pressure = .true.
+    phase%motion = phase%motion(:0)
+    if (allocated(phase%table)) deallocate (phase%table)
   end subroutine new_phase_after
 
   !> Set name, control, limits and end.
@@ -86,10 +94,11 @@ contains
     phase%limits = spec%limits
     phase%newton = spec%newton
     phase%until = spec%until
+    if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
-    if (phase%search_distance <= 0.0_wp) phase%search_distance = model%thickness
+    if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()
   end subroutine set_settings
 
   !> Set the motion and load of the tools, and the trial increment as a fraction of the phase. A
@@ -188,7 +197,51 @@ contains
       phase%load_end(:, s) = spec%load(i)%force
       phase%keeps_load(s) = .false.
     end do
+    do i = 1, size(spec%pressure)
+      do s = 1, size(model%pressure_set)
+        if (model%pressure_set(s)%name /= spec%pressure(i)%set) cycle
+        phase%pressure_end(s) = spec%pressure(i)%value
+        phase%keeps_pressure(s) = .false.
+      end do
+    end do
   end subroutine set_loads
+
+  !> List the sets that carry a pressure in some phase, with their faces on the boundary.
+  subroutine new_pressure_sets(model, case, mesh)
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    type(mesh_t), intent(in) :: mesh
+
+    type(pressure_set_t) :: set
+    logical :: member(mesh%n_node), inside(model%face%n)
+    integer :: i, j, s, f
+
+    allocate (model%pressure_set(0))
+    do i = 1, size(case%phase)
+      do j = 1, size(case%phase(i)%pressure)
+        set%name = case%phase(i)%pressure(j)%set
+        if (any([(model%pressure_set(s)%name == set%name, s=1, size(model%pressure_set))])) cycle
+        member = .false.
+        member(mesh%nodes_of(set%name)) = .true.
+        inside = [(all(member(model%face%corner(:, f))), f=1, model%face%n)]
+        set%corner = model%face%corner(:, pack([(f, f=1, model%face%n)], inside))
+        call append(model%pressure_set, set)
+      end do
+    end do
+  end subroutine new_pressure_sets
+
+  !> Append a set.
+  subroutine append(sets, set)
+    type(pressure_set_t), allocatable, intent(inout) :: sets(:)
+    type(pressure_set_t), intent(in) :: set
+
+    type(pressure_set_t), allocatable :: larger(:)
+
+    allocate (larger(size(sets) + 1))
+    larger(:size(sets)) = sets
+    larger(size(larger)) = set
+    call move_alloc(larger, sets)
+  end subroutine append
 
   !> List the sets that carry a load in some phase, in the order of the phases.
   subroutine new_load_sets(model, case, mesh)

@@ -3,6 +3,7 @@ module dd3_model_sheet_faces
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
   use dd3_linalg_tensor, only : cross
+  use dd3_mesh_hexahedra, only : same_nodes
   implicit none
   private
   public :: sheet_faces_t, new_sheet_faces, face_normal
@@ -50,15 +51,6 @@ contains
     self%element = pack([((i - 1)/element%n_face + 1, i=1, size(inner))], .not. inner)
     self%corner = corner(:, pack([(i, i=1, size(inner))], .not. inner))
   end subroutine new_sheet_faces
-
-  !> Whether two faces have the same corners.
-  pure logical function same_nodes(a, b)
-    integer, intent(in) :: a(4), b(4)
-
-    integer :: i
-
-    same_nodes = all([(any(b == a(i)), i=1, 4)])
-  end function same_nodes
 
   !> Return the outward unit normal at the centre of a face; zero if the face has no area.
   pure function face_normal(x) result(normal)

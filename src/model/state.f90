@@ -19,6 +19,10 @@ module dd3_model_state
     !> Total forces on the sets with loads at the start and at the end of the phase, `(3, n_load)`,
     !> N.
     real(wp), allocatable :: load(:, :), load_end(:, :)
+    !> Pressures at the start and at the end of the phase, `(n_pressure)`, MPa.
+    real(wp), allocatable :: pressure(:), pressure_end(:)
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), allocatable :: x(:, :)
     !> Forces of the candidates on released tools that fade over the phase, `(3, n_contact)`, N.
     real(wp), allocatable :: fading(:, :)
     !> Reactions of the directions that are free again, as forces on the sheet that fade over the
@@ -57,8 +61,8 @@ module dd3_model_state
     !> External forces, `(3, n_node)`, N: loads, and the fading forces of released contacts
     !> and freed directions.
     real(wp), allocatable :: external_force(:, :)
-    !> Total forces on the sets with loads, `(3, n_load)`, N.
-    real(wp), allocatable :: load(:, :)
+    !> Total forces on the sets with loads, `(3, n_load)`, N, and pressures, `(n_pressure)`, MPa.
+    real(wp), allocatable :: load(:, :), pressure(:)
     !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
     real(wp), allocatable :: stress(:, :, :)
     !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the
@@ -138,13 +142,16 @@ contains
     type(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
-    integer :: n_load
+    integer :: n_load, n_pressure
 
     n_load = 0
     if (allocated(model%load_set)) n_load = size(model%load_set)
+    n_pressure = 0
+    if (allocated(model%pressure_set)) n_pressure = size(model%pressure_set)
     associate (n_node => model%n_node, n_point => model%element%n_point, n => model%n_element)
       allocate (self%x(3, n_node), self%internal_force(3, n_node), source=0.0_wp)
       allocate (self%external_force(3, n_node), self%load(3, n_load), source=0.0_wp)
+      allocate (self%pressure(n_pressure), source=0.0_wp)
       allocate (self%stress(6, n_point, n), source=0.0_wp)
       allocate (self%internal_variables(model%n_internal, n_point, n), source=0.0_wp)
       allocate (self%orientation(3, 3, n_point, n), source=0.0_wp)
@@ -160,6 +167,9 @@ contains
     allocate (self%tool_displacement, mold=state%tool_displacement)
     allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
     allocate (self%load, self%load_end, mold=state%load)
+    allocate (self%pressure(size(state%pressure)), self%pressure_end(size(state%pressure)), &
+        source=0.0_wp)
+    allocate (self%x, source=state%x)
     allocate (self%fading, mold=state%fading)
     allocate (self%reaction, mold=state%x)
     allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)

@@ -74,6 +74,7 @@ contains
     call visitor%reals("internal_force", size(state%internal_force), state%internal_force)
     call visitor%reals("external_force", size(state%external_force), state%external_force)
     call visitor%reals("load", size(state%load), state%load)
+    call visitor%reals("pressure", size(state%pressure), state%pressure)
     call visitor%reals("stress", size(state%stress), state%stress)
     call visitor%reals("internal_variables", size(state%internal_variables), &
         state%internal_variables)
@@ -107,6 +108,9 @@ contains
     call visitor%reals("start_tool_load_end", size(start%tool_load_end), start%tool_load_end)
     call visitor%reals("start_load", size(start%load), start%load)
     call visitor%reals("start_load_end", size(start%load_end), start%load_end)
+    call visitor%reals("start_pressure", size(start%pressure), start%pressure)
+    call visitor%reals("start_pressure_end", size(start%pressure_end), start%pressure_end)
+    call visitor%reals("start_x", size(start%x), start%x)
     call visitor%reals("start_fading", size(start%fading), start%fading)
     call visitor%reals("start_reaction", size(start%reaction), start%reaction)
     call visitor%reals("start_plastic_strain", size(start%plastic_strain), start%plastic_strain)

@@ -1,52 +1,73 @@
 !> Columns of nodes through the thickness of the sheet, from the pairs of opposite nodes of the
 !> elements.
 module dd3_model_thickness_columns
+  use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: thickness_columns
+  public :: set_thickness, thickness_columns
+
+  !> Largest relative difference of thicknesses that count as equal.
+  real(wp), parameter :: round_off = 1.0e-6_wp
 
 contains
 
   !> Find the column in which each node lies.
-  subroutine thickness_columns(model, column)
+  pure subroutine thickness_columns(model, column)
     type(model_t), intent(in) :: model
     !> Bottom and top node of the column of each node, `(2, n_node)`; a node that is in no column is
     !> its own bottom and top.
     integer, allocatable, intent(out) :: column(:, :)
 
-    integer, allocatable :: next(:, :)
-    integer :: e, p, i, below, above
+    integer :: above(model%n_node), node, top
+    logical :: has_below(model%n_node)
+    integer :: e, p, i
 
-    allocate (next(2, model%n_node), column(2, model%n_node))
-    next = 0
+    above = 0
+    has_below = .false.
     do e = 1, model%n_element
       do p = 1, model%element%n_pair
-        below = model%connectivity(model%element%pair(1, p), e)
-        above = model%connectivity(model%element%pair(2, p), e)
-        next(2, below) = above
-        next(1, above) = below
+        associate (pair => model%connectivity(model%element%pair(:, p), e))
+          above(pair(1)) = pair(2)
+          has_below(pair(2)) = .true.
+        end associate
       end do
     end do
+    allocate (column(2, model%n_node), source=spread([(i, i=1, model%n_node)], 1, 2))
     do i = 1, model%n_node
-      column(1, i) = last_of(next(1, :), i)
-      column(2, i) = last_of(next(2, :), i)
+      if (has_below(i)) cycle
+      top = i
+      do while (above(top) > 0)
+        top = above(top)
+      end do
+      node = i
+      do
+        column(:, node) = [i, top]
+        if (above(node) == 0) exit
+        node = above(node)
+      end do
     end do
   end subroutine thickness_columns
 
-  !> Return the last node of a chain.
-  pure integer function last_of(next, first)
-    !> Next node of each node, 0 at the end.
-    integer, intent(in) :: next(:)
-    integer, intent(in) :: first
+  !> Set the thickness of a mesh from a file; that of a structured blank is given.
+  pure subroutine set_thickness(model, given)
+    !> With its mesh.
+    type(model_t), intent(inout) :: model
+    !> mm; 0 for a mesh from a file.
+    real(wp), intent(in) :: given
 
-    integer :: steps
+    real(wp) :: length(model%n_node)
+    integer, allocatable :: column(:, :)
+    integer :: i
 
-    last_of = first
-    do steps = 1, size(next)
-      if (next(last_of) == 0) return
-      last_of = next(last_of)
-    end do
-  end function last_of
+    model%thickness = given
+    if (given > 0.0_wp) return
+    call thickness_columns(model, column)
+    length = [(norm2(model%x0(:, column(2, i)) - model%x0(:, column(1, i))), i=1, model%n_node)]
+    model%thickness = minval(length, mask=length > 0.0_wp)
+    ! Nodes in the middle of edges through the thickness are in no column.
+    where (length <= 0.0_wp) length = model%thickness
+    if (maxval(length) > (1.0_wp + round_off)*model%thickness) model%node_thickness = length
+  end subroutine set_thickness
 
 end module dd3_model_thickness_columns

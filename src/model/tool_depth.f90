@@ -40,8 +40,8 @@ module dd3_model_tool_depth
     integer :: number = 0
     !> Corners, mm, and outward unit normal.
     real(wp) :: x(3, 4) = 0.0_wp, normal(3) = 0.0_wp
-    !> Longest diagonal, mm.
-    real(wp) :: size = 0.0_wp
+    !> Longest diagonal, and thickness of the sheet, mm.
+    real(wp) :: size = 0.0_wp, thickness = 0.0_wp
     !> Largest depth that is looked for, mm.
     real(wp) :: reach = 0.0_wp
     !> Bounding box of the face and the space behind it within the reach, mm.
@@ -86,7 +86,8 @@ contains
     self%x = state%x(:, model%face%corner(:, f)) - spread(state%tool_displacement(:, tool), 2, 4)
     self%normal = face_normal(self%x)
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
-    self%reach = max(wrong_side_depth*model%thickness, self%size)
+    self%thickness = model%thickness_at(model%face%corner(1, f))
+    self%reach = max(wrong_side_depth*self%thickness, self%size)
     self%lower = minval(self%x, dim=2) - self%reach*max(self%normal, 0.0_wp)
     self%upper = maxval(self%x, dim=2) - self%reach*min(self%normal, 0.0_wp)
     self%height = maxval(matmul(self%normal, self%x))
@@ -217,7 +218,7 @@ contains
           call locate(face, point, depth)
           if (depth <= self%depth .or. depth > face%reach) cycle
           if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
-          if (depth > model%thickness) then
+          if (depth > face%thickness) then
             if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
           end if
           call keep_larger(self, depth, point, face)

@@ -6,6 +6,7 @@ module dd3_output_history
   use dd3_base_error, only : error_t
   use dd3_base_text, only : newline
   use dd3_contact_operator, only : status_gap
+  use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
@@ -98,6 +99,7 @@ contains
           if (set%displacement) call add_vector(names, units, set%name//"_u", "mm")
           if (set%reaction) call add_vector(names, units, set%name//"_r", "N")
           if (set%position) call add_vector(names, units, set%name//"_", "mm")
+          if (set%moment) call add_vector(names, units, set%name//"_m", "N.mm")
         end associate
       end do
     end if
@@ -174,6 +176,7 @@ contains
         call table%add_reals(reaction(model, state, model%history(i)%node))
       end if
       if (model%history(i)%position) call table%add_reals(mean(state%x, model%history(i)%node))
+      if (model%history(i)%moment) call table%add_reals(moment(model, state, model%history(i)%node))
     end do
   end subroutine fill_row
 
@@ -209,6 +212,23 @@ contains
       if (any(node == model%contact_node(i))) reaction = reaction + state%lambda(:, i)
     end do
   end function reaction
+
+  !> Return the moment of the support reactions of some nodes about their mean position, N.mm.
+  pure function moment(model, state, node)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node(:)
+    real(wp) :: moment(3)
+
+    real(wp) :: centre(3)
+    integer :: i
+
+    centre = mean(state%x, node)
+    moment = 0.0_wp
+    do i = 1, size(node)
+      moment = moment + cross(state%x(:, node(i)) - centre, reaction(model, state, node(i:i)))
+    end do
+  end function moment
 
   !> Write the row that is kept.
   subroutine put_waiting(self, error)

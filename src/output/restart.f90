@@ -296,7 +296,8 @@ contains
     logical :: ok
 
     call dataset_size(self%file, "state/"//name, there)
-    if (name == "load" .or. name == "start_load" .or. name == "start_load_end") then
+    if (any(name == [character(len=18) :: "load", "start_load", "start_load_end", "pressure", &
+        "start_pressure", "start_pressure_end"])) then
       ok = there >= 0
     else
       ok = there == n

@@ -17,6 +17,8 @@ module dd3_process_corrector
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : contact_work_t, not_held
+  use dd3_system_pressure, only : add_pressure_stiffness
+  use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -101,6 +103,8 @@ contains
         if (phase%newton%damping .and. is_lost(correction%criterion)) exit
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
+        call add_pressure_stiffness(system, model, trial)
+        call prescribe_missed(phase%prescribed, trial, system%problem)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, verdict)
         verdict%iterations = j
@@ -113,6 +117,17 @@ contains
       verdict%norm = correction%criterion(size(correction%criterion))
     end associate
   end subroutine iterate
+
+  !> Prescribe the displacements that are left to the positions aimed at.
+  pure subroutine prescribe_missed(prescribed, trial, problem)
+    !> `(3, n_node)`.
+    logical, intent(in) :: prescribed(:, :)
+    type(state_t), intent(in) :: trial
+    type(linear_problem_t), intent(inout) :: problem
+
+    if (.not. problem%missed) return
+    where (prescribed) problem%prescribed = problem%target - trial%x
+  end subroutine prescribe_missed
 
   !> Whether the iterations do not approach a solution: residuals as large as the forces for long,
   !> and not decreasing.
@@ -204,6 +219,7 @@ contains
       again = attempt%verdict%outcome /= verdict_converged &
           .and. model%phase(trial%phase)%newton%damping
       if (again) call retreat(model, committed, trial, system, attempt, again)
+      if (again) system%problem%missed = .true.
     end do
     call system%profile%add(section_material)
     if (attempt%verdict%outcome /= verdict_converged) return
@@ -241,16 +257,16 @@ contains
         forces_met = forces_met &
             .and. abs(tool_residual(tool)) <= tool_force*pressed_force(trial, tool)
       end do
-      associate (elasticity => model%material(model%material_of(1))%laws%elasticity)
-        scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-            negligible_strain*elasticity%shear*model%thickness**2)
-      end associate
+      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
+          negligible_strain*model%least_shear()*model%thickness**2)
       j = verdict%iterations
       correction%criterion = [correction%criterion(:j - 1), &
           (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
       outside = all(contact%distance >= -model%tolerance%depth .or. contact%tool == 0)
+      if (system%problem%missed) outside = outside .and. all(abs(system%problem%target - trial%x) &
+          <= model%tolerance%closed .or. .not. phase%prescribed)
       if (j > 1 .and. forces_met .and. outside .and. verdict%norm < phase%newton%tolerance) &
           verdict%outcome = verdict_converged
     end associate

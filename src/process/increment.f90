@@ -3,16 +3,18 @@
 module dd3_process_increment
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_converged
-  use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
+  use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : new_attempt
   use dd3_process_corrector, only : correct
+  use dd3_process_external, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
   use dd3_process_stepper, only : stepper_t
+  use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
@@ -49,7 +51,7 @@ contains
 
     trial = committed
     associate (prediction => stepper%prediction, r => stepper%attempt%limit%r, &
-        start => committed%start, phase => model%phase(committed%phase))
+        phase => model%phase(committed%phase))
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
@@ -58,16 +60,51 @@ contains
       trial%x = committed%x + r*prediction%displacement
       trial%lambda = committed%lambda + r*prediction%lambda
       trial%tool_displacement = committed%tool_displacement + r*prediction%tool_displacement
-      trial%load = start%load + progress*(start%load_end - start%load)
-      trial%fading = (1.0_wp - progress)*start%fading
-      call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
-          trial%external_force)
-      trial%external_force = trial%external_force + (1.0_wp - progress)*start%reaction
-      trial%tool_load = start%tool_load + progress*(start%tool_load_end - start%tool_load)
+      call set_loads(model, trial)
+      call evaluate_external(model, trial)
+      call set_target(model, trial, stepper%system%problem)
       trial%hint%due = .true.
     end associate
     call correct(model, committed, trial, stepper%system, stepper%attempt)
   end subroutine try_increment
+
+  !> Set where the nodes with prescribed displacements have to be: at their predicted positions, or
+  !> on the curve of their motion.
+  subroutine set_target(model, trial, problem)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    type(linear_problem_t), intent(inout) :: problem
+
+    integer :: i
+
+    problem%target = trial%x
+    associate (phase => model%phase(trial%phase))
+      problem%missed = .false.
+      if (.not. allocated(phase%motion)) return
+      problem%missed = size(phase%motion) > 0
+      do i = 1, size(phase%motion)
+        call start_from(phase%motion(i)%node, phase%motion(i)%prescribes)
+      end do
+      do i = 1, size(phase%motion)
+        call motion_displacement(phase%motion(i), model%x0, trial%start%x, &
+            phase%factor(trial%progress), problem%target)
+      end do
+    end associate
+
+  contains
+
+    subroutine start_from(node, prescribes)
+      integer, intent(in) :: node(:)
+      logical, intent(in) :: prescribes(3)
+
+      integer :: k
+
+      do k = 1, size(node)
+        where (prescribes) problem%target(:, node(k)) = trial%start%x(:, node(k))
+      end do
+    end subroutine start_from
+
+  end subroutine set_target
 
   !> Reduce r for another attempt, if one is allowed.
   subroutine shrink_increment(phase, stepper, again)

@@ -75,6 +75,8 @@ contains
           name=merge("iterations", "cutback   ", state%r_cap_by_iterations)))
       call keep_smaller(limit, &
           limit_t(r=(1.0_wp - state%progress)/stepper%prediction%progress, name="phase"))
+      call keep_smaller(limit, limit_t(r=(model%phase(state%phase)%next_kink(state%progress) &
+          - state%progress)/stepper%prediction%progress, name="table"))
       call apply(pack(table, .not. table%above_r_min), model, state, stepper)
     end associate
   end subroutine limit_increment

@@ -51,6 +51,10 @@ contains
       start%load = state%load
       start%load_end = phase%load_end
       where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
+      start%pressure = state%pressure
+      start%pressure_end = phase%pressure_end
+      where (phase%keeps_pressure) start%pressure_end = start%pressure
+      start%x = state%x
       call set_tool_loads(phase, state)
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
@@ -120,7 +124,7 @@ contains
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
           state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
-          model%tolerance%start_search, wrong_side_depth*model%thickness, hit)
+          model%tolerance%start_search, wrong_side_depth*model%largest_thickness(), hit)
       if (.not. hit%found .or. -hit%distance <= depth) cycle
       depth = -hit%distance
       node = model%contact_node(c)

@@ -12,11 +12,14 @@ module dd3_process_predictor
   use dd3_element_rate, only : element_rate
   use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
+  use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
+  use dd3_system_pressure, only : add_pressure_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -85,6 +88,7 @@ contains
         call continuum_tangents(self, model, committed, system)
         call system%profile%add(section_material)
         call assemble_stiffness(system, model, committed)
+        call add_pressure_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
         if (attempt%verdict%outcome /= verdict_converged) return
@@ -113,12 +117,16 @@ contains
 
     integer :: tool
 
-    associate (problem => system%problem, start => committed%start)
-      call nodal_forces(model%load_set, -self%progress*(start%load_end - start%load), &
+    associate (problem => system%problem, start => committed%start, &
+        factor => self%progress*phase%slope(committed%progress))
+      call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
           model%contact_node, self%progress*start%fading, problem%residual)
+      if (size(start%pressure) > 0) call add_pressure_forces(model%pressure_set, &
+          -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + self%progress*start%reaction
       problem%contact_residual = 0.0_wp
-      problem%prescribed = self%progress*phase%displacement
+      problem%prescribed = factor*phase%displacement
+      call add_motions(self, model, phase, committed, problem%prescribed)
       problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
@@ -127,6 +135,33 @@ contains
       end do
     end associate
   end subroutine impose_trial
+
+  !> Add the curved motions to the prescribed displacements of the trial increment, along their
+  !> tangents.
+  subroutine add_motions(self, model, phase, committed, prescribed)
+    type(prediction_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: committed
+    real(wp), intent(inout) :: prescribed(:, :)
+
+    !> Part of the motion over which the tangent is taken.
+    real(wp), parameter :: part = 1.0e-5_wp
+    real(wp) :: here, ahead(3, model%n_node), behind(3, model%n_node)
+    integer :: i
+
+    if (.not. allocated(phase%motion)) return
+    if (size(phase%motion) == 0) return
+    here = phase%factor(committed%progress)
+    ahead = 0.0_wp
+    behind = 0.0_wp
+    do i = 1, size(phase%motion)
+      call motion_displacement(phase%motion(i), model%x0, committed%start%x, here + part, ahead)
+      call motion_displacement(phase%motion(i), model%x0, committed%start%x, here - part, behind)
+    end do
+    prescribed = prescribed + self%progress*phase%slope(committed%progress)/(2.0_wp*part) &
+        *(ahead - behind)
+  end subroutine add_motions
 
   !> Evaluate the continuum tangents, elastic where a point is not taken as plastic.
   subroutine continuum_tangents(self, model, committed, system)

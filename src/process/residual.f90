@@ -5,6 +5,7 @@ module dd3_process_residual
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_process_external, only : evaluate_external
   use dd3_system_contact, only : contact_work_t, evaluate_contact
   use dd3_system_system, only : system_t
   implicit none
@@ -27,6 +28,7 @@ contains
     integer :: c, node, tool
 
     call evaluate_contact(system%contact, model, committed, trial)
+    if (any(abs(trial%pressure) > 0.0_wp)) call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase))
       problem%residual = trial%internal_force - trial%external_force

@@ -4,6 +4,7 @@ module dd3_process_unload_report
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_model_loads, only : nodal_forces
+  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_model, only : model_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
@@ -72,6 +73,8 @@ contains
       if (size(phase%support, 2) == 0) return
       fading = 0.0_wp
       call nodal_forces(model%load_set, start%load_end, model%contact_node, fading, force)
+      if (size(start%pressure_end) > 0) call add_pressure_forces(model%pressure_set, &
+          start%pressure_end, state%x, force)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
         text = "warning: the loads on the sheet are not in equilibrium in phase '"//phase%name// &

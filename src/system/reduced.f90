@@ -27,6 +27,10 @@ module dd3_system_reduced
     real(wp), allocatable :: contact_residual(:, :)
     !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: prescribed(:, :)
+    !> Positions that the nodes with prescribed displacements have to reach, `(3, n_node)`, mm, and
+    !> whether the prediction may not reach them.
+    real(wp), allocatable :: target(:, :)
+    logical :: missed = .false.
     !> Prescribed displacement increments of the tools that are not pressed or have no contact,
     !> `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_prescribed(:, :)
@@ -48,6 +52,7 @@ contains
     integer, intent(in) :: n_row
 
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
+    allocate (self%target(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
         source=0.0_wp)

@@ -1,0 +1,221 @@
+!> Checks of the elements of an `.inp` file: order of the nodes, shape, nodes at the same place,
+!> neighbours. Every error names the element and shows its line.
+module dd3_mesh_inp_check
+  use dd3_base_kinds, only : wp
+  use dd3_base_sorting, only : ascending
+  use dd3_base_text, only : to_text
+  use dd3_mesh_hexahedra, only : corner_shape, neighbours_t
+  use dd3_mesh_inp, only : inp_t
+  use dd3_mesh_layers, only : layers_t, layers_ambiguous, layers_none
+  implicit none
+  private
+  public :: check_shapes, check_places, check_neighbours, check_layers
+
+  !> Scaled Jacobian at or below which a corner has no volume.
+  real(wp), parameter :: least_shape = 1.0e-6_wp
+  !> Nodes nearer than this fraction of the shortest edge are at the same place.
+  real(wp), parameter :: same_place = 1.0e-3_wp
+  !> Direction along which few nodes have the same abscissa.
+  real(wp), parameter :: generic(3) = [0.5377_wp, 0.8123_wp, 0.2257_wp]
+
+  !> Defects of an element.
+  integer, parameter :: sound = 0, mirrored = 1, by_rows = 2, inverted = 3, flat = 4
+  !> Number of elements with the same defect that are named.
+  integer, parameter :: most_named = 3
+
+contains
+
+  !> Report elements whose nodes are in a wrong order or that are inverted or flat; of many with
+  !> the same defect the first ones.
+  subroutine check_shapes(inp, corner)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes at the corners, `(8, n_element)`.
+    integer, intent(in) :: corner(:, :)
+
+    character(len=:), allocatable :: others
+    integer :: defect(size(corner, 2)), kind, e, n
+
+    do e = 1, size(corner, 2)
+      defect(e) = defect_of(inp%x(:, corner(:, e)), corner_shape(inp%x(:, corner(:, e))))
+    end do
+    do kind = mirrored, flat
+      n = 0
+      do e = 1, size(corner, 2)
+        if (defect(e) /= kind) cycle
+        n = n + 1
+        others = ""
+        if (n == most_named .and. count(defect == kind) > n) &
+            others = "; the same holds for "//to_text(count(defect == kind) - n)//" others"
+        call report_shape(inp, corner(:, e), e, kind, others)
+        if (n == most_named) exit
+      end do
+    end do
+  end subroutine check_shapes
+
+  !> Return the defect of an element.
+  pure integer function defect_of(x, shape) result(defect)
+    !> Corners, mm, and their scaled Jacobians.
+    real(wp), intent(in) :: x(3, 8), shape(8)
+
+    integer, parameter :: by_rows_order(8) = [1, 2, 4, 3, 5, 6, 8, 7]
+    real(wp) :: other(8)
+
+    defect = sound
+    if (all(shape > least_shape)) return
+    other = corner_shape(x(:, by_rows_order))
+    if (all(shape < -least_shape)) then
+      defect = mirrored
+    else if (all(other > least_shape) .or. all(other < -least_shape)) then
+      defect = by_rows
+    else
+      defect = merge(inverted, flat, minval(shape) < -least_shape)
+    end if
+  end function defect_of
+
+  !> Report the defect of an element.
+  subroutine report_shape(inp, corner, e, defect, others)
+    type(inp_t), intent(inout) :: inp
+    integer, intent(in) :: corner(8), e, defect
+    !> End of the sentence.
+    character(len=*), intent(in) :: others
+
+    character(len=*), parameter :: form = "nodes 1 to 4 around one face, counter-clockwise "// &
+        "seen from nodes 5 to 8, and 5 to 8 on the opposite face, beside 1 to 4"
+    real(wp) :: shape(8)
+    integer :: worst
+
+    select case (defect)
+    case (mirrored)
+      call report_element(inp, e, "is turned inside out: its nodes are in the order of a "// &
+          "mirrored element"//others, form)
+    case (by_rows)
+      call report_element(inp, e, "has its nodes in a wrong order: row by row instead of "// &
+          "around the faces"//others, form)
+    case default
+      shape = corner_shape(inp%x(:, corner))
+      worst = minloc(shape, dim=1)
+      call report_element(inp, e, trim(merge("is inverted at node", "is flat at node    ", &
+          defect == inverted))//" "//to_text(inp%node_label(corner(worst)))// &
+          ": its scaled Jacobian there is "//to_text(shape(worst), 3)//others, &
+          "a hexahedron with eight convex corners")
+    end select
+  end subroutine report_shape
+
+  !> Report an element.
+  subroutine report_element(inp, e, message, expected)
+    type(inp_t), intent(inout) :: inp
+    integer, intent(in) :: e
+    character(len=*), intent(in) :: message, expected
+
+    call inp%report(inp%element_line(e), "element "//to_text(inp%element_label(e))//" "//message, &
+        expected)
+  end subroutine report_element
+
+  !> Report nodes at the same place: the elements there are not connected.
+  subroutine check_places(inp, corner)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes at the corners, `(8, n_element)`.
+    integer, intent(in) :: corner(:, :)
+
+    real(wp) :: tolerance
+    real(wp), allocatable :: abscissa(:)
+    integer, allocatable :: order(:)
+    integer :: i, j
+
+    tolerance = same_place*shortest_edge(inp%x, corner)
+    abscissa = matmul(generic, inp%x(:, :inp%n_node))
+    order = ascending(abscissa)
+    do i = 1, inp%n_node
+      do j = i + 1, inp%n_node
+        if (abscissa(order(j)) - abscissa(order(i)) > tolerance) exit
+        if (norm2(inp%x(:, order(j)) - inp%x(:, order(i))) > tolerance) cycle
+        call report_places(inp, corner, min(order(i), order(j)), max(order(i), order(j)))
+        if (inp%errors%count > 100) return
+      end do
+    end do
+  end subroutine check_places
+
+  !> Report two nodes at the same place, with an element of the later one.
+  subroutine report_places(inp, corner, first, second)
+    type(inp_t), intent(inout) :: inp
+    integer, intent(in) :: corner(:, :)
+    integer, intent(in) :: first, second
+
+    character(len=:), allocatable :: owner
+    integer :: e
+
+    owner = ""
+    do e = 1, size(corner, 2)
+      if (all(corner(:, e) /= second)) cycle
+      owner = " of element "//to_text(inp%element_label(e))
+      exit
+    end do
+    call inp%report(inp%node_line(second), "node "//to_text(inp%node_label(second))//owner// &
+        " is at the place of node "//to_text(inp%node_label(first)), &
+        "one node at each place, or the elements are not connected")
+  end subroutine report_places
+
+  !> Return the length of the shortest edge that is not zero, mm.
+  pure real(wp) function shortest_edge(x, corner) result(shortest)
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: corner(:, :)
+
+    integer, parameter :: ends(2, 12) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, 5, &
+        1, 5, 2, 6, 3, 7, 4, 8], [2, 12])
+    real(wp) :: length
+    integer :: e, i
+
+    shortest = huge(1.0_wp)
+    do e = 1, size(corner, 2)
+      do i = 1, 12
+        length = norm2(x(:, corner(ends(1, i), e)) - x(:, corner(ends(2, i), e)))
+        if (length > 0.0_wp) shortest = min(shortest, length)
+      end do
+    end do
+  end function shortest_edge
+
+  !> Report faces of three elements, and elements with more than one face in common.
+  subroutine check_neighbours(inp, neighbours)
+    type(inp_t), intent(inout) :: inp
+    type(neighbours_t), intent(in) :: neighbours
+
+    integer :: e, f, i
+
+    do i = 1, size(neighbours%branch, 2)
+      associate (label => inp%element_label(neighbours%branch(:, i)))
+        call report_element(inp, neighbours%branch(3, i), "has a face that elements "// &
+            to_text(label(1))//" and "//to_text(label(2))//" have in common already", &
+            "a face of one element, or of two")
+      end associate
+    end do
+    do e = 1, size(neighbours%element, 2)
+      do f = 2, 6
+        associate (other => neighbours%element(f, e))
+          if (other == 0 .or. other > e) cycle
+          if (all(neighbours%element(:f - 1, e) /= other)) cycle
+          call report_element(inp, e, "overlaps element "//to_text(inp%element_label(other))// &
+              ": they have more than one face in common", "elements side by side")
+        end associate
+        exit
+      end do
+    end do
+  end subroutine check_neighbours
+
+  !> Report a mesh without two faces, or of which it cannot be told where they are.
+  subroutine check_layers(inp, layers)
+    type(inp_t), intent(inout) :: inp
+    type(layers_t), intent(in) :: layers
+
+    if (layers%outcome == layers_none) then
+      call report_element(inp, layers%element, "cannot be in a sheet: the mesh is not extruded "// &
+          "from one face to another, and no two faces are found", &
+          "layers of hexahedra between two faces of the sheet")
+    else if (layers%outcome == layers_ambiguous) then
+      call report_element(inp, layers%element, "has an ambiguous thickness direction: the mesh "// &
+          "is about as long in several directions, and the orders of the nodes differ", &
+          "a sheet that is thin in one direction, or nodes 1 to 4 of all elements on the side "// &
+          "of the same face")
+    end if
+  end subroutine check_layers
+
+end module dd3_mesh_inp_check

@@ -1,0 +1,119 @@
+!> Curved motions of node sets over a phase: rotation about an axis, and the motion of the end
+!> section of a bar that is bent to an arc while its middle line keeps its length: at the angle phi
+!> of the section the arc has the radius L/phi.
+module dd3_model_motions
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : cross
+  implicit none
+  private
+  public :: motion_t, motion_displacement, new_motion
+
+  !> Components of a unit vector below this count as zero.
+  real(wp), parameter :: aligned = 1.0e-12_wp
+
+  !> Motion of a node set in a phase.
+  type :: motion_t
+    integer, allocatable :: node(:)
+    !> Whether the set is the end section of a bent bar.
+    logical :: bends = .false.
+    !> Point on the axis, or on the middle line at the fixed end of the bar, mm; unit vector along
+    !> the axis of the rotation.
+    real(wp) :: point(3) = 0.0_wp, axis(3) = 0.0_wp
+    !> Angle at the start of the phase, 0 for a rotation, and its change over the phase, rad.
+    real(wp) :: start = 0.0_wp, angle = 0.0_wp
+    !> Middle line of the straight bar: its direction, and its length, mm.
+    real(wp) :: along(3) = 0.0_wp, length = 0.0_wp
+    !> Directions that the motion prescribes: all, but for that of the axis if it is x, y or z.
+    logical :: prescribes(3) = .true.
+  end type motion_t
+
+contains
+
+  !> Make the motion of a set.
+  pure subroutine new_motion(self, node, x, bends, values, start)
+    type(motion_t), intent(out) :: self
+    integer, intent(in) :: node(:)
+    !> Initial positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    logical, intent(in) :: bends
+    !> Point, axis, and the angle, degrees, of a bend that at the end of the phase.
+    real(wp), intent(in) :: values(7)
+    !> Angle of a bend at the start of the phase, rad.
+    real(wp), intent(in) :: start
+
+    real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
+    integer :: i
+
+    self%node = node
+    self%bends = bends
+    self%point = values(1:3)
+    self%axis = values(4:6)/norm2(values(4:6))
+    self%prescribes = 1.0_wp - abs(self%axis) > aligned
+    self%angle = degree*values(7)
+    if (.not. bends) return
+    self%start = start
+    self%angle = self%angle - start
+    self%along = [(sum(x(i, node)), i=1, 3)]/real(size(node), wp) - self%point
+    self%along = self%along - dot_product(self%along, self%axis)*self%axis
+    self%length = norm2(self%along)
+    self%along = self%along/max(self%length, tiny(1.0_wp))
+  end subroutine new_motion
+
+  !> Add the displacement since the start of the phase to nodal vectors.
+  pure subroutine motion_displacement(self, x0, x_start, fraction, displacement)
+    type(motion_t), intent(in) :: self
+    !> Positions of the nodes: initial ones, and at the start of the phase, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x0(:, :), x_start(:, :)
+    !> Fraction of the motion.
+    real(wp), intent(in) :: fraction
+    !> `(3, n_node)`, mm.
+    real(wp), intent(inout) :: displacement(:, :)
+
+    real(wp) :: change(3)
+    integer :: i
+
+    do i = 1, size(self%node)
+      associate (node => self%node(i))
+        if (self%bends) then
+          change = bent(self, x0(:, node), self%start + fraction*self%angle) &
+              - bent(self, x0(:, node), self%start)
+        else
+          change = rotated(self, x_start(:, node) - self%point, fraction*self%angle) &
+              - (x_start(:, node) - self%point)
+        end if
+        where (self%prescribes) displacement(:, node) = displacement(:, node) + change
+      end associate
+    end do
+  end subroutine motion_displacement
+
+  !> Return a vector turned about the axis (Rodrigues).
+  pure function rotated(self, vector, angle)
+    type(motion_t), intent(in) :: self
+    real(wp), intent(in) :: vector(3)
+    !> rad.
+    real(wp), intent(in) :: angle
+    real(wp) :: rotated(3)
+
+    rotated = cos(angle)*vector + sin(angle)*cross(self%axis, vector) &
+        + (1.0_wp - cos(angle))*dot_product(self%axis, vector)*self%axis
+  end function rotated
+
+  !> Return the position of a point of the end section of the bent bar.
+  pure function bent(self, x, angle)
+    type(motion_t), intent(in) :: self
+    !> Initial position, mm.
+    real(wp), intent(in) :: x(3)
+    !> rad.
+    real(wp), intent(in) :: angle
+    real(wp) :: bent(3)
+
+    real(wp) :: centre(3), chord(2)
+
+    centre = self%point + self%length*self%along
+    chord = [1.0_wp - angle**2/6.0_wp, 0.5_wp*angle]
+    if (abs(angle) > 1.0e-4_wp) chord = [sin(angle), 1.0_wp - cos(angle)]/angle
+    bent = self%point + self%length*(chord(1)*self%along + chord(2)*cross(self%axis, self%along)) &
+        + rotated(self, x - centre, angle)
+  end function bent
+
+end module dd3_model_motions

@@ -1,0 +1,42 @@
+!> External forces of a trial state: loads, pressures, and forces that fade over the phase.
+module dd3_process_external
+  use dd3_base_kinds, only : wp
+  use dd3_model_loads, only : nodal_forces
+  use dd3_model_model, only : model_t
+  use dd3_model_pressures, only : add_pressure_forces
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: set_loads, evaluate_external
+
+contains
+
+  !> Set the loads and pressures of a trial state from its progress.
+  subroutine set_loads(model, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: trial
+
+    real(wp) :: factor
+
+    factor = model%phase(trial%phase)%factor(trial%progress)
+    associate (start => trial%start)
+      trial%load = start%load + factor*(start%load_end - start%load)
+      trial%pressure = start%pressure + factor*(start%pressure_end - start%pressure)
+      trial%fading = (1.0_wp - trial%progress)*start%fading
+      trial%tool_load = start%tool_load + trial%progress*(start%tool_load_end - start%tool_load)
+    end associate
+  end subroutine set_loads
+
+  !> Evaluate the external forces on the nodes; those of pressures depend on their positions.
+  subroutine evaluate_external(model, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: trial
+
+    call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
+        trial%external_force)
+    trial%external_force = trial%external_force + (1.0_wp - trial%progress)*trial%start%reaction
+    if (size(trial%pressure) > 0) call add_pressure_forces(model%pressure_set, trial%pressure, &
+        trial%x, trial%external_force)
+  end subroutine evaluate_external
+
+end module dd3_process_external
