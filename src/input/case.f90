@@ -44,6 +44,8 @@ module dd3_input_case
     real(wp) :: skew = 0.0_wp
     !> Name of the element type, not yet checked against the element registry.
     character(len=:), allocatable :: element
+    !> Integration points through the thickness of an element with a choice of them.
+    integer :: thickness_points = 0
     !> Position in `case%material`.
     integer :: material = 0
     type(block_t) :: source

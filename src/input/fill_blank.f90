@@ -23,6 +23,7 @@ contains
     call fill_grading(blank%grading_z, block, "grading_z", blank%divisions(3))
     blank%skew = block%number("skew")
     blank%element = block%word("element")
+    blank%thickness_points = nint(block%number("thickness_points"))
   end subroutine fill_blank
 
   !> Set the node abscissae of n elements as given, or uniform.

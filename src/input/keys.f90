@@ -33,6 +33,9 @@ contains
       row("skew", kind_real, "", "0", &
           "interior node lines across y are shifted along x by skew*(lx/nx)*(y/ly - 1/2)"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("thickness_points", kind_integer, "", "7", &
+          "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
+          upper=15.0_wp), &
       row("material", kind_name, "", "", "material", form="material")]
   end function blank_keys
 

@@ -78,7 +78,13 @@ contains
       if (.not. case%blank(b)%source%has("element")) cycle
       call check_known_name(case%blank(b)%element, case%blank(b)%source%at("element"), &
           "element type", name, position, errors)
-      if (position > 0) call new_element(model%element, name(position), error)
+      if (position == 0 .or. .not. case%blank(b)%source%has("thickness_points")) cycle
+      call new_element(model%element, name(position), error, case%blank(b)%thickness_points)
+      if (.not. case%blank(b)%source%given("thickness_points")) cycle
+      if (model%element%n_thickness_point == 0) call errors%push_input( &
+          case%blank(b)%source%at("thickness_points"), "element type '"//trim(name(position))// &
+          "' has a fixed number of points through the thickness", &
+          "this key only with an element that has a choice: solid_shell")
     end do
   end subroutine set_element
 
@@ -150,7 +156,10 @@ contains
     model%material_of = mesh%material
     model%thickness = mesh%thickness
     model%tolerance = new_tolerances(mesh%thickness, mesh%x)
-    call new_element_work(work, model%element)
+    associate (element => model%element)
+      call new_element_work(work, element%n_node, element%n_point, element%n_group, &
+          element%n_enhanced)
+    end associate
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
