@@ -8,6 +8,10 @@
 !> e_33 bilinear between those at the corners of the mid-surface (Betsch & Stein 1995; Hauptmann &
 !> Schweizerhof 1998).
 !>
+!> Directors that tilt in turns to both sides are longer between two tools, and no assumed shear
+!> resists: under pressure across the sheet they would buckle. There the mean of e_33 is that of the
+!> mean director, which does not tilt; `centre_weight` is its weight.
+!>
 !> Internally the element has mid-surface positions m_A = (bottom + top)/2 and directors
 !> d_A = (top - bottom)/2 at its corners.
 module dd3_element_shell_strain
@@ -16,7 +20,7 @@ module dd3_element_shell_strain
       plane_point, shell_work_t
   implicit none
   private
-  public :: natural_strains, strain_operators, natural_rates, initial_stress
+  public :: column_geometry, natural_strains, strain_operators, natural_rates, initial_stress
 
   !> Corners at the ends of the edges eta = -1, eta = 1 (along xi) and xi = -1, xi = 1 (along eta).
   integer, parameter :: edge(2, 4) = reshape([1, 2, 4, 3, 1, 4, 2, 3], [2, 4])
@@ -30,27 +34,41 @@ module dd3_element_shell_strain
 
 contains
 
-  !> Evaluate the geometry of the columns and the natural strains of an increment.
+  !> Evaluate the geometry of the columns.
+  pure subroutine column_geometry(x_committed, x_trial, shell)
+    !> Positions of the nodes, mm.
+    real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
+    !> Gets the geometry.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: mid(3, 4), director(3, 4)
+
+    call split(x_committed, mid, director)
+    call set_columns(shell, mid, director, shell%committed)
+    call split(x_trial, mid, director)
+    call set_columns(shell, mid, director, shell%trial)
+  end subroutine column_geometry
+
+  !> Evaluate the natural strains of an increment; call `column_geometry` first.
   pure subroutine natural_strains(x_committed, x_trial, shell)
     !> Positions of the nodes, mm.
     real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
-    !> Gets geometry and `strain`.
+    !> Holds the weight of the centre; gets `strain`.
     type(shell_work_t), intent(inout) :: shell
 
-    real(wp) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4)
+    real(wp) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4), strain(n_natural, n_column)
     type(columns_t) :: motion
     integer :: q
 
     call split(x_committed, mid, director)
     call split(x_trial - x_committed, u, ud)
-    call set_columns(shell, mid, director, shell%committed)
     call set_columns(shell, u, ud, motion)
-    call set_columns(shell, mid + u, director + ud, shell%trial)
     do q = 1, n_column
-      call in_plane_strains(shell%committed, motion, q, shell%strain(:, q))
-      call in_plane_squares(motion, q, shell%strain(:, q))
+      call in_plane_strains(shell%committed, motion, q, strain(:, q))
+      call in_plane_squares(motion, q, strain(:, q))
     end do
-    call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell%shape, shell%strain)
+    call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
+    shell%strain = strain
   end subroutine natural_strains
 
   !> Evaluate the natural strains of first order of a displacement from the trial configuration.
@@ -71,7 +89,7 @@ contains
     do q = 1, n_column
       call in_plane_strains(shell%trial, motion, q, strain(:, q))
     end do
-    call assumed_strains(mid, director, u, ud, shell%shape, strain)
+    call assumed_strains(mid, director, u, ud, shell, strain)
   end subroutine natural_rates
 
   !> Split nodal vectors into those of the mid-surface and of the directors.
@@ -158,21 +176,24 @@ contains
 
   !> Evaluate the assumed e_33, 2 e_23 and 2 e_13 of an increment. From the middle of the increment
   !> they are exact: (G_i + u,i/2).u,j + (G_j + u,j/2).u,i = 2 e_ij.
-  pure subroutine assumed_strains(mid, director, u, ud, shape, strain)
+  pure subroutine assumed_strains(mid, director, u, ud, shell, strain)
     !> Geometry at the corners, and its increment, mm.
     real(wp), intent(in) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4)
-    !> Shape functions of the plane at the columns.
-    real(wp), intent(in) :: shape(n_corner, n_column)
+    !> Provides shape functions and weight.
+    type(shell_work_t), intent(in) :: shell
     real(wp), intent(inout) :: strain(n_natural, n_column)
 
-    real(wp) :: sampled(4)
+    real(wp) :: sampled(4), excess
     integer :: a, q
 
     do a = 1, n_corner
       sampled(a) = dot_product(director(:, a), ud(:, a))
     end do
+    excess = dot_product(0.25_wp*sum(director, dim=2), 0.25_wp*sum(ud, dim=2)) &
+        - 0.25_wp*sum(sampled)
     do q = 1, n_column
-      strain(thickness_strain, q) = dot_product(shape(:, q), sampled)
+      strain(thickness_strain, q) = dot_product(shell%shape(:, q), sampled) &
+          + shell%centre_weight*excess
     end do
     do a = 1, 4
       sampled(a) = edge_shear(edge(1, a), edge(2, a))
@@ -227,7 +248,7 @@ contains
           call add_row(b(:, j), slope(:, 3 - j), 0, row(:, 8))
           call add_row(b(:, j), slope(:, 3 - j), 12, row(:, 9))
         end do
-        call assumed_operators(mid, director, q, shell%shape(:, q), row)
+        call assumed_operators(mid, director, q, shell, row)
         call to_nodes(row)
       end associate
     end do
@@ -249,19 +270,21 @@ contains
   end subroutine add_row
 
   !> Set the derivatives of the assumed strains at a column, in mid-surface and directors.
-  pure subroutine assumed_operators(mid, director, q, shape, row)
+  pure subroutine assumed_operators(mid, director, q, shell, row)
     real(wp), intent(in) :: mid(3, 4), director(3, 4)
     !> Column.
     integer, intent(in) :: q
-    !> Shape functions of the plane there.
-    real(wp), intent(in) :: shape(4)
+    !> Provides shape functions and weight.
+    type(shell_work_t), intent(in) :: shell
     real(wp), intent(inout) :: row(24, n_natural)
 
-    real(wp) :: tangent(3), normal(3)
+    real(wp) :: tangent(3), normal(3), weight
     integer :: a, i, j
 
+    weight = 0.25_wp*shell%centre_weight
     do a = 1, n_corner
-      row(10 + 3*a:12 + 3*a, thickness_strain) = shape(a)*director(:, a)
+      row(10 + 3*a:12 + 3*a, thickness_strain) = (shell%shape(a, q) - weight)*director(:, a) &
+          + 0.25_wp*weight*sum(director, dim=2)
     end do
     do a = 1, 4
       i = 3*edge(1, a)
@@ -300,9 +323,10 @@ contains
     !> Node by node, N/mm.
     real(wp), intent(out) :: factor(8, 8)
 
-    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), t
+    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), t, weight
     integer :: a, b, i, j, k, l, q
 
+    weight = 0.25_wp*shell%centre_weight
     mm = 0.0_wp
     md = 0.0_wp
     dd = 0.0_wp
@@ -315,7 +339,8 @@ contains
             md(:, b) = md(:, b) + slope(:, j)*(n(k + 1)*slope(b, j) + n(8)*slope(b, 3 - j))
             dd(:, b) = dd(:, b) + slope(:, j)*(n(k + 2)*slope(b, j) + n(9)*slope(b, 3 - j))
           end do
-          dd(b, b) = dd(b, b) + n(thickness_strain)*shell%shape(b, q)
+          dd(b, b) = dd(b, b) + n(thickness_strain)*(shell%shape(b, q) - weight)
+          dd(:, b) = dd(:, b) + 0.25_wp*weight*n(thickness_strain)
         end do
         do a = 1, 4
           i = edge(1, a)

@@ -37,6 +37,8 @@ module dd3_element_shell_work
     real(wp) :: shape(n_corner, n_column), slope(n_corner, 2, n_column)
     !> Committed and trial geometry of the columns, and their increment.
     type(columns_t) :: committed, trial
+    !> Weight of the mean director in the mean thickness strain, 0 to 1.
+    real(wp) :: centre_weight = 0.0_wp
     !> Coefficients of the natural strains: `strain(n_natural,n_column)`.
     real(wp) :: strain(n_natural, n_column)
     !> Their derivatives in the nodal positions, 1/mm: `operator(24,n_natural,n_column)`.

@@ -29,7 +29,8 @@ module dd3_element_work
     real(wp), allocatable :: strain(:, :)
     !> Trial material axes, as columns, in the global frame: `rotation(3,3,n_point)`.
     real(wp), allocatable :: rotation(:, :, :)
-    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: `stress(6,n_point)`.
+    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: the committed one before
+    !> `deform` and `linearise`, then that of the trial configuration: `stress(6,n_point)`.
     real(wp), allocatable :: stress(:, :)
     !> d stress/d strain, MPa, material frame, set by the caller: `tangent(6,6,n_point)`.
     real(wp), allocatable :: tangent(:, :, :)

@@ -11,8 +11,8 @@ program benchmark_element
   use dd3_element_work, only : element_work_t, new_element_work
   implicit none
 
-  !> The best of several rounds of many calls counts.
-  integer, parameter :: rounds = 5, calls = 5000
+  !> The best of many short rounds counts, which other programs on the machine disturb least.
+  integer, parameter :: rounds = 500, calls = 20
   character(len=16), allocatable :: name(:)
   integer :: i
 

@@ -225,6 +225,7 @@ contains
 
     work%x_committed(:, :) = x_committed
     work%x_trial(:, :) = x_trial
+    work%stress(:, :) = start
     call element%deform(element, rotation_committed, work, verdict)
     ok = verdict%outcome == verdict_converged
     if (.not. ok) return
