@@ -147,6 +147,8 @@ contains
     type(element_length_t) :: length
     type(location_t) :: at
 
+    ! The measured excess is that of hex8.
+    if (model%element%name /= "hex8") return
     length = measure_elements(model)
     if (length%n_long == 0) return
     if (size(case%blank) > 0) at = case%blank(1)%source%at("divisions")

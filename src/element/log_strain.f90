@@ -13,7 +13,7 @@ module dd3_element_log_strain
   use dd3_linalg_tensor, only : symmetric_eigen
   implicit none
   private
-  public :: element_strain, polar_increment
+  public :: element_strain, polar_increment, rotate_axes, stretch_of_green
 
   !> Largest Frobenius norm of e for the series.
   real(wp), parameter :: series_limit = 0.03_wp
@@ -49,6 +49,7 @@ contains
     real(wp), intent(out) :: rotation(3, 3)
 
     real(wp) :: green(6), h(3, 3), inverse_stretch(6)
+    logical :: positive
     integer :: i
 
     h = f
@@ -61,14 +62,47 @@ contains
     green(4) = 0.5_wp*(h(2, 3) + h(3, 2) + h(1, 2)*h(1, 3) + h(2, 2)*h(2, 3) + h(3, 2)*h(3, 3))
     green(5) = 0.5_wp*(h(3, 1) + h(1, 3) + h(1, 3)*h(1, 1) + h(2, 3)*h(2, 1) + h(3, 3)*h(3, 1))
     green(6) = 0.5_wp*(h(1, 2) + h(2, 1) + h(1, 1)*h(1, 2) + h(2, 1)*h(2, 2) + h(3, 1)*h(3, 2))
-    if (green(1)**2 + green(2)**2 + green(3)**2 &
-        + 2.0_wp*(green(4)**2 + green(5)**2 + green(6)**2) <= series_limit**2) then
+    if (is_small(green)) then
       call small_stretch(green, strain, inverse_stretch)
     else
-      call large_stretch(f, strain, inverse_stretch)
+      call large_stretch(matmul(transpose(f), f), strain, inverse_stretch, positive)
     end if
     call multiply(f, inverse_stretch, rotation)
   end subroutine polar_increment
+
+  !> Evaluate ln U and U^-1 of a Green strain that need not belong to a deformation gradient.
+  pure subroutine stretch_of_green(green, strain, inverse_stretch, positive)
+    !> Green strain e = (C-I)/2, plain components 11 22 33 23 31 12.
+    real(wp), intent(in) :: green(6)
+    !> Logarithmic strain and U^-1, plain components; undefined if not `positive`.
+    real(wp), intent(out) :: strain(6), inverse_stretch(6)
+    !> Whether C is positive definite.
+    logical, intent(out) :: positive
+
+    real(wp) :: c(3, 3)
+    integer :: i
+
+    positive = .true.
+    if (is_small(green)) then
+      call small_stretch(green, strain, inverse_stretch)
+      return
+    end if
+    c = 2.0_wp*reshape([green(1), green(6), green(5), green(6), green(2), green(4), &
+        green(5), green(4), green(3)], [3, 3])
+    do i = 1, 3
+      c(i, i) = c(i, i) + 1.0_wp
+    end do
+    call large_stretch(c, strain, inverse_stretch, positive)
+  end subroutine stretch_of_green
+
+  !> Whether the series hold for a Green strain.
+  pure logical function is_small(green)
+    !> Plain components.
+    real(wp), intent(in) :: green(6)
+
+    is_small = green(1)**2 + green(2)**2 + green(3)**2 &
+        + 2.0_wp*(green(4)**2 + green(5)**2 + green(6)**2) <= series_limit**2
+  end function is_small
 
   !> Evaluate ln U and U^-1 by series in X = tanh E.
   pure subroutine small_stretch(green, strain, inverse_stretch)
@@ -105,21 +139,24 @@ contains
     inverse_stretch = s - inner
   end subroutine small_stretch
 
-  !> Evaluate ln U and U^-1 from the eigenvalues of C = F^T F.
-  pure subroutine large_stretch(f, strain, inverse_stretch)
-    !> Deformation gradient.
-    real(wp), intent(in) :: f(3, 3)
+  !> Evaluate ln U and U^-1 from the eigenvalues of C = U^2.
+  pure subroutine large_stretch(c, strain, inverse_stretch, positive)
+    real(wp), intent(in) :: c(3, 3)
     !> Logarithmic strain, plain components.
     real(wp), intent(out) :: strain(6)
     !> U^-1, plain components.
     real(wp), intent(out) :: inverse_stretch(6)
+    !> Whether C is positive definite; otherwise the results are zero.
+    logical, intent(out) :: positive
 
     real(wp) :: values(3), vectors(3, 3), dyad(6)
     integer :: k
 
-    call symmetric_eigen(matmul(transpose(f), f), values, vectors)
+    call symmetric_eigen(c, values, vectors)
+    positive = all(values > 0.0_wp)
     strain = 0.0_wp
     inverse_stretch = 0.0_wp
+    if (.not. positive) return
     do k = 1, 3
       dyad(1:3) = vectors(:, k)*vectors(:, k)
       dyad(4:6) = vectors([2, 3, 1], k)*vectors([3, 1, 2], k)

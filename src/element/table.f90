@@ -1,9 +1,12 @@
-!> The table that describes an element type: nodes, faces, integration points, shape functions, and
-!> which points share a mean dilatation. The kernels work from it for any number of nodes, points
-!> and groups. Shape functions and Gauss rules: Zienkiewicz & Taylor, The Finite Element Method,
-!> 1989, chap. 7.
+!> The table that describes an element type: nodes, faces, integration points, shape functions,
+!> which points share a mean dilatation, and the kernels of its formulation. Those of the mean
+!> dilatation (mean_dilatation.f90) work from the table for any number of nodes, points and groups;
+!> an element with another formulation sets its own. Shape functions and Gauss rules: Zienkiewicz &
+!> Taylor, The Finite Element Method, 1989, chap. 7.
 module dd3_element_table
   use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_t
+  use dd3_element_work, only : element_work_t
   implicit none
   private
   public :: element_t, new_table, shape_interface, complete_table, set_table_point
@@ -25,6 +28,10 @@ module dd3_element_table
     integer :: n_pair = 0
     !> Number of faces, and of nodes on each.
     integer :: n_face = 0, n_face_node = 0
+    !> Number of integration points through the thickness if the input may choose it, 0 otherwise.
+    integer :: n_thickness_point = 0
+    !> Number of parameters of the enhanced strain, internal to each element.
+    integer :: n_enhanced = 0
     !> Cell type of the VTK file format.
     integer :: vtk_type = 0
     !> Natural coordinates of the nodes: `node(3,n_node)`.
@@ -54,6 +61,25 @@ module dd3_element_table
     real(wp), allocatable :: face_weight(:)
     !> Our node at each place of VTK's order: `vtk_order(n_node)`.
     integer, allocatable :: vtk_order(:)
+
+    ! Kernels. An update of an element calls `deform`, the material at every point, `set_stress`,
+    ! `evaluate_force` and, for Newton's method, `evaluate_stiffness`; the predictor calls
+    ! `linearise`, `set_stress` and `evaluate_stiffness`, or `linearise` and `evaluate_rate`.
+
+    !> Evaluate strain increments and trial material axes from the positions and the enhanced
+    !> parameters of the workspace.
+    procedure(deform_interface), pointer, nopass :: deform => null()
+    !> Do the same at the committed positions, without an increment.
+    procedure(deform_interface), pointer, nopass :: linearise => null()
+    !> Transform the stresses of the workspace to the form that forces and stiffness need.
+    procedure(evaluate_interface), pointer, nopass :: set_stress => null()
+    !> Evaluate the internal forces.
+    procedure(evaluate_interface), pointer, nopass :: evaluate_force => null()
+    !> Evaluate the stiffness with the tangents of the workspace.
+    procedure(evaluate_interface), pointer, nopass :: evaluate_stiffness => null()
+    !> Evaluate first-order strain and rotation increments of a trial displacement and of the
+    !> workspace's enhanced parameters.
+    procedure(rate_interface), pointer, nopass :: evaluate_rate => null()
   end type element_t
 
   abstract interface
@@ -67,6 +93,37 @@ module dd3_element_table
       !> Their derivatives: `dshape(3,n_node)`.
       real(wp), intent(out) :: dshape(:, :)
     end subroutine shape_interface
+
+    !> Evaluate the deformation of an element.
+    subroutine deform_interface(element, rotation_committed, work, verdict)
+      import :: element_t, element_work_t, verdict_t, wp
+      type(element_t), intent(in) :: element
+      !> Committed material axes, as columns: `(3,3,n_point)`.
+      real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+      !> Holds the positions and the enhanced parameters; gets `strain` and `rotation`.
+      type(element_work_t), intent(inout) :: work
+      !> Retry, with the point, if the element is turned inside out.
+      type(verdict_t), intent(out) :: verdict
+    end subroutine deform_interface
+
+    !> Evaluate results from data, both of the workspace.
+    subroutine evaluate_interface(element, work)
+      import :: element_t, element_work_t
+      type(element_t), intent(in) :: element
+      type(element_work_t), intent(inout) :: work
+    end subroutine evaluate_interface
+
+    !> Evaluate increments of first order.
+    subroutine rate_interface(element, du, rotation_committed, work)
+      import :: element_t, element_work_t, wp
+      type(element_t), intent(in) :: element
+      !> Trial displacement, mm.
+      real(wp), intent(in) :: du(:, :)
+      !> Committed material axes, as columns: `(3,3,n_point)`.
+      real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+      !> Gets `strain_increment` and `rotation_increment`.
+      type(element_work_t), intent(inout) :: work
+    end subroutine rate_interface
   end interface
 
 contains

@@ -1,7 +1,7 @@
 !> The workspace of the element kernels, one per thread, reused for every element.
 module dd3_element_work
   use dd3_base_kinds, only : wp
-  use dd3_element_table, only : element_t
+  use dd3_element_shell_work, only : new_shell_work, shell_work_t
   implicit none
   private
   public :: element_work_t, new_element_work
@@ -29,15 +29,26 @@ module dd3_element_work
     real(wp), allocatable :: strain(:, :)
     !> Trial material axes, as columns, in the global frame: `rotation(3,3,n_point)`.
     real(wp), allocatable :: rotation(:, :, :)
-    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: `stress(6,n_point)`.
+    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: the committed one before
+    !> `deform` and `linearise`, then that of the trial configuration: `stress(6,n_point)`.
     real(wp), allocatable :: stress(:, :)
     !> d stress/d strain, MPa, material frame, set by the caller: `tangent(6,6,n_point)`.
     real(wp), allocatable :: tangent(:, :, :)
+    !> Parameters of the enhanced strain in this increment, set by the caller: `(n_enhanced)`.
+    real(wp), allocatable :: enhanced(:)
     !> Internal forces, N: `force(3,n_node)`.
     real(wp), allocatable :: force(:, :)
+    !> Forces conjugate to the enhanced parameters, N mm, zero in equilibrium: `(n_enhanced)`.
+    real(wp), allocatable :: enhanced_force(:)
     !> d force/d displacement, N/mm: `stiffness(3,3,n_node,n_node)`; the 3x3 block of row node a and
-    !> column node b is `stiffness(:,:,b,a)`.
+    !> column node b is `stiffness(:,:,b,a)`. Enhanced parameters are condensed: they follow the
+    !> displacement as -(enhanced_offset + enhanced_gain : du).
     real(wp), allocatable :: stiffness(:, :, :, :)
+    !> Set with the stiffness: `(n_enhanced)` and `(n_enhanced,3,n_node)`, 1/mm.
+    real(wp), allocatable :: enhanced_offset(:), enhanced_gain(:, :, :)
+    !> Nodal forces, N, that vanish with the enhanced parameters' own: to be subtracted from the
+    !> internal forces beside the condensed stiffness, `(3,n_node)`.
+    real(wp), allocatable :: condensed_force(:, :)
     !> First-order strain increment of a trial displacement, with the mean dilatation, Kelvin,
     !> material frame: `strain_increment(6,n_point)`.
     real(wp), allocatable :: strain_increment(:, :)
@@ -56,31 +67,34 @@ module dd3_element_work
     !> Internal: volume integrals of the mean stress and of a ninth of the moduli's trace, N mm:
     !> `(n_group)`.
     real(wp), allocatable :: mean_stress_integral(:), bulk_integral(:)
+    !> Internal to the solid-shell.
+    type(shell_work_t) :: shell
   end type element_work_t
 
 contains
 
   !> Allocate the workspace for an element type.
-  subroutine new_element_work(self, element)
+  subroutine new_element_work(self, n_node, n_point, n_group, n_enhanced)
     type(element_work_t), intent(out) :: self
-    type(element_t), intent(in) :: element
+    !> Sizes as in `element_t`.
+    integer, intent(in) :: n_node, n_point, n_group, n_enhanced
 
-    integer :: n, p, g
-
-    n = element%n_node
-    p = element%n_point
-    g = element%n_group
-    allocate (self%x_committed(3, n), self%x_trial(3, n))
-    allocate (self%gradient(n, 3, p), self%mean_gradient(n, 3, g))
-    allocate (self%weight(p), self%weight_committed(p), self%volume(g), self%volume_committed(g))
-    allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))
-    allocate (self%rotation(3, 3, p), self%stress(6, p), self%tangent(6, 6, p))
-    allocate (self%force(3, n), self%stiffness(3, 3, n, n))
-    allocate (self%strain_increment(6, p), self%rotation_increment(p))
-    allocate (self%jacobian(3, p, 3), self%jacobian_committed(3, p, 3), self%cauchy(3, 3, p))
-    allocate (self%contracted(3, 3, n, 3, p))
-    allocate (self%row_factor(n, 3, g), self%column_factor(n, 3, g))
-    allocate (self%mean_stress_integral(g), self%bulk_integral(g))
+    associate (n => n_node, p => n_point, g => n_group, m => n_enhanced)
+      allocate (self%x_committed(3, n), self%x_trial(3, n))
+      allocate (self%gradient(n, 3, p), self%mean_gradient(n, 3, g))
+      allocate (self%weight(p), self%weight_committed(p), self%volume(g), self%volume_committed(g))
+      allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))
+      allocate (self%rotation(3, 3, p), self%stress(6, p), self%tangent(6, 6, p))
+      allocate (self%force(3, n), self%stiffness(3, 3, n, n))
+      allocate (self%strain_increment(6, p), self%rotation_increment(p))
+      allocate (self%jacobian(3, p, 3), self%jacobian_committed(3, p, 3), self%cauchy(3, 3, p))
+      allocate (self%contracted(3, 3, n, 3, p))
+      allocate (self%row_factor(n, 3, g), self%column_factor(n, 3, g))
+      allocate (self%mean_stress_integral(g), self%bulk_integral(g))
+      allocate (self%enhanced(m), self%enhanced_force(m), self%enhanced_offset(m), source=0.0_wp)
+      allocate (self%enhanced_gain(m, 3, n), self%condensed_force(3, n), source=0.0_wp)
+      if (m > 0) call new_shell_work(self%shell, p)
+    end associate
   end subroutine new_element_work
 
 end module dd3_element_work

@@ -61,6 +61,7 @@ module dd3_input_block
   contains
     procedure :: find
     procedure :: has
+    procedure :: given
     procedure :: word
     procedure :: number
     procedure :: numbers
@@ -133,6 +134,15 @@ contains
     has = i > 0
     if (has) has = self%entry(i)%valid
   end function has
+
+  !> Whether a key has a valid value that is not its default.
+  pure logical function given(self, key)
+    class(block_t), intent(in) :: self
+    character(len=*), intent(in) :: key
+
+    given = self%has(key)
+    if (given) given = .not. self%entry(self%find(key))%defaulted
+  end function given
 
   !> Return the first word of a key's value; empty if it has no valid value.
   pure function word(self, key)

@@ -51,6 +51,8 @@ module dd3_input_case
     real(wp) :: skew = 0.0_wp
     !> Name of the element type, not yet checked against the element registry.
     character(len=:), allocatable :: element
+    !> Integration points through the thickness of an element with a choice of them.
+    integer :: thickness_points = 0
     !> Position in `case%material`.
     integer :: material = 0
     type(block_t) :: source
@@ -72,6 +74,8 @@ module dd3_input_case
     character(len=:), allocatable :: file
     !> Name of the element type, not yet checked against the element registry.
     character(len=:), allocatable :: element
+    !> Integration points through the thickness of an element with a choice of them.
+    integer :: thickness_points = 0
     !> Position in `case%material` for the elements of no set below; 0 for none.
     integer :: material = 0
     type(material_of_t), allocatable :: material_of(:)

@@ -186,21 +186,12 @@ contains
     character(len=:), allocatable :: key
 
     key = "r_min"
-    if (.not. given(block, key)) key = "r_max"
-    if (.not. given(block, key)) return
+    if (.not. block%given(key)) key = "r_max"
+    if (.not. block%given(key)) return
     if (limits%r_min%value <= limits%r_max%value) return
     call errors%push_input(block%at(key), "r_min = "//to_text(limits%r_min%value)// &
         " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max")
   end subroutine check_limits
-
-  !> Whether a key has a valid value that is not its default.
-  pure logical function given(block, key)
-    type(block_t), intent(in) :: block
-    character(len=*), intent(in) :: key
-
-    given = block%has(key)
-    if (given) given = .not. block%entry(block%find(key))%defaulted
-  end function given
 
   !> Check the interval or the travels at which fields are written.
   subroutine check_output(case, block, errors)

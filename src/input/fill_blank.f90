@@ -25,6 +25,7 @@ contains
     call fill_grading(blank%grading_z, block, "grading_z", blank%divisions(3))
     blank%skew = block%number("skew")
     blank%element = block%word("element")
+    blank%thickness_points = nint(block%number("thickness_points"))
     blank%radius = block%number("radius")
     blank%portion = block%word("portion")
     if (block%has("radius")) blank%size = [blank%radius, blank%radius, block%number("thickness")]
@@ -41,6 +42,7 @@ contains
     mesh%source = block
     mesh%file = resolve_path(block%folder, block%word("file"))
     mesh%element = block%word("element")
+    mesh%thickness_points = nint(block%number("thickness_points"))
     allocate (mesh%material_of(count([(is_material_of(block, i), i=1, block%n_entry)])))
     n = 0
     do i = 1, block%n_entry

@@ -40,6 +40,9 @@ contains
       row("skew", kind_real, "", "0", &
           "interior node lines across y are shifted along x by skew*(lx/nx)*(y/ly - 1/2)"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("thickness_points", kind_integer, "", "7", &
+          "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
+          upper=15.0_wp), &
       row("material", kind_name, "", "", "material", form="material")]
   end function blank_keys
 
@@ -50,6 +53,9 @@ contains
       row("file", kind_text, "", "", "mesh of hexahedra as an Abaqus or CalculiX .inp file; "// &
           "utils/mesh.py makes one of other formats"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("thickness_points", kind_integer, "", "7", &
+          "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
+          upper=15.0_wp), &
       row("material", kind_name, "", "-", "material of the elements without material_of", &
           form="material"), &
       row("material_of", kind_other, "", "-", "material of the elements of a set", &

@@ -78,17 +78,22 @@ contains
     integer :: i
 
     do i = 1, size(case%blank)
-      call set_from(case%blank(i)%source, case%blank(i)%element)
+      associate (blank => case%blank(i))
+        call set_from(blank%source, blank%element, blank%thickness_points)
+      end associate
     end do
     do i = 1, size(case%mesh)
-      call set_from(case%mesh(i)%source, case%mesh(i)%element)
+      associate (mesh => case%mesh(i))
+        call set_from(mesh%source, mesh%element, mesh%thickness_points)
+      end associate
     end do
 
   contains
 
-    subroutine set_from(block, element)
+    subroutine set_from(block, element, thickness_points)
       type(block_t), intent(in) :: block
       character(len=*), intent(in) :: element
+      integer, intent(in) :: thickness_points
 
       type(error_t), allocatable :: error
       character(len=16), allocatable :: name(:)
@@ -97,7 +102,13 @@ contains
       if (.not. block%has("element")) return
       name = element_names()
       call check_known_name(element, block%at("element"), "element type", name, position, errors)
-      if (position > 0) call new_element(model%element, name(position), error)
+      if (position == 0 .or. .not. block%has("thickness_points")) return
+      call new_element(model%element, name(position), error, thickness_points)
+      if (.not. block%given("thickness_points")) return
+      if (model%element%n_thickness_point == 0) call errors%push_input( &
+          block%at("thickness_points"), "element type '"//trim(name(position))// &
+          "' has a fixed number of points through the thickness", &
+          "this key only with an element that has a choice: solid_shell")
     end subroutine set_from
 
   end subroutine set_element
@@ -184,7 +195,10 @@ contains
     model%material_of = mesh%material
     call set_thickness(model, mesh%thickness)
     model%tolerance = new_tolerances(model%thickness, mesh%x)
-    call new_element_work(work, model%element)
+    associate (element => model%element)
+      call new_element_work(work, element%n_node, element%n_point, element%n_group, &
+          element%n_enhanced)
+    end associate
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle

@@ -70,6 +70,9 @@ module dd3_model_state
     real(wp), allocatable :: internal_variables(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
+    !> Parameters of the elements' enhanced strains in the increment, `(n_enhanced, n_element)`;
+    !> zero in the committed state.
+    real(wp), allocatable :: enhanced(:, :)
     !> Whether the last increment was plastic, `(n_point, n_element)`.
     logical, allocatable :: plastic(:, :)
     !> Contact forces of the candidates, sheet on tool, `(3, n_contact)`, N.
@@ -155,6 +158,7 @@ contains
       allocate (self%stress(6, n_point, n), source=0.0_wp)
       allocate (self%internal_variables(model%n_internal, n_point, n), source=0.0_wp)
       allocate (self%orientation(3, 3, n_point, n), source=0.0_wp)
+      allocate (self%enhanced(model%element%n_enhanced, n), source=0.0_wp)
       allocate (self%plastic(n_point, n), source=.false.)
     end associate
   end subroutine new_sheet

@@ -79,6 +79,7 @@ contains
     call visitor%reals("internal_variables", size(state%internal_variables), &
         state%internal_variables)
     call visitor%reals("orientation", size(state%orientation), state%orientation)
+    call visitor%reals("enhanced", size(state%enhanced), state%enhanced)
     call visitor%logicals("plastic", size(state%plastic), state%plastic)
     call visitor%reals("lambda", size(state%lambda), state%lambda)
     call visitor%integers("status", size(state%status), state%status)

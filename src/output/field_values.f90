@@ -1,6 +1,6 @@
 !> Values of an output field at the nodes and at the cells. A field of the integration points is
 !> extrapolated to the nodes of each element and averaged over the elements that share a node; its
-!> value at a cell is the mean of its points.
+!> value at a cell is the mean of its points, by their quadrature weights.
 module dd3_output_field_values
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
@@ -53,9 +53,10 @@ contains
 
     real(wp), allocatable :: value(:, :)
     integer, allocatable :: sharing(:)
-    real(wp) :: weight
+    real(wp) :: weight, whole
     integer :: n, e, p, a, node
 
+    whole = sum(model%element%weight)
     n = model%element%n_point
     allocate (value(field%components, n*model%n_element))
     if (field%variable > 0) then
@@ -65,8 +66,10 @@ contains
     end if
     call count_sharing(model, sharing)
     do e = 1, model%n_element
-      cell(:, e) = sum(value(:, (e - 1)*n + 1:e*n), dim=2)/real(n, wp)
+      cell(:, e) = 0.0_wp
       do p = 1, n
+        weight = model%element%weight(p)/whole
+        cell(:, e) = cell(:, e) + weight*value(:, (e - 1)*n + p)
         do a = 1, model%element%n_node
           node = model%connectivity(a, e)
           weight = model%element%extrapolation(a, p)/real(sharing(node), wp)

@@ -46,6 +46,8 @@ module dd3_process_attempt
     real(wp) :: worst_residual = 0.0_wp
     !> Increment of the contact forces in the last iteration, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda_increment(:, :)
+    !> Increment of the parameters of the enhanced strains, `(n_enhanced, n_element)`.
+    real(wp), allocatable :: enhanced_increment(:, :)
   end type correction_t
 
   !> Limit, course and outcome of an attempt.

@@ -15,6 +15,7 @@ module dd3_process_corrector
   use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
+  use dd3_system_enhanced, only : enhanced_square, subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : contact_work_t, not_held
   use dd3_system_pressure, only : add_pressure_stiffness
@@ -103,6 +104,7 @@ contains
         if (phase%newton%damping .and. is_lost(correction%criterion)) exit
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
+        call subtract_condensed(system%enhanced, system%problem%residual)
         call add_pressure_stiffness(system, model, trial)
         call prescribe_missed(phase%prescribed, trial, system%problem)
         call system%profile%add(section_assembly)
@@ -241,6 +243,7 @@ contains
     logical :: forces_met, outside
 
     call residual_norm(model, trial, system, attempt%correction, sum_of_squares)
+    sum_of_squares = sum_of_squares + enhanced_square(system%enhanced, model%thickness)
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction, contact => system%contact, &
         tool_residual => system%problem%tool_residual)

@@ -58,6 +58,7 @@ contains
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
+      trial%enhanced = r*prediction%enhanced
       trial%lambda = committed%lambda + r*prediction%lambda
       trial%tool_displacement = committed%tool_displacement + r*prediction%tool_displacement
       call set_loads(model, trial)
@@ -137,6 +138,7 @@ contains
     real(wp) :: factor
 
     committed = trial
+    committed%enhanced = 0.0_wp
     factor = r_cap_factor
     associate (attempt => stepper%attempt, newton => model%phase(trial%phase)%newton)
       if (newton%target_iterations > 0 .and. &

@@ -8,6 +8,7 @@ module dd3_process_newton_step
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
+  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_system, only : system_t
   implicit none
@@ -40,11 +41,14 @@ contains
     associate (correction => attempt%correction, phase => model%phase(trial%phase))
       call contact_force_increment(model, phase, system%contact, system%stiffness, &
           system%problem, correction%lambda_increment)
+      correction%enhanced_increment = enhanced_response(system%enhanced, model, &
+          system%problem%solution) - system%enhanced%offset
       if (phase%newton%damping) then
         gradient = displacement_gradient(model, trial, system%problem%solution)
         if (gradient > largest_gradient) then
           system%problem%solution = largest_gradient/gradient*system%problem%solution
           correction%lambda_increment = largest_gradient/gradient*correction%lambda_increment
+          correction%enhanced_increment = largest_gradient/gradient*correction%enhanced_increment
           correction%damped = correction%damped + 1
         end if
       end if
@@ -123,6 +127,7 @@ contains
       correction%damped = correction%damped + 1
       if (attempt%verdict%iterations == 1) then
         trial%x = committed%x + reduction*(trial%x - committed%x)
+        trial%enhanced = reduction*trial%enhanced
         trial%lambda = committed%lambda + reduction*(trial%lambda - committed%lambda)
         return
       end if
@@ -143,6 +148,7 @@ contains
 
     associate (solution => system%problem%solution)
       trial%x = trial%x + factor*reshape(solution(:3*model%n_node), [3, model%n_node])
+      trial%enhanced = trial%enhanced + factor*attempt%correction%enhanced_increment
       trial%lambda = trial%lambda + factor*attempt%correction%lambda_increment
       do tool = 1, model%n_tool
         row = model%tool_row(tool)

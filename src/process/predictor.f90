@@ -8,8 +8,6 @@ module dd3_process_predictor
   use dd3_base_clock, only : section_material, section_assembly, section_contact
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
-  use dd3_element_kinematics, only : element_gradients
-  use dd3_element_rate, only : element_rate
   use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
@@ -18,6 +16,7 @@ module dd3_process_predictor
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
   use dd3_system_contact, only : predictor_contact
+  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_pressure, only : add_pressure_stiffness
   use dd3_system_reduced, only : contact_force_increment
@@ -33,6 +32,8 @@ module dd3_process_predictor
     real(wp) :: progress = 0.0_wp
     !> Displacement of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
+    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
+    real(wp), allocatable :: enhanced(:, :)
     !> Increment of the contact forces, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
     !> Displacement of the tools, `(3, n_tool)`, mm.
@@ -59,6 +60,7 @@ contains
 
     n_point = model%element%n_point
     allocate (self%displacement(3, model%n_node), self%lambda(3, model%n_contact), source=0.0_wp)
+    allocate (self%enhanced(model%element%n_enhanced, model%n_element), source=0.0_wp)
     allocate (self%tool_displacement(3, model%n_tool), source=0.0_wp)
     allocate (self%strain(6, n_point, model%n_element), source=0.0_wp)
     allocate (self%rotation(n_point, model%n_element), source=0.0_wp)
@@ -95,6 +97,7 @@ contains
         call system%profile%start()
         self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), &
             [3, model%n_node])
+        self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, switched)
         if (.not. switched) exit
@@ -194,10 +197,13 @@ contains
     integer :: e
 
     do e = 1, model%n_element
-      associate (nodes => model%connectivity(:, e), work => system%element(1))
+      associate (nodes => model%connectivity(:, e), work => system%element(1), &
+          element => model%element)
         work%x_committed(:, :) = committed%x(:, nodes)
-        call element_gradients(model%element, work%x_committed, work, verdict)
-        call element_rate(model%element, self%displacement(:, nodes), &
+        work%enhanced(:) = self%enhanced(:, e)
+        work%stress(:, :) = committed%stress(:, :, e)
+        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+        call element%evaluate_rate(element, self%displacement(:, nodes), &
             committed%orientation(:, :, :, e), work)
         self%strain(:, :, e) = work%strain_increment
         self%rotation(:, e) = work%rotation_increment

@@ -7,14 +7,11 @@ module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_log_strain, only : element_strain
-  use dd3_element_kinematics, only : element_gradients, element_kinematics
-  use dd3_element_stiffness, only : element_stiffness
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_system_enhanced, only : store_condensation
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -40,7 +37,7 @@ contains
 
     verdict%outcome = verdict_converged
     trial%internal_force = 0.0_wp
-    if (with_stiffness) call clear(system%stiffness)
+    if (with_stiffness) call clear_stiffness(system)
     !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
     !$omp& default(shared) private(mine, colour, k, e, batch, thread)
     thread = 1
@@ -53,6 +50,7 @@ contains
           call update_element(model, committed, trial, e, system%element(thread), &
               system%tangent(:, :, :, e), mine)
           if (mine%outcome == verdict_converged) then
+            system%enhanced%residual(:, e) = system%element(thread)%enhanced_force
             if (with_stiffness) call add_stiffness(system, model, e, system%element(thread))
           else
             !$omp critical (failed_element)
@@ -80,13 +78,15 @@ contains
 
     integer :: p, a
 
-    associate (nodes => model%connectivity(:, e), material => model%material(model%material_of(e)))
+    associate (nodes => model%connectivity(:, e), element => model%element, &
+        material => model%material(model%material_of(e)))
       work%x_committed(:, :) = committed%x(:, nodes)
       work%x_trial(:, :) = trial%x(:, nodes)
-      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
+      work%enhanced(:) = trial%enhanced(:, e)
+      work%stress(:, :) = committed%stress(:, :, e)
+      call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
-      call element_strain(model%element, committed%orientation(:, :, :, e), work)
       do p = 1, model%element%n_point
         associate (n => material%n_internal)
           call material%update(committed%stress(:, p, e), committed%internal_variables(:n, p, e), &
@@ -99,8 +99,8 @@ contains
       end do
       trial%orientation(:, :, :, e) = work%rotation
       work%stress(:, :) = trial%stress(:, :, e)
-      call element_cauchy(model%element, work)
-      call element_force(model%element, work)
+      call element%set_stress(element, work)
+      call element%evaluate_force(element, work)
       do a = 1, size(nodes)
         trial%internal_force(:, nodes(a)) = trial%internal_force(:, nodes(a)) + work%force(:, a)
       end do
@@ -118,7 +118,7 @@ contains
 
     integer :: colour, k, e, batch, thread
 
-    call clear(system%stiffness)
+    call clear_stiffness(system)
     !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
     !$omp& default(shared) private(colour, k, e, batch, thread)
     thread = 1
@@ -150,18 +150,18 @@ contains
     type(verdict_t) :: verdict
 
     work%x_committed(:, :) = committed%x(:, model%connectivity(:, e))
-    if (present(trial)) then
-      work%x_trial(:, :) = trial%x(:, model%connectivity(:, e))
-      call element_kinematics(model%element, work%x_committed, work%x_trial, work, verdict)
-      call element_strain(model%element, committed%orientation(:, :, :, e), work)
-      work%stress(:, :) = trial%stress(:, :, e)
-    else
-      call element_gradients(model%element, work%x_committed, work, verdict)
-      work%strain = 0.0_wp
-      work%rotation(:, :, :) = committed%orientation(:, :, :, e)
-      work%stress(:, :) = committed%stress(:, :, e)
-    end if
-    call element_cauchy(model%element, work)
+    work%stress(:, :) = committed%stress(:, :, e)
+    associate (element => model%element)
+      if (present(trial)) then
+        work%x_trial(:, :) = trial%x(:, model%connectivity(:, e))
+        work%enhanced(:) = trial%enhanced(:, e)
+        call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
+        work%stress(:, :) = trial%stress(:, :, e)
+      else
+        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+      end if
+      call element%set_stress(element, work)
+    end associate
   end subroutine set_element
 
   !> Evaluate the stiffness of an element and add its blocks.
@@ -173,10 +173,19 @@ contains
     type(element_work_t), intent(inout) :: work
 
     call copy_tangents(size(work%tangent), system%tangent(:, :, :, e), work%tangent)
-    call element_stiffness(model%element, work)
+    call model%element%evaluate_stiffness(model%element, work)
     call add_element(system%stiffness, model%element%n_node, system%position(:, :, e), &
         work%stiffness)
+    if (model%element%n_enhanced > 0) call store_condensation(system%enhanced, model, e, work)
   end subroutine add_stiffness
+
+  !> Set the stiffness, and what its condensation adds up, to zero.
+  subroutine clear_stiffness(system)
+    type(system_t), intent(inout) :: system
+
+    call clear(system%stiffness)
+    system%enhanced%force = 0.0_wp
+  end subroutine clear_stiffness
 
   !> Copy the tangents of an element as one contiguous array.
   pure subroutine copy_tangents(n, from, to)

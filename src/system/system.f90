@@ -10,6 +10,7 @@ module dd3_system_system
   use dd3_model_model, only : model_t
   use dd3_system_batches, only : batches_t, new_batches
   use dd3_system_contact, only : contact_work_t, new_contact_work
+  use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_reduced, only : linear_problem_t, new_linear_problem
   implicit none
   private
@@ -29,6 +30,8 @@ module dd3_system_system
     type(element_work_t), allocatable :: element(:)
     !> Batches of elements for the threads.
     type(batches_t) :: batches
+    !> Condensation of the enhanced strains.
+    type(enhanced_t) :: enhanced
     type(contact_work_t) :: contact
     type(linear_problem_t) :: problem
     class(linear_solver_t), allocatable :: solver
@@ -59,8 +62,12 @@ contains
     call new_batches(self%batches, model, threads)
     allocate (self%element(threads))
     do i = 1, threads
-      call new_element_work(self%element(i), model%element)
+      associate (element => model%element)
+        call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
+            element%n_enhanced)
+      end associate
     end do
+    call new_enhanced(self%enhanced, model)
     call new_contact_work(self%contact, model%n_contact)
     call new_linear_problem(self%problem, model, self%stiffness%n)
     call new_linear_solver(self%solver, options, error)

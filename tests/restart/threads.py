@@ -12,9 +12,9 @@ from runs import Deck, Runner, call_tests, check, compare, fresh, table
 CHANGES = (("divisions = 10 2 1", "divisions = 20 13 2"), ("until = displacement punch 1.8", "until = displacement punch 0.2"))
 
 
-def same_bits(runner, work):
+def same_bits(runner, work, *changes):
     """Run with each number of threads and compare."""
-    deck = Deck(work / "deck.dat", *CHANGES, end="*PHASE pull")
+    deck = Deck(fresh(work) / "deck.dat", *CHANGES, *changes, end="*PHASE pull")
     for threads in ("1", "2", "4"):
         runner.run(deck, work / threads, arguments=("--threads", threads))
         compare(work / threads, work / "1")
@@ -28,7 +28,11 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
     options = parser.parse_args()
     runner, work = Runner(options.program), fresh(options.work.resolve())
-    raise SystemExit(call_tests([("same bits with 1, 2 and 4 threads", lambda: same_bits(runner, work))]))
+    shell = (("element = hex8", "element = solid_shell\n  thickness_points = 3"),
+             ("divisions = 20 13 2", "divisions = 20 13 1"))
+    raise SystemExit(call_tests([
+        ("same bits with 1, 2 and 4 threads", lambda: same_bits(runner, work / "hex8")),
+        ("the same with solid_shell", lambda: same_bits(runner, work / "solid_shell", *shell))]))
 
 
 if __name__ == "__main__":

@@ -3,11 +3,7 @@ module element_cases
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_element_force, only : element_cauchy, element_force
-  use dd3_element_log_strain, only : element_strain
-  use dd3_element_kinematics, only : element_kinematics
   use dd3_element_registry, only : new_element
-  use dd3_element_stiffness, only : element_stiffness
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_linalg_tensor, only : kelvin_deviator
@@ -188,7 +184,8 @@ contains
     type(error_t), allocatable :: error
 
     call new_element(element, trim(name), error)
-    call new_element_work(work, element)
+    call new_element_work(work, element%n_node, element%n_point, element%n_group, &
+        element%n_enhanced)
   end subroutine make_element
 
   !> Return the nodes of an element, moved at random.
@@ -208,14 +205,15 @@ contains
     end do
   end function distorted
 
-  !> Evaluate kinematics, the law at every point, forces and stiffness.
+  !> Evaluate the deformation, with the enhanced parameters of the workspace, the law at every
+  !> point, forces and stiffness.
   subroutine evaluate(element, law, x_committed, x_trial, rotation_committed, start, work, ok)
     type(element_t), intent(in) :: element
     type(law_t), intent(in) :: law
     !> Committed and trial positions, mm.
     real(wp), intent(in) :: x_committed(:, :), x_trial(:, :)
     !> Committed material axes.
-    real(wp), intent(in) :: rotation_committed(:, :, :)
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     !> Committed stresses, MPa, Kelvin, material frame.
     real(wp), intent(in) :: start(:, :)
     type(element_work_t), intent(inout) :: work
@@ -225,17 +223,19 @@ contains
     type(verdict_t) :: verdict
     integer :: p
 
-    call element_kinematics(element, x_committed, x_trial, work, verdict)
+    work%x_committed(:, :) = x_committed
+    work%x_trial(:, :) = x_trial
+    work%stress(:, :) = start
+    call element%deform(element, rotation_committed, work, verdict)
     ok = verdict%outcome == verdict_converged
     if (.not. ok) return
-    call element_strain(element, rotation_committed, work)
     do p = 1, element%n_point
       call evaluate_law(law, start(:, p), work%strain(:, p), work%stress(:, p), &
           work%tangent(:, :, p))
     end do
-    call element_cauchy(element, work)
-    call element_force(element, work)
-    call element_stiffness(element, work)
+    call element%set_stress(element, work)
+    call element%evaluate_force(element, work)
+    call element%evaluate_stiffness(element, work)
   end subroutine evaluate
 
   !> Make the unit cube of seven distorted elements (MacNeal & Harder 1985).

@@ -1,0 +1,306 @@
+!> Deformation of the solid-shell at its integration points.
+!>
+!> With the committed material axes Q and the contravariant base G^i of the committed configuration,
+!> the Green strain in the material frame is
+!>   e = sum e_ij Q^T G^i (x) Q^T G^j
+!>       + (j_0/j) zeta (a_1 + a_2 xi + a_3 eta) Q^T G_0^3 (x) Q^T G_0^3,
+!> e_ij the natural strains, j and 0 the Jacobian determinant and the centre of the element. The
+!> last term is the enhanced strain (Simo & Rifai 1990 for its transformation; Buechter, Ramm &
+!> Roehl 1994 and Klinkel & Wagner 1997 for the linear thickness strain). One parameter is
+!> sufficient on parallelograms; the two others make bending exact on any flat element. Then C = I +
+!> 2 e, U = C^(1/2), and the strain increment of the material is ln U. The material axes rotate with
+!> R of the compatible F = R U_F.
+module dd3_element_shell_deform
+  use dd3_base_kinds, only : sqrt2, wp
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_element_log_strain, only : polar_increment, rotate_axes, stretch_of_green
+  use dd3_element_shell_strain, only : column_geometry, natural_rates, natural_strains
+  use dd3_element_shell_work, only : columns_t, n_column, n_natural, plane_point, shell_work_t
+  use dd3_element_table, only : element_t
+  use dd3_element_work, only : element_work_t
+  use dd3_linalg_tensor, only : cross, determinant, kelvin_deviator, tensor_from_kelvin
+  implicit none
+  private
+  public :: shell_deform, shell_linearise, shell_rate
+
+contains
+
+  !> Evaluate strain increments and trial material axes.
+  subroutine shell_deform(element, rotation_committed, work, verdict)
+    type(element_t), intent(in) :: element
+    !> Committed material axes, as columns.
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+    type(element_work_t), intent(inout) :: work
+    !> Retry, with the point, if a Jacobian determinant is not positive or no stretch belongs to the
+    !> assumed strain.
+    type(verdict_t), intent(out) :: verdict
+
+    real(wp) :: enhanced
+    integer :: k, p, q
+
+    verdict%outcome = verdict_converged
+    associate (shell => work%shell, n => element%n_point/n_column)
+      call column_geometry(work%x_committed, work%x_trial, shell)
+      call set_centre(shell)
+      shell%centre_weight = pressure_weight(element, rotation_committed, work)
+      call natural_strains(work%x_committed, work%x_trial, shell)
+      do q = 1, n_column
+        enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))
+        do k = 1, n
+          p = (q - 1)*n + k
+          call deform_point(q, p, element%point(3, p), enhanced, rotation_committed(:, :, p), &
+              element%weight(p), work, verdict)
+          if (verdict%outcome == verdict_converged) cycle
+          verdict%point = p
+          return
+        end do
+      end do
+    end associate
+  end subroutine shell_deform
+
+  !> Evaluate the committed configuration without an increment.
+  subroutine shell_linearise(element, rotation_committed, work, verdict)
+    type(element_t), intent(in) :: element
+    !> Committed material axes, as columns.
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+    type(element_work_t), intent(inout) :: work
+    type(verdict_t), intent(out) :: verdict
+
+    real(wp) :: enhanced(size(work%enhanced))
+
+    enhanced = work%enhanced
+    work%enhanced = 0.0_wp
+    work%x_trial(:, :) = work%x_committed
+    call shell_deform(element, rotation_committed, work, verdict)
+    work%enhanced = enhanced
+  end subroutine shell_linearise
+
+  !> Evaluate base and Jacobian determinant at the centre of the committed configuration.
+  pure subroutine set_centre(shell)
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: normal(3)
+
+    associate (at => shell%committed)
+      ! The means of the columns, whose points lie symmetrically about the centre.
+      normal = cross(0.25_wp*sum(at%membrane(:, 1, :), dim=2), &
+          0.25_wp*sum(at%membrane(:, 2, :), dim=2))
+      shell%centre_jacobian = dot_product(normal, 0.25_wp*sum(at%director, dim=2))
+      shell%centre_normal = 0.0_wp
+      if (shell%centre_jacobian > 0.0_wp) shell%centre_normal = normal/shell%centre_jacobian
+    end associate
+  end subroutine set_centre
+
+  !> Return the weight of the mean director in the thickness strain, from the committed stress: it
+  !> rises with the pressure across the sheet and is 1 from a quarter of the equivalent stress on,
+  !> below which bending holds the directors. The pressure on the outside of a bend is far smaller.
+  pure real(wp) function pressure_weight(element, rotation_committed, work) result(weight)
+    type(element_t), intent(in) :: element
+    !> Committed material axes, as columns.
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+    !> Holds the committed stress.
+    type(element_work_t), intent(in) :: work
+
+    real(wp) :: pressure, size, normal(3)
+    integer :: p
+
+    weight = 0.0_wp
+    if (.not. work%shell%centre_jacobian > 0.0_wp) return
+    pressure = 0.0_wp
+    size = 0.0_wp
+    do p = 1, element%n_point
+      normal = matmul(work%shell%centre_normal, rotation_committed(:, :, p))
+      associate (stress => work%stress(:, p))
+        pressure = pressure - element%weight(p)*dot_product(normal, &
+            matmul(tensor_from_kelvin(stress), normal))
+        size = size + element%weight(p)*norm2(kelvin_deviator(stress))
+      end associate
+    end do
+    pressure = pressure/sum(work%shell%centre_normal**2)
+    if (pressure > 0.0_wp) weight = min(1.0_wp, 4.0_wp*pressure/max(sqrt(1.5_wp)*size, pressure))
+  end function pressure_weight
+
+  !> Deform a point.
+  subroutine deform_point(q, p, zeta, enhanced, axes, weight, work, verdict)
+    !> Column and point.
+    integer, intent(in) :: q, p
+    real(wp), intent(in) :: zeta
+    !> a_1 + a_2 xi + a_3 eta.
+    real(wp), intent(in) :: enhanced
+    !> Committed material axes, as columns.
+    real(wp), intent(in) :: axes(3, 3)
+    !> Quadrature weight.
+    real(wp), intent(in) :: weight
+    type(element_work_t), intent(inout) :: work
+    type(verdict_t), intent(inout) :: verdict
+
+    real(wp) :: base(3, 3), normal(3), deformation(3, 3), rotation(3, 3), jacobian, trial_jacobian
+    real(wp) :: green(6), strain(6), inverse_stretch(6)
+    logical :: positive
+    integer :: i
+
+    associate (shell => work%shell)
+      call point_base(shell, q, zeta, base, deformation, jacobian, trial_jacobian)
+      if (.not. (jacobian > 0.0_wp .and. trial_jacobian > 0.0_wp)) then
+        verdict%outcome = verdict_retry
+        verdict%reason = "an element is turned inside out"
+        return
+      end if
+      base = matmul(transpose(axes), base)
+      normal = sqrt(shell%centre_jacobian/jacobian)*matmul(shell%centre_normal, axes)
+      green = green_strain(base, natural_at(shell%strain(:, q), zeta))
+      green = green + enhanced*zeta*dyad(normal, normal)
+      call stretch_of_green(green, strain, inverse_stretch, positive)
+      if (.not. positive) then
+        verdict%outcome = verdict_retry
+        verdict%reason = "the assumed strain turns an element inside out"
+        return
+      end if
+      work%strain(1:3, p) = strain(1:3)
+      work%strain(4:6, p) = sqrt2*strain(4:6)
+      shell%volume(p) = weight*jacobian*exp(strain(1) + strain(2) + strain(3))
+      do i = 1, 3
+        shell%base(:, i, p) = symmetric_times(inverse_stretch, base(:, i))
+      end do
+      shell%normal(:, p) = symmetric_times(inverse_stretch, normal)
+    end associate
+    call polar_increment(deformation, strain, rotation)
+    call rotate_axes(rotation, axes, work%rotation(:, :, p))
+  end subroutine deform_point
+
+  !> Evaluate the contravariant base of the committed configuration at a point, and the compatible
+  !> deformation gradient F = g_i (x) G^i.
+  pure subroutine point_base(shell, q, zeta, base, deformation, jacobian, trial_jacobian)
+    type(shell_work_t), intent(in) :: shell
+    !> Column.
+    integer, intent(in) :: q
+    real(wp), intent(in) :: zeta
+    !> Base vectors as columns, 1/mm.
+    real(wp), intent(out) :: base(3, 3)
+    real(wp), intent(out) :: deformation(3, 3)
+    !> Jacobian determinants, mm3; the first is zero or less if the base does not exist.
+    real(wp), intent(out) :: jacobian, trial_jacobian
+
+    real(wp) :: g(3, 3)
+    integer :: i, j
+
+    g = covariant_base(shell%committed, q, zeta)
+    base(:, 1) = cross(g(:, 2), g(:, 3))
+    base(:, 2) = cross(g(:, 3), g(:, 1))
+    base(:, 3) = cross(g(:, 1), g(:, 2))
+    jacobian = dot_product(g(:, 1), base(:, 1))
+    trial_jacobian = 0.0_wp
+    deformation = 0.0_wp
+    if (.not. jacobian > 0.0_wp) return
+    base = base/jacobian
+    g = covariant_base(shell%trial, q, zeta)
+    trial_jacobian = determinant(g)
+    do j = 1, 3
+      do i = 1, 3
+        deformation(:, j) = deformation(:, j) + g(:, i)*base(j, i)
+      end do
+    end do
+  end subroutine point_base
+
+  !> Return dx/dxi, dx/deta, dx/dzeta at a point as columns, mm.
+  pure function covariant_base(at, q, zeta) result(g)
+    type(columns_t), intent(in) :: at
+    !> Column.
+    integer, intent(in) :: q
+    real(wp), intent(in) :: zeta
+    real(wp) :: g(3, 3)
+
+    g(:, 1) = at%membrane(:, 1, q) + zeta*at%bending(:, 1, q)
+    g(:, 2) = at%membrane(:, 2, q) + zeta*at%bending(:, 2, q)
+    g(:, 3) = at%director(:, q)
+  end function covariant_base
+
+  !> Return e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 at a height from their coefficients.
+  pure function natural_at(coefficient, zeta) result(strain)
+    real(wp), intent(in) :: coefficient(n_natural)
+    real(wp), intent(in) :: zeta
+    real(wp) :: strain(6)
+
+    integer :: k
+
+    do k = 1, 3
+      strain(k) = coefficient(3*k - 2) + zeta*(coefficient(3*k - 1) + zeta*coefficient(3*k))
+    end do
+    strain(4:6) = coefficient(10:12)
+  end function natural_at
+
+  !> Return the tensor of natural strains, plain components 11 22 33 23 31 12.
+  pure function green_strain(base, strain) result(green)
+    !> Contravariant base vectors as columns, 1/mm.
+    real(wp), intent(in) :: base(3, 3)
+    !> In the order of `natural_at`.
+    real(wp), intent(in) :: strain(6)
+    real(wp) :: green(6)
+
+    green = strain(1)*dyad(base(:, 1), base(:, 1)) + strain(2)*dyad(base(:, 2), base(:, 2)) &
+        + strain(3)*dyad(base(:, 1), base(:, 2)) + strain(4)*dyad(base(:, 3), base(:, 3)) &
+        + strain(5)*dyad(base(:, 2), base(:, 3)) + strain(6)*dyad(base(:, 1), base(:, 3))
+  end function green_strain
+
+  !> Return the symmetric part of a (x) b, plain components 11 22 33 23 31 12.
+  pure function dyad(a, b) result(plain)
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: plain(6)
+
+    plain(1:3) = a*b
+    plain(4) = 0.5_wp*(a(2)*b(3) + a(3)*b(2))
+    plain(5) = 0.5_wp*(a(3)*b(1) + a(1)*b(3))
+    plain(6) = 0.5_wp*(a(1)*b(2) + a(2)*b(1))
+  end function dyad
+
+  !> Return the product of a symmetric tensor, plain components, and a vector.
+  pure function symmetric_times(s, v) result(w)
+    real(wp), intent(in) :: s(6), v(3)
+    real(wp) :: w(3)
+
+    w(1) = s(1)*v(1) + s(6)*v(2) + s(5)*v(3)
+    w(2) = s(6)*v(1) + s(2)*v(2) + s(4)*v(3)
+    w(3) = s(5)*v(1) + s(4)*v(2) + s(3)*v(3)
+  end function symmetric_times
+
+  !> Evaluate the strain increments of first order in the material frame, and the rotations; call
+  !> `shell_linearise` first.
+  subroutine shell_rate(element, du, rotation_committed, work)
+    type(element_t), intent(in) :: element
+    !> Trial displacement, mm.
+    real(wp), intent(in) :: du(:, :)
+    !> Committed material axes, which `linearise` has used.
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
+    !> Holds the increment of the enhanced parameters; gets the increments.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: natural(n_natural, n_column), plain(6), enhanced, spin(3), gradient(3, 3)
+    type(columns_t) :: motion
+    integer :: i, k, n, p, q
+
+    associate (shell => work%shell)
+      call natural_rates(du, work%x_trial, shell, natural, motion)
+      n = element%n_point/n_column
+      do q = 1, n_column
+        enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))
+        do k = 1, n
+          p = (q - 1)*n + k
+          associate (zeta => element%point(3, p), base => shell%base(:, :, p))
+            plain = green_strain(base, natural_at(natural(:, q), zeta)) &
+                + enhanced*zeta*dyad(shell%normal(:, p), shell%normal(:, p))
+            gradient = matmul(transpose(rotation_committed(:, :, p)), &
+                covariant_base(motion, q, zeta))
+            spin = 0.0_wp
+            do i = 1, 3
+              spin = spin + 0.5_wp*cross(base(:, i), gradient(:, i))
+            end do
+          end associate
+          work%strain_increment(1:3, p) = plain(1:3)
+          work%strain_increment(4:6, p) = sqrt2*plain(4:6)
+          work%rotation_increment(p) = norm2(spin)
+        end do
+      end do
+    end associate
+  end subroutine shell_rate
+
+end module dd3_element_shell_deform

@@ -1,0 +1,226 @@
+!> Exact derivative of the solid-shell's forces, with the enhanced parameters condensed.
+!>
+!> With dT = c : d + w T - T w (dd3_element_moduli) the second Piola-Kirchhoff stress changes by
+!>   dS = J U^-1 (c : d - d T - T d + tr(d) T) U^-1,   d = U^-1 (de) U^-1,
+!> so the moduli of a column are sum w j J P^T (c - 2 T_sym + T (x) I) P over its points, P the
+!> factors of the generalised strain rates in d. The stiffness is B^T H B + the resultants times the
+!> second derivatives of the natural strains. The enhanced parameters a, whose forces r_a are zero
+!> in equilibrium, follow the displacement (stored condensation):
+!>   da = -K_aa^-1 (r_a + K_au du),
+!>   K du = -(r_u - K_ua K_aa^-1 r_a),   K = K_uu - K_ua K_aa^-1 K_au.
+module dd3_element_shell_stiffness
+  use dd3_base_kinds, only : half_sqrt2, wp
+  use dd3_element_moduli, only : material_moduli
+  use dd3_element_shell_force, only : point_operator, shell_force
+  use dd3_element_shell_strain, only : initial_stress
+  use dd3_element_shell_work, only : n_column, n_general, n_natural, n_parameter, plane_point, &
+      shell_work_t
+  use dd3_element_table, only : element_t
+  use dd3_element_work, only : element_work_t
+  use dd3_linalg_tensor, only : solve_small
+  implicit none
+  private
+  public :: shell_stiffness
+
+contains
+
+  !> Evaluate the condensed stiffness; call `shell_stress` and set `work%tangent` first.
+  subroutine shell_stiffness(element, work)
+    type(element_t), intent(in) :: element
+    !> Sets `stiffness`, `enhanced_gain`, `enhanced_offset`, `condensed_force`, and the forces.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: moduli(n_general, n_general), uu(24, 24), ua(24, n_parameter), &
+        au(n_parameter, 24), aa(n_parameter, n_parameter)
+    integer :: q
+
+    call shell_force(element, work)
+    uu = 0.0_wp
+    ua = 0.0_wp
+    au = 0.0_wp
+    aa = 0.0_wp
+    do q = 1, n_column
+      call column_moduli(q, element%n_point/n_column, element, work, moduli)
+      call add_column(q, moduli, work%shell, uu, ua, au, aa)
+    end do
+    call add_initial_stress(work%shell, uu)
+    call condense(ua, au, aa, uu, work)
+    call to_blocks(uu, work%stiffness)
+  end subroutine shell_stiffness
+
+  !> Integrate the moduli of the generalised strains over a column.
+  pure subroutine column_moduli(q, n, element, work, moduli)
+    !> Column, and the number of its points.
+    integer, intent(in) :: q, n
+    type(element_t), intent(in) :: element
+    type(element_work_t), intent(in) :: work
+    !> N mm.
+    real(wp), intent(out) :: moduli(n_general, n_general)
+
+    real(wp) :: operator(6, 7), c(6, 6), co(6, 7), point(7, 7), power(3)
+    integer :: i, j, k, l, m, p
+
+    moduli = 0.0_wp
+    do k = 1, n
+      p = (q - 1)*n + k
+      power = [1.0_wp, element%point(3, p), element%point(3, p)**2]
+      operator = point_operator(work%shell%base(:, :, p), work%shell%normal(:, p), power(2))
+      call material_moduli(work%strain(:, p), work%stress(:, p), work%tangent(:, :, p), c)
+      call add_stress_terms(work%stress(:, p), c)
+      do j = 1, 7
+        co(:, j) = 0.0_wp
+        do i = 1, 6
+          co(:, j) = co(:, j) + (work%shell%volume(p)*operator(i, j))*c(:, i)
+        end do
+        do i = 1, 7
+          point(i, j) = operator(1, i)*co(1, j) + operator(2, i)*co(2, j) &
+              + operator(3, i)*co(3, j) + operator(4, i)*co(4, j) + operator(5, i)*co(5, j) &
+              + operator(6, i)*co(6, j)
+        end do
+      end do
+      do j = 1, 3
+        do l = 1, 3
+          m = 3*(j - 1) + l
+          do i = 1, 3
+            moduli(3*i - 2:3*i, m) = moduli(3*i - 2:3*i, m) + (point(i, j)*power(l))*power
+          end do
+          moduli(10:13, m) = moduli(10:13, m) + power(l)*point(4:7, j)
+        end do
+      end do
+      do j = 4, 7
+        do i = 1, 3
+          moduli(3*i - 2:3*i, 6 + j) = moduli(3*i - 2:3*i, 6 + j) + point(i, j)*power
+        end do
+        moduli(10:13, 6 + j) = moduli(10:13, 6 + j) + point(4:7, j)
+      end do
+    end do
+  end subroutine column_moduli
+
+  !> Add d -> tr(d) T - d T - T d to moduli, Kelvin.
+  pure subroutine add_stress_terms(stress, c)
+    !> T, MPa, Kelvin.
+    real(wp), intent(in) :: stress(6)
+    real(wp), intent(inout) :: c(6, 6)
+
+    !> The components of a symmetric tensor that share an index with each shear 23, 31, 12.
+    integer, parameter :: first(3) = [2, 3, 1], second(3) = [3, 1, 2]
+    integer :: i, j
+
+    do j = 1, 3
+      c(:, j) = c(:, j) + stress
+      c(j, j) = c(j, j) - 2.0_wp*stress(j)
+    end do
+    do j = 1, 3
+      associate (a => first(j), b => second(j), s => 3 + j)
+        c(a, s) = c(a, s) - stress(s)
+        c(b, s) = c(b, s) - stress(s)
+        c(s, a) = c(s, a) - stress(s)
+        c(s, b) = c(s, b) - stress(s)
+        c(s, s) = c(s, s) - stress(a) - stress(b)
+        do i = 1, 3
+          if (i /= j) c(3 + i, s) = c(3 + i, s) - half_sqrt2*stress(12 - s - i)
+        end do
+      end associate
+    end do
+  end subroutine add_stress_terms
+
+  !> Add the stiffness of a column.
+  pure subroutine add_column(q, moduli, shell, uu, ua, au, aa)
+    !> Column.
+    integer, intent(in) :: q
+    !> N mm.
+    real(wp), intent(in) :: moduli(n_general, n_general)
+    type(shell_work_t), intent(in) :: shell
+    !> Derivatives of the forces of nodes and parameters, in nodes and parameters.
+    real(wp), intent(inout) :: uu(24, 24), ua(24, n_parameter), au(n_parameter, 24), &
+        aa(n_parameter, n_parameter)
+
+    real(wp) :: hb(n_general), factor(n_parameter), coupling(24)
+    integer :: b, i, k
+
+    factor = [1.0_wp, plane_point(:, q)]
+    associate (operator => shell%operator(:, :, q))
+      coupling = 0.0_wp
+      do k = 1, n_natural
+        coupling = coupling + moduli(k, n_general)*operator(:, k)
+      end do
+      do b = 1, 24
+        hb = 0.0_wp
+        do k = 1, n_natural
+          hb = hb + operator(b, k)*moduli(:, k)
+        end do
+        do k = 1, n_natural
+          uu(:, b) = uu(:, b) + hb(k)*operator(:, k)
+        end do
+        au(:, b) = au(:, b) + hb(n_general)*factor
+      end do
+      do i = 1, n_parameter
+        ua(:, i) = ua(:, i) + factor(i)*coupling
+        aa(:, i) = aa(:, i) + (moduli(n_general, n_general)*factor(i))*factor
+      end do
+    end associate
+  end subroutine add_column
+
+  !> Add the part of the initial stress, the same in the three directions of space.
+  pure subroutine add_initial_stress(shell, uu)
+    type(shell_work_t), intent(in) :: shell
+    real(wp), intent(inout) :: uu(24, 24)
+
+    real(wp) :: factor(8, 8)
+    integer :: a, b, i
+
+    call initial_stress(shell, factor)
+    do b = 1, 8
+      do a = 1, 8
+        do i = 1, 3
+          uu(3*a - 3 + i, 3*b - 3 + i) = uu(3*a - 3 + i, 3*b - 3 + i) + factor(a, b)
+        end do
+      end do
+    end do
+  end subroutine add_initial_stress
+
+  !> Eliminate the enhanced parameters. If their stiffness is singular they keep their values.
+  subroutine condense(ua, au, aa, uu, work)
+    real(wp), intent(in) :: ua(24, n_parameter), au(n_parameter, 24), aa(n_parameter, n_parameter)
+    real(wp), intent(inout) :: uu(24, 24)
+    !> Holds the forces of the parameters; sets gain, offset and condensed force.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: matrix(n_parameter, n_parameter), solution(n_parameter, 25), force(24)
+    logical :: regular
+    integer :: b, i
+
+    matrix = aa
+    solution(:, 1:24) = au
+    solution(:, 25) = work%enhanced_force
+    call solve_small(n_parameter, 25, matrix, solution, regular)
+    if (.not. regular) solution = 0.0_wp
+    do b = 1, 24
+      do i = 1, n_parameter
+        uu(:, b) = uu(:, b) - ua(:, i)*solution(i, b)
+      end do
+    end do
+    force = 0.0_wp
+    do i = 1, n_parameter
+      force = force + ua(:, i)*solution(i, 25)
+    end do
+    work%condensed_force(:, :) = reshape(force, [3, 8])
+    work%enhanced_offset(:) = solution(:, 25)
+    work%enhanced_gain(:, :, :) = reshape(solution(:, 1:24), [n_parameter, 3, 8])
+  end subroutine condense
+
+  !> Copy a stiffness into the blocks of the workspace.
+  pure subroutine to_blocks(uu, stiffness)
+    real(wp), intent(in) :: uu(3, 8, 3, 8)
+    real(wp), intent(out) :: stiffness(3, 3, 8, 8)
+
+    integer :: a, b
+
+    do a = 1, 8
+      do b = 1, 8
+        stiffness(:, :, b, a) = uu(:, a, :, b)
+      end do
+    end do
+  end subroutine to_blocks
+
+end module dd3_element_shell_stiffness

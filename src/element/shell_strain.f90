@@ -1,0 +1,363 @@
+!> Natural strains of the solid-shell: the covariant Green-Lagrange strain of the increment,
+!>   e_ij = (G_i . u,j + G_j . u,i + u,i . u,j)/2,
+!> evaluated from the displacement increment u, and its derivative in the nodal positions. In a
+!> rigid rotation it vanishes to round-off.
+!>
+!> Transverse shear and thickness strain are assumed: e_13 is linear in eta between its values at
+!> (0,-1,0) and (0,1,0), e_23 linear in xi between (-1,0,0) and (1,0,0) (Dvorkin & Bathe 1984), and
+!> e_33 bilinear between those at the corners of the mid-surface (Betsch & Stein 1995; Hauptmann &
+!> Schweizerhof 1998).
+!>
+!> Directors that tilt in turns to both sides are longer between two tools, and no assumed shear
+!> resists: under pressure across the sheet they would buckle. There the mean of e_33 is that of the
+!> mean director, which does not tilt; `centre_weight` is its weight.
+!>
+!> Internally the element has mid-surface positions m_A = (bottom + top)/2 and directors
+!> d_A = (top - bottom)/2 at its corners.
+module dd3_element_shell_strain
+  use dd3_base_kinds, only : wp
+  use dd3_element_shell_work, only : columns_t, n_column, n_corner, n_natural, &
+      plane_point, shell_work_t
+  implicit none
+  private
+  public :: column_geometry, natural_strains, strain_operators, natural_rates, initial_stress
+
+  !> Corners at the ends of the edges eta = -1, eta = 1 (along xi) and xi = -1, xi = 1 (along eta).
+  integer, parameter :: edge(2, 4) = reshape([1, 2, 4, 3, 1, 4, 2, 3], [2, 4])
+  !> Direction of these edges, and the direction in which their shear is interpolated.
+  integer, parameter :: along(4) = [1, 1, 2, 2], across(4) = [2, 2, 1, 1]
+  !> Position of the edges across, -1 or 1.
+  real(wp), parameter :: side(4) = [-1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp]
+  !> Position of the natural strain that holds the shear of an edge: 2 e_13, 2 e_23.
+  integer, parameter :: shear_of(2) = [12, 11]
+  integer, parameter :: thickness_strain = 10
+
+contains
+
+  !> Evaluate the geometry of the columns.
+  pure subroutine column_geometry(x_committed, x_trial, shell)
+    !> Positions of the nodes, mm.
+    real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
+    !> Gets the geometry.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: mid(3, 4), director(3, 4)
+
+    call split(x_committed, mid, director)
+    call set_columns(shell, mid, director, shell%committed)
+    call split(x_trial, mid, director)
+    call set_columns(shell, mid, director, shell%trial)
+  end subroutine column_geometry
+
+  !> Evaluate the natural strains of an increment; call `column_geometry` first.
+  pure subroutine natural_strains(x_committed, x_trial, shell)
+    !> Positions of the nodes, mm.
+    real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
+    !> Holds the weight of the centre; gets `strain`.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4), strain(n_natural, n_column)
+    type(columns_t) :: motion
+    integer :: q
+
+    call split(x_committed, mid, director)
+    call split(x_trial - x_committed, u, ud)
+    call set_columns(shell, u, ud, motion)
+    do q = 1, n_column
+      call in_plane_strains(shell%committed, motion, q, strain(:, q))
+      call in_plane_squares(motion, q, strain(:, q))
+    end do
+    call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
+    shell%strain = strain
+  end subroutine natural_strains
+
+  !> Evaluate the natural strains of first order of a displacement from the trial configuration.
+  pure subroutine natural_rates(du, x, shell, strain, motion)
+    !> Displacement and position of the nodes, mm.
+    real(wp), intent(in) :: du(3, 8), x(3, 8)
+    type(shell_work_t), intent(in) :: shell
+    real(wp), intent(out) :: strain(n_natural, n_column)
+    !> Displacement of the columns.
+    type(columns_t), intent(out) :: motion
+
+    real(wp) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4)
+    integer :: q
+
+    call split(x, mid, director)
+    call split(du, u, ud)
+    call set_columns(shell, u, ud, motion)
+    do q = 1, n_column
+      call in_plane_strains(shell%trial, motion, q, strain(:, q))
+    end do
+    call assumed_strains(mid, director, u, ud, shell, strain)
+  end subroutine natural_rates
+
+  !> Split nodal vectors into those of the mid-surface and of the directors.
+  pure subroutine split(x, mid, director)
+    real(wp), intent(in) :: x(3, 8)
+    real(wp), intent(out) :: mid(3, 4), director(3, 4)
+
+    mid = 0.5_wp*(x(:, 1:4) + x(:, 5:8))
+    director = 0.5_wp*(x(:, 5:8) - x(:, 1:4))
+  end subroutine split
+
+  !> Evaluate the tangents and directors of the columns.
+  pure subroutine set_columns(shell, mid, director, columns)
+    !> Provides the shape functions.
+    type(shell_work_t), intent(in) :: shell
+    !> At the corners, mm.
+    real(wp), intent(in) :: mid(3, 4), director(3, 4)
+    type(columns_t), intent(out) :: columns
+
+    integer :: j, q
+
+    do q = 1, n_column
+      do j = 1, 2
+        columns%membrane(:, j, q) = combine(mid, shell%slope(:, j, q))
+        columns%bending(:, j, q) = combine(director, shell%slope(:, j, q))
+      end do
+      columns%director(:, q) = combine(director, shell%shape(:, q))
+    end do
+  end subroutine set_columns
+
+  !> Return the sum of four vectors times their factors.
+  pure function combine(vector, factor) result(total)
+    real(wp), intent(in) :: vector(3, 4), factor(4)
+    real(wp) :: total(3)
+
+    total = vector(:, 1)*factor(1) + vector(:, 2)*factor(2) + vector(:, 3)*factor(3) &
+        + vector(:, 4)*factor(4)
+  end function combine
+
+  !> Evaluate the coefficients of e_11, e_22 and 2 e_12 that are linear in the increment.
+  pure subroutine in_plane_strains(at, of, q, strain)
+    !> Geometry, and its increment.
+    type(columns_t), intent(in) :: at, of
+    !> Column.
+    integer, intent(in) :: q
+    real(wp), intent(inout) :: strain(n_natural)
+
+    integer :: j
+
+    associate (m => at%membrane(:, :, q), b => at%bending(:, :, q), um => of%membrane(:, :, q), &
+        ub => of%bending(:, :, q))
+      do j = 1, 2
+        strain(3*j - 2) = dot_product(m(:, j), um(:, j))
+        strain(3*j - 1) = dot_product(m(:, j), ub(:, j)) + dot_product(b(:, j), um(:, j))
+        strain(3*j) = dot_product(b(:, j), ub(:, j))
+      end do
+      strain(7) = dot_product(m(:, 1), um(:, 2)) + dot_product(m(:, 2), um(:, 1))
+      strain(8) = dot_product(m(:, 1), ub(:, 2)) + dot_product(b(:, 1), um(:, 2)) &
+          + dot_product(m(:, 2), ub(:, 1)) + dot_product(b(:, 2), um(:, 1))
+      strain(9) = dot_product(b(:, 1), ub(:, 2)) + dot_product(b(:, 2), ub(:, 1))
+    end associate
+  end subroutine in_plane_strains
+
+  !> Add the coefficients of e_11, e_22 and 2 e_12 that are quadratic in the increment.
+  pure subroutine in_plane_squares(of, q, strain)
+    type(columns_t), intent(in) :: of
+    !> Column.
+    integer, intent(in) :: q
+    real(wp), intent(inout) :: strain(n_natural)
+
+    integer :: j
+
+    associate (um => of%membrane(:, :, q), ub => of%bending(:, :, q))
+      do j = 1, 2
+        strain(3*j - 2) = strain(3*j - 2) + 0.5_wp*dot_product(um(:, j), um(:, j))
+        strain(3*j - 1) = strain(3*j - 1) + dot_product(um(:, j), ub(:, j))
+        strain(3*j) = strain(3*j) + 0.5_wp*dot_product(ub(:, j), ub(:, j))
+      end do
+      strain(7) = strain(7) + dot_product(um(:, 1), um(:, 2))
+      strain(8) = strain(8) + dot_product(um(:, 1), ub(:, 2)) + dot_product(ub(:, 1), um(:, 2))
+      strain(9) = strain(9) + dot_product(ub(:, 1), ub(:, 2))
+    end associate
+  end subroutine in_plane_squares
+
+  !> Evaluate the assumed e_33, 2 e_23 and 2 e_13 of an increment. From the middle of the increment
+  !> they are exact: (G_i + u,i/2).u,j + (G_j + u,j/2).u,i = 2 e_ij.
+  pure subroutine assumed_strains(mid, director, u, ud, shell, strain)
+    !> Geometry at the corners, and its increment, mm.
+    real(wp), intent(in) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4)
+    !> Provides shape functions and weight.
+    type(shell_work_t), intent(in) :: shell
+    real(wp), intent(inout) :: strain(n_natural, n_column)
+
+    real(wp) :: sampled(4), excess
+    integer :: a, q
+
+    do a = 1, n_corner
+      sampled(a) = dot_product(director(:, a), ud(:, a))
+    end do
+    excess = dot_product(0.25_wp*sum(director, dim=2), 0.25_wp*sum(ud, dim=2)) &
+        - 0.25_wp*sum(sampled)
+    do q = 1, n_column
+      strain(thickness_strain, q) = dot_product(shell%shape(:, q), sampled) &
+          + shell%centre_weight*excess
+    end do
+    do a = 1, 4
+      sampled(a) = edge_shear(edge(1, a), edge(2, a))
+    end do
+    do q = 1, n_column
+      strain(shear_of(1), q) = shear_weight(1, q)*sampled(1) + shear_weight(2, q)*sampled(2)
+      strain(shear_of(2), q) = shear_weight(3, q)*sampled(3) + shear_weight(4, q)*sampled(4)
+    end do
+
+  contains
+
+    !> Return the shear in the middle of an edge.
+    pure real(wp) function edge_shear(i, j)
+      integer, intent(in) :: i, j
+
+      edge_shear = 0.25_wp*(dot_product(mid(:, j) - mid(:, i), ud(:, i) + ud(:, j)) &
+          + dot_product(director(:, i) + director(:, j), u(:, j) - u(:, i)))
+    end function edge_shear
+
+  end subroutine assumed_strains
+
+  !> Return the weight of an edge's shear at a column.
+  pure real(wp) function shear_weight(a, q)
+    !> Edge and column.
+    integer, intent(in) :: a, q
+
+    shear_weight = 0.5_wp*(1.0_wp + side(a)*plane_point(across(a), q))
+  end function shear_weight
+
+  !> Evaluate the derivatives of the natural strains in the nodal positions.
+  pure subroutine strain_operators(x, shell)
+    !> Trial positions of the nodes, mm.
+    real(wp), intent(in) :: x(3, 8)
+    !> Gets `operator`.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: mid(3, 4), director(3, 4)
+    integer :: j, q
+
+    call split(x, mid, director)
+    shell%operator = 0.0_wp
+    do q = 1, n_column
+      associate (m => shell%trial%membrane(:, :, q), b => shell%trial%bending(:, :, q), &
+          slope => shell%slope(:, :, q), row => shell%operator(:, :, q))
+        do j = 1, 2
+          call add_row(m(:, j), slope(:, j), 0, row(:, 3*j - 2))
+          call add_row(m(:, j), slope(:, j), 12, row(:, 3*j - 1))
+          call add_row(b(:, j), slope(:, j), 0, row(:, 3*j - 1))
+          call add_row(b(:, j), slope(:, j), 12, row(:, 3*j))
+          call add_row(m(:, j), slope(:, 3 - j), 0, row(:, 7))
+          call add_row(m(:, j), slope(:, 3 - j), 12, row(:, 8))
+          call add_row(b(:, j), slope(:, 3 - j), 0, row(:, 8))
+          call add_row(b(:, j), slope(:, 3 - j), 12, row(:, 9))
+        end do
+        call assumed_operators(mid, director, q, shell, row)
+        call to_nodes(row)
+      end associate
+    end do
+  end subroutine strain_operators
+
+  !> Add the derivatives of a scalar product of a vector with interpolated corner vectors.
+  pure subroutine add_row(vector, factor, first, row)
+    real(wp), intent(in) :: vector(3), factor(4)
+    !> Where the corner vectors begin: 0 for the mid-surface, 12 for the directors.
+    integer, intent(in) :: first
+    real(wp), intent(inout) :: row(24)
+
+    integer :: a, at
+
+    do a = 1, n_corner
+      at = first + 3*a
+      row(at - 2:at) = row(at - 2:at) + factor(a)*vector
+    end do
+  end subroutine add_row
+
+  !> Set the derivatives of the assumed strains at a column, in mid-surface and directors.
+  pure subroutine assumed_operators(mid, director, q, shell, row)
+    real(wp), intent(in) :: mid(3, 4), director(3, 4)
+    !> Column.
+    integer, intent(in) :: q
+    !> Provides shape functions and weight.
+    type(shell_work_t), intent(in) :: shell
+    real(wp), intent(inout) :: row(24, n_natural)
+
+    real(wp) :: tangent(3), normal(3), weight
+    integer :: a, i, j
+
+    weight = 0.25_wp*shell%centre_weight
+    do a = 1, n_corner
+      row(10 + 3*a:12 + 3*a, thickness_strain) = (shell%shape(a, q) - weight)*director(:, a) &
+          + 0.25_wp*weight*sum(director, dim=2)
+    end do
+    do a = 1, 4
+      i = 3*edge(1, a)
+      j = 3*edge(2, a)
+      tangent = 0.25_wp*shear_weight(a, q)*(mid(:, edge(2, a)) - mid(:, edge(1, a)))
+      normal = 0.25_wp*shear_weight(a, q)*(director(:, edge(1, a)) + director(:, edge(2, a)))
+      associate (shear => row(:, shear_of(along(a))))
+        shear(12 + i - 2:12 + i) = shear(12 + i - 2:12 + i) + tangent
+        shear(12 + j - 2:12 + j) = shear(12 + j - 2:12 + j) + tangent
+        shear(j - 2:j) = shear(j - 2:j) + normal
+        shear(i - 2:i) = shear(i - 2:i) - normal
+      end associate
+    end do
+  end subroutine assumed_operators
+
+  !> Turn derivatives in mid-surface and directors into those in the nodes.
+  pure subroutine to_nodes(row)
+    real(wp), intent(inout) :: row(24, n_natural)
+
+    real(wp) :: mid(12), director(12)
+    integer :: k
+
+    do k = 1, n_natural
+      mid = 0.5_wp*row(1:12, k)
+      director = 0.5_wp*row(13:24, k)
+      row(1:12, k) = mid - director
+      row(13:24, k) = mid + director
+    end do
+  end subroutine to_nodes
+
+  !> Evaluate the resultants times the second derivatives of the natural strains, which are the same
+  !> in the three directions of space.
+  pure subroutine initial_stress(shell, factor)
+    !> Holds the resultants.
+    type(shell_work_t), intent(in) :: shell
+    !> Node by node, N/mm.
+    real(wp), intent(out) :: factor(8, 8)
+
+    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), t, weight
+    integer :: a, b, i, j, k, l, q
+
+    weight = 0.25_wp*shell%centre_weight
+    mm = 0.0_wp
+    md = 0.0_wp
+    dd = 0.0_wp
+    do q = 1, n_column
+      associate (n => shell%resultant(:, q), slope => shell%slope(:, :, q))
+        do b = 1, n_corner
+          do j = 1, 2
+            k = 3*j - 2
+            mm(:, b) = mm(:, b) + slope(:, j)*(n(k)*slope(b, j) + n(7)*slope(b, 3 - j))
+            md(:, b) = md(:, b) + slope(:, j)*(n(k + 1)*slope(b, j) + n(8)*slope(b, 3 - j))
+            dd(:, b) = dd(:, b) + slope(:, j)*(n(k + 2)*slope(b, j) + n(9)*slope(b, 3 - j))
+          end do
+          dd(b, b) = dd(b, b) + n(thickness_strain)*(shell%shape(b, q) - weight)
+          dd(:, b) = dd(:, b) + 0.25_wp*weight*n(thickness_strain)
+        end do
+        do a = 1, 4
+          i = edge(1, a)
+          j = edge(2, a)
+          t = 0.25_wp*shear_weight(a, q)*n(shear_of(along(a)))
+          do l = 1, 2
+            k = edge(l, a)
+            md(j, k) = md(j, k) + t
+            md(i, k) = md(i, k) - t
+          end do
+        end do
+      end associate
+    end do
+    factor(1:4, 1:4) = 0.25_wp*(mm - md - transpose(md) + dd)
+    factor(1:4, 5:8) = 0.25_wp*(mm + md - transpose(md) - dd)
+    factor(5:8, 1:4) = 0.25_wp*(mm - md + transpose(md) - dd)
+    factor(5:8, 5:8) = 0.25_wp*(mm + md + transpose(md) + dd)
+  end subroutine initial_stress
+
+end module dd3_element_shell_strain

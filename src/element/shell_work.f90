@@ -1,0 +1,82 @@
+!> Workspace of the solid-shell's kernels, and what they share: the numbering of the generalised
+!> strains and of the points.
+!>
+!> The element has four columns of integration points, at the 2 x 2 Gauss points of the plane. The
+!> covariant strains of a column are polynomials in zeta, with 12 coefficients that are the same for
+!> all its points (Green-Lagrange, shear strains doubled):
+!>   e_11, e_22, 2 e_12 : three coefficients each, of 1, zeta, zeta^2;
+!>   e_33, 2 e_23, 2 e_13 : constant, from the assumed strains.
+!> The 13th is the enhanced thickness strain a_1 + a_2 xi + a_3 eta, times zeta.
+module dd3_element_shell_work
+  use dd3_base_kinds, only : wp
+  implicit none
+  private
+  public :: columns_t, shell_work_t, new_shell_work
+  public :: n_column, n_corner, n_natural, n_general, n_parameter, corner, plane_point
+
+  !> Number of columns of points, of corners in the plane, of generalised strains without and with
+  !> the enhanced one, and of enhanced parameters.
+  integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13, n_parameter = 3
+  !> xi and eta of the corners in the order of the nodes; those of the columns are smaller by
+  !> sqrt(3).
+  real(wp), parameter :: corner(2, n_corner) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, &
+      1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, n_corner])
+  real(wp), parameter :: plane_point(2, n_column) = corner/sqrt(3.0_wp)
+
+  !> Position as a function of zeta in the columns, x = x_0 + zeta d: tangents and directors.
+  type :: columns_t
+    !> dx_0/dxi and dx_0/deta, and those of the director, mm: `(3,2,n_column)`.
+    real(wp) :: membrane(3, 2, n_column), bending(3, 2, n_column)
+    !> Director d, half the thickness, mm: `(3,n_column)`.
+    real(wp) :: director(3, n_column)
+  end type columns_t
+
+  !> Data of one element.
+  type :: shell_work_t
+    !> Shape functions of the plane and their derivatives in xi and eta at the columns.
+    real(wp) :: shape(n_corner, n_column), slope(n_corner, 2, n_column)
+    !> Committed and trial geometry of the columns, and their increment.
+    type(columns_t) :: committed, trial
+    !> Weight of the mean director in the mean thickness strain, 0 to 1.
+    real(wp) :: centre_weight = 0.0_wp
+    !> Coefficients of the natural strains: `strain(n_natural,n_column)`.
+    real(wp) :: strain(n_natural, n_column)
+    !> Their derivatives in the nodal positions, 1/mm: `operator(24,n_natural,n_column)`.
+    real(wp) :: operator(24, n_natural, n_column)
+    !> Forces conjugate to the generalised strains, N mm: `resultant(n_general,n_column)`.
+    real(wp) :: resultant(n_general, n_column)
+    !> Contravariant vector of zeta, 1/mm, and Jacobian determinant, mm3, at the element's centre in
+    !> the committed configuration.
+    real(wp) :: centre_normal(3), centre_jacobian
+    !> Contravariant base vectors, as columns, of the trial configuration before its rotation in the
+    !> material frame, 1/mm: `base(3,3,n_point)`.
+    real(wp), allocatable :: base(:, :, :)
+    !> Vector of zeta at the centre, so transformed, times (j_0/j)^(1/2): `normal(3,n_point)`.
+    real(wp), allocatable :: normal(:, :)
+    !> Quadrature weight times Jacobian in the trial configuration, mm3: `volume(n_point)`.
+    real(wp), allocatable :: volume(:)
+  end type shell_work_t
+
+contains
+
+  !> Allocate the workspace and evaluate the shape functions.
+  subroutine new_shell_work(self, n_point)
+    type(shell_work_t), intent(out) :: self
+    !> Number of integration points of the element.
+    integer, intent(in) :: n_point
+
+    integer :: a, q
+
+    do q = 1, n_column
+      do a = 1, n_corner
+        associate (part => 1.0_wp + plane_point(:, q)*corner(:, a))
+          self%shape(a, q) = 0.25_wp*part(1)*part(2)
+          self%slope(a, 1, q) = 0.25_wp*corner(1, a)*part(2)
+          self%slope(a, 2, q) = 0.25_wp*corner(2, a)*part(1)
+        end associate
+      end do
+    end do
+    allocate (self%base(3, 3, n_point), self%normal(3, n_point), self%volume(n_point))
+  end subroutine new_shell_work
+
+end module dd3_element_shell_work

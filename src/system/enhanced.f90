@@ -1,0 +1,100 @@
+!> Parameters of the enhanced strains, internal to the elements, as unknowns of the increment. They
+!> are eliminated from the linear system element by element and follow the displacements (stored
+!> condensation, Simo & Rifai 1990): da = -(offset + gain : du).
+module dd3_system_enhanced
+  use dd3_base_kinds, only : wp
+  use dd3_element_work, only : element_work_t
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: enhanced_t, new_enhanced, store_condensation, enhanced_response, subtract_condensed, &
+      enhanced_square
+
+  !> Data of the condensation; arrays of size zero for elements without enhanced strains.
+  type :: enhanced_t
+    !> Forces conjugate to the parameters, zero in equilibrium, `(n_enhanced, n_element)`, N mm.
+    real(wp), allocatable :: residual(:, :)
+    !> Increments of the parameters without displacement, and for unit displacements (1/mm),
+    !> `(n_enhanced, n_element)` and `(n_enhanced, 3, n_element_node, n_element)`; their signs are
+    !> reversed.
+    real(wp), allocatable :: offset(:, :), gain(:, :, :, :)
+    !> Forces to be subtracted from the residual beside the condensed stiffness, `(3, n_node)`, N.
+    real(wp), allocatable :: force(:, :)
+  end type enhanced_t
+
+contains
+
+  !> Allocate the data and set them to zero.
+  subroutine new_enhanced(self, model)
+    type(enhanced_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+
+    associate (m => model%element%n_enhanced, n => model%n_element)
+      allocate (self%residual(m, n), self%offset(m, n), source=0.0_wp)
+      allocate (self%gain(m, 3, model%element%n_node, n), source=0.0_wp)
+      allocate (self%force(3, merge(model%n_node, 0, m > 0)), source=0.0_wp)
+    end associate
+  end subroutine new_enhanced
+
+  !> Store the condensation of an element's stiffness.
+  subroutine store_condensation(self, model, e, work)
+    type(enhanced_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: e
+    type(element_work_t), intent(in) :: work
+
+    integer :: a
+
+    self%offset(:, e) = work%enhanced_offset
+    self%gain(:, :, :, e) = work%enhanced_gain
+    do a = 1, model%element%n_node
+      associate (node => model%connectivity(a, e))
+        self%force(:, node) = self%force(:, node) + work%condensed_force(:, a)
+      end associate
+    end do
+  end subroutine store_condensation
+
+  !> Return the response of the parameters to the displacements of the linear system's solution; the
+  !> offset comes on top.
+  pure function enhanced_response(self, model, solution) result(increment)
+    type(enhanced_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Displacements, `(3*n_row)`, mm.
+    real(wp), intent(in) :: solution(:)
+    real(wp) :: increment(size(self%offset, 1), size(self%offset, 2))
+
+    integer :: a, e, i, node
+
+    increment = 0.0_wp
+    if (size(increment) == 0) return
+    do e = 1, model%n_element
+      do a = 1, model%element%n_node
+        node = model%connectivity(a, e)
+        do i = 1, 3
+          increment(:, e) = increment(:, e) - self%gain(:, i, a, e)*solution(3*node - 3 + i)
+        end do
+      end do
+    end do
+  end function enhanced_response
+
+  !> Subtract the forces of the condensation from the residual of the nodes.
+  pure subroutine subtract_condensed(self, residual)
+    type(enhanced_t), intent(in) :: self
+    !> `(3, n_node)`, N.
+    real(wp), intent(inout) :: residual(:, :)
+
+    if (size(self%force) > 0) residual = residual - self%force
+  end subroutine subtract_condensed
+
+  !> Return the sum of squares of the parameters' residuals as forces on the faces of the elements,
+  !> N2. A parameter is a strain at the face; half the thickness times it is the motion of the face.
+  pure real(wp) function enhanced_square(self, thickness) result(total)
+    type(enhanced_t), intent(in) :: self
+    !> mm.
+    real(wp), intent(in) :: thickness
+
+    total = 0.0_wp
+    if (size(self%residual) > 0) total = sum((self%residual*(2.0_wp/thickness))**2)
+  end function enhanced_square
+
+end module dd3_system_enhanced
