@@ -94,7 +94,7 @@ contains
           "'size' is missing in *BLANK "//block%called(), "size = lx ly lz for a box, or "// &
           "radius = R and thickness = t for a round blank")
       do i = 1, size(round_keys)
-        if (given(block, trim(round_keys(i)))) call errors%push_input( &
+        if (block%given(trim(round_keys(i)))) call errors%push_input( &
             block%at(trim(round_keys(i))), "'"//trim(round_keys(i))//"' is a key of a round "// &
             "blank", "radius, thickness and portion, or size alone")
       end do
@@ -103,7 +103,7 @@ contains
     if (block%find("thickness") == 0) call errors%push_input(block%opened, &
         "'thickness' is missing in *BLANK "//block%called(), "thickness = t with radius = R")
     do i = 1, size(box_keys)
-      if (given(block, trim(box_keys(i)))) call errors%push_input(block%at(trim(box_keys(i))), &
+      if (block%given(trim(box_keys(i)))) call errors%push_input(block%at(trim(box_keys(i))), &
           "'"//trim(box_keys(i))//"' is a key of a box; this blank is round", &
           "radius, thickness, portion and divisions")
     end do
