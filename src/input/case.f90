@@ -282,8 +282,8 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Whether the set is the end section of a bent bar.
     logical :: bends = .false.
-    !> Point and direction of the axis (mm), and the angle (degrees): over the phase, of a bend at its
-    !> end.
+    !> Point and direction of the axis (mm), and the angle (degrees): over the phase, of a bend at
+    !> its end.
     real(wp) :: value(7) = 0.0_wp
     type(location_t) :: at
   end type motion_spec_t

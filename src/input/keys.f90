@@ -229,8 +229,8 @@ contains
           repeatable=.true., form="set number number number"), &
       row("pressure", kind_other, "MPa", "-", "pressure at the end of the phase on the faces "// &
           "with all nodes in the set; follows the faces", repeatable=.true., form="set number"), &
-      row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point and "// &
-          "direction of the axis, angle", repeatable=.true., &
+      row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point "// &
+          "and direction of the axis, angle", repeatable=.true., &
           form="set number number number number number number number"), &
       row("bend", kind_other, "mm, degrees", "-", "angle at the end of the phase of the end "// &
           "section of a bar bent to an arc: set, point at its fixed end, direction of the "// &

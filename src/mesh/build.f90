@@ -134,6 +134,23 @@ contains
         moved(axis, node) = .true.
       end associate
     end do
+    call check_motions(mesh, phase, held, moved, errors)
+    led = led .or. (moved .and. .not. held)
+  end subroutine check_displacements
+
+  !> Report rotations and bends of nodes that are fixed by a boundary condition, or displaced twice.
+  subroutine check_motions(mesh, phase, held, moved, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(phase_spec_t), intent(in) :: phase
+    !> Directions fixed by *BOUNDARY, `(3, n_node)`.
+    logical, intent(in) :: held(:, :)
+    !> Directions that the phase displaces, `(3, n_node)`; gets those of rotations and bends.
+    logical, intent(inout) :: moved(:, :)
+    type(error_list_t), intent(inout) :: errors
+
+    integer, allocatable :: node(:)
+    integer :: i, axis
+
     do i = 1, size(phase%motion)
       node = mesh%nodes_of(phase%motion(i)%set)
       do axis = 1, 3
@@ -150,8 +167,7 @@ contains
         moved(axis, node) = .true.
       end do
     end do
-    led = led .or. (moved .and. .not. held)
-  end subroutine check_displacements
+  end subroutine check_motions
 
   !> Whether a vector is along a coordinate axis.
   pure logical function is_along(vector, axis)

@@ -1,6 +1,6 @@
-!> Reader of a strict subset of the `.inp` files of Abaqus and CalculiX: *HEADING, *NODE, *ELEMENT of
-!> one type, *NSET and *ELSET. Anything else is refused by name and line. The result is the file as
-!> plain data, with nodes and elements by label; all errors of a file are reported.
+!> Reader of a strict subset of the `.inp` files of Abaqus and CalculiX: *HEADING, *NODE, *ELEMENT
+!> of one type, *NSET and *ELSET. Anything else is refused by name and line. The result is the file
+!> as plain data, with nodes and elements by label; all errors of a file are reported.
 module dd3_mesh_inp_file
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, error_list_t, location_t

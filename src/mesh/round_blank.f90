@@ -64,59 +64,84 @@ contains
     type(quarter_t), intent(out) :: self
     type(blank_spec_t), intent(in) :: blank
 
-    real(wp) :: half_side, bulge, angle, radius, t
-    integer :: i, j, n
+    integer :: n
 
     self%core = blank%divisions(1)
     self%ring = blank%divisions(2)
     n = 2*self%core
     allocate (self%core_x(2, 0:n, 0:n), self%ring_x(2, 0:2*self%ring, 0:2*n))
-    ! Arc of the outer edge; its last chord is tilted by `tilt`.
-    angle = tilt/(1.0_wp - 0.5_wp/real(self%core, wp))
-    bulge = blank%radius*min(largest_core, max(smallest_core, real(self%core, wp) &
-        /real(self%core + self%ring, wp)))
-    radius = bulge/(sin(angle) + 1.0_wp - cos(angle))
-    half_side = radius*sin(angle)
-    do j = 0, n, 2
-      do i = 0, j, 2
-        ! Transfinite interpolation; below the diagonal, (j, i), then mirrored.
-        self%core_x(:, j, i) = core_point(real(j, wp)/real(n, wp), real(i, wp)/real(n, wp))
-        self%core_x(:, i, j) = self%core_x([2, 1], j, i)
-      end do
-      self%core_x(1, j, j) = self%core_x(2, j, j)
-    end do
+    call place_core(self%core_x, self%core, blank%radius*min(largest_core, max(smallest_core, &
+        real(self%core, wp)/real(self%core + self%ring, wp))))
     call add_middles(self%core_x)
     self%ring_x(:, 0, :n) = self%core_x(:, n, :)
     self%ring_x(:, 0, n:) = self%core_x(:, n:0:-1, n)
-    do j = 0, n, 2
-      t = 0.25_wp*pi*real(j, wp)/real(n, wp)
-      do i = 2, 2*self%ring, 2
-        associate (f => real(i, wp)/real(2*self%ring, wp))
-          self%ring_x(:, i, j) = (1.0_wp - f)*self%ring_x(:, 0, j) &
-              + f*blank%radius*[cos(t), sin(t)]
-          if (j == n) self%ring_x(1, i, j) = self%ring_x(2, i, j)
-          self%ring_x(:, i, 2*n - j) = self%ring_x([2, 1], i, j)
-        end associate
-      end do
-    end do
+    call place_ring(self%ring_x, n, blank%radius)
     call add_middles(self%ring_x)
+  end subroutine new_quarter
+
+  !> Place the corners of the elements of the core by transfinite interpolation: below the diagonal,
+  !> then mirrored.
+  pure subroutine place_core(x, n_element, side)
+    real(wp), intent(inout) :: x(:, 0:, 0:)
+    !> Number of elements along a side.
+    integer, intent(in) :: n_element
+    !> Length of the sides along the axes, mm.
+    real(wp), intent(in) :: side
+
+    real(wp) :: angle, radius
+    integer :: i, j, n
+
+    n = 2*n_element
+    ! Arc of the outer sides; its last chord is tilted by `tilt`.
+    angle = tilt/(1.0_wp - 0.5_wp/real(n_element, wp))
+    radius = side/(sin(angle) + 1.0_wp - cos(angle))
+    do j = 0, n, 2
+      do i = 0, j, 2
+        x(:, j, i) = point(real(j, wp)/real(n, wp), real(i, wp)/real(n, wp))
+        x(:, i, j) = x([2, 1], j, i)
+      end do
+      x(1, j, j) = x(2, j, j)
+    end do
 
   contains
 
     !> Return a point of the core, a and b from 0 to 1 along x and y.
-    pure function core_point(a, b) result(x)
+    pure function point(a, b)
       real(wp), intent(in) :: a, b
-      real(wp) :: x(2)
+      real(wp) :: point(2)
 
       real(wp) :: right(2), upper(2)
 
-      right = [bulge - radius*(1.0_wp - cos(angle*b)), radius*sin(angle*b)]
-      upper = [radius*sin(angle*a), bulge - radius*(1.0_wp - cos(angle*a))]
-      x = a*right + [0.0_wp, (1.0_wp - a)*b*bulge] + b*upper + [(1.0_wp - b)*a*bulge, 0.0_wp] &
-          - [a*(1.0_wp - b)*bulge, (1.0_wp - a)*b*bulge] - a*b*half_side
-    end function core_point
+      right = [side - radius*(1.0_wp - cos(angle*b)), radius*sin(angle*b)]
+      upper = [radius*sin(angle*a), side - radius*(1.0_wp - cos(angle*a))]
+      point = a*right + [0.0_wp, (1.0_wp - a)*b*side] + b*upper + [(1.0_wp - b)*a*side, 0.0_wp] &
+          - [a*(1.0_wp - b)*side, (1.0_wp - a)*b*side] - a*b*radius*sin(angle)
+    end function point
 
-  end subroutine new_quarter
+  end subroutine place_core
+
+  !> Place the corners of the elements of the ring, on straight lines from the core to the rim.
+  pure subroutine place_ring(x, n, radius)
+    !> The points of the core are given.
+    real(wp), intent(inout) :: x(:, 0:, 0:)
+    !> Number of the point on the diagonal.
+    integer, intent(in) :: n
+    real(wp), intent(in) :: radius
+
+    real(wp) :: angle, fraction
+    integer :: i, j, last
+
+    last = ubound(x, 2)
+    do j = 0, n, 2
+      angle = 0.25_wp*pi*real(j, wp)/real(n, wp)
+      do i = 2, last, 2
+        fraction = real(i, wp)/real(last, wp)
+        x(:, i, j) = (1.0_wp - fraction)*x(:, 0, j) + fraction*radius*[cos(angle), sin(angle)]
+        if (j == n) x(1, i, j) = x(2, i, j)
+        x(:, i, 2*n - j) = x([2, 1], i, j)
+      end do
+    end do
+  end subroutine place_ring
 
   !> Set the points between even ones to their means.
   pure subroutine add_middles(x)
@@ -171,18 +196,8 @@ contains
         end do
       end do
       self%on(3, ring(m, :, q)) = .true.
-      do i = 0, n - 2, 2
-        do j = 0, n - 2, 2
-          n_cell = n_cell + 1
-          self%cell(:, :, n_cell) = core(i:i + 2, j:j + 2, q)
-        end do
-      end do
-      do j = 0, 2*n - 2, 2
-        do i = 0, m - 2, 2
-          n_cell = n_cell + 1
-          self%cell(:, :, n_cell) = ring(i:i + 2, j:j + 2, q)
-        end do
-      end do
+      call add_cells(self%cell, n_cell, core(:, :, q))
+      call add_cells(self%cell, n_cell, ring(:, :, q))
     end do
     self%on(1, :self%n_point) = abs(self%x(1, :self%n_point)) <= 0.0_wp
     self%on(2, :self%n_point) = abs(self%x(2, :self%n_point)) <= 0.0_wp
@@ -198,6 +213,22 @@ contains
     end function turn
 
   end subroutine new_plane
+
+  !> Append the quadrilaterals of a grid.
+  pure subroutine add_cells(cell, n_cell, number)
+    integer, intent(inout) :: cell(:, :, :), n_cell
+    !> Points of the grid.
+    integer, intent(in) :: number(0:, 0:)
+
+    integer :: i, j
+
+    do j = 0, ubound(number, 2) - 2, 2
+      do i = 0, ubound(number, 1) - 2, 2
+        n_cell = n_cell + 1
+        cell(:, :, n_cell) = number(i:i + 2, j:j + 2)
+      end do
+    end do
+  end subroutine add_cells
 
   !> Add a point of a quarter unless it has a number.
   pure subroutine add_point(self, x, quadrant, number)

@@ -124,7 +124,8 @@ contains
 
     if (model%element%n_node == 0) return
     if (size(case%mesh) /= 1) return
-    if (case%mesh(1)%source%has("file")) call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
+    if (.not. case%mesh(1)%source%has("file")) return
+    call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
   end subroutine check_mesh_file
 
   !> Report a linear solver that is not in the registry.
