@@ -103,6 +103,7 @@ contains
     type(digest_t) :: digest
 
     call digest%add(trim(model%element%name))
+    if (model%element%n_thickness_point > 0) call digest%add([model%element%n_thickness_point])
     call digest%add(reshape(model%x0, [size(model%x0)]))
     call digest%add(reshape(model%connectivity, [size(model%connectivity)]))
     call digest%add(model%material_of)

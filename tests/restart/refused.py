@@ -18,6 +18,7 @@ DIE = ROOT / "input_files" / "bending" / "die.bez"
 DIFFERENT = {
     "other mesh": ((("divisions = 10 2 1", "divisions = 10 3 1"),), "the mesh"),
     "other size": ((("175 35 0.78", "176 35 0.78"),), "the mesh"),
+    "other element": ((("element = hex8", "element = solid_shell"),), "the mesh"),
     "other mesh and material": ((("divisions = 10 2 1", "divisions = 10 3 1"), ("K=565", "K=566")),
                                 "the mesh, material 'mild_steel'"),
     "other hardening": ((("K=565", "K=566"),), "material 'mild_steel'"),
