@@ -14,11 +14,12 @@ module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_element_log_strain, only : polar_increment, rotate_axes, stretch_of_green
-  use dd3_element_shell_strain, only : column_geometry, natural_rates, natural_strains
+  use dd3_element_shell_strain, only : column_geometry, mean_director_weight, natural_rates, &
+      natural_strains
   use dd3_element_shell_work, only : columns_t, n_column, n_natural, plane_point, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
-  use dd3_linalg_tensor, only : cross, determinant, kelvin_deviator, tensor_from_kelvin
+  use dd3_linalg_tensor, only : cross, determinant
   implicit none
   private
   public :: shell_deform, shell_linearise, shell_rate
@@ -42,7 +43,7 @@ contains
     associate (shell => work%shell, n => element%n_point/n_column)
       call column_geometry(work%x_committed, work%x_trial, shell)
       call set_centre(shell)
-      shell%centre_weight = pressure_weight(element, rotation_committed, work)
+      shell%centre_weight = mean_director_weight(work%x_initial)
       call natural_strains(work%x_committed, work%x_trial, shell)
       do q = 1, n_column
         enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))
@@ -90,35 +91,6 @@ contains
       if (shell%centre_jacobian > 0.0_wp) shell%centre_normal = normal/shell%centre_jacobian
     end associate
   end subroutine set_centre
-
-  !> Return the weight of the mean director in the thickness strain, from the committed stress: it
-  !> rises with the pressure across the sheet and is 1 from a quarter of the equivalent stress on,
-  !> below which bending holds the directors. The pressure on the outside of a bend is far smaller.
-  pure real(wp) function pressure_weight(element, rotation_committed, work) result(weight)
-    type(element_t), intent(in) :: element
-    !> Committed material axes, as columns.
-    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
-    !> Holds the committed stress.
-    type(element_work_t), intent(in) :: work
-
-    real(wp) :: pressure, size, normal(3)
-    integer :: p
-
-    weight = 0.0_wp
-    if (.not. work%shell%centre_jacobian > 0.0_wp) return
-    pressure = 0.0_wp
-    size = 0.0_wp
-    do p = 1, element%n_point
-      normal = matmul(work%shell%centre_normal, rotation_committed(:, :, p))
-      associate (stress => work%stress(:, p))
-        pressure = pressure - element%weight(p)*dot_product(normal, &
-            matmul(tensor_from_kelvin(stress), normal))
-        size = size + element%weight(p)*norm2(kelvin_deviator(stress))
-      end associate
-    end do
-    pressure = pressure/sum(work%shell%centre_normal**2)
-    if (pressure > 0.0_wp) weight = min(1.0_wp, 4.0_wp*pressure/max(sqrt(1.5_wp)*size, pressure))
-  end function pressure_weight
 
   !> Deform a point.
   subroutine deform_point(q, p, zeta, enhanced, axes, weight, work, verdict)

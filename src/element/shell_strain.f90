@@ -9,8 +9,9 @@
 !> Schweizerhof 1998).
 !>
 !> Directors that tilt in turns to both sides are longer between two tools, and no assumed shear
-!> resists: under pressure across the sheet they would buckle. There the mean of e_33 is that of the
-!> mean director, which does not tilt; `centre_weight` is its weight.
+!> resists: under pressure across the sheet they would buckle. Therefore the mean of e_33 is that of
+!> the mean director, which does not tilt, if the element is flat in the initial mesh;
+!> `centre_weight` is its weight.
 !>
 !> Internally the element has mid-surface positions m_A = (bottom + top)/2 and directors
 !> d_A = (top - bottom)/2 at its corners.
@@ -20,7 +21,8 @@ module dd3_element_shell_strain
       plane_point, shell_work_t
   implicit none
   private
-  public :: column_geometry, natural_strains, strain_operators, natural_rates, initial_stress
+  public :: column_geometry, mean_director_weight, natural_strains, strain_operators, &
+      natural_rates, initial_stress
 
   !> Corners at the ends of the edges eta = -1, eta = 1 (along xi) and xi = -1, xi = 1 (along eta).
   integer, parameter :: edge(2, 4) = reshape([1, 2, 4, 3, 1, 4, 2, 3], [2, 4])
@@ -48,6 +50,27 @@ contains
     call split(x_trial, mid, director)
     call set_columns(shell, mid, director, shell%trial)
   end subroutine column_geometry
+
+  !> Return the weight of the mean director in the mean thickness strain: 1 for an element that is
+  !> flat in the initial mesh. On curved elements it would lock; the weight falls with the square of
+  !> their rise over their thickness and is 0 from a rise of about an eighth on.
+  pure real(wp) function mean_director_weight(x_initial) result(weight)
+    !> Initial positions of the nodes, mm.
+    real(wp), intent(in) :: x_initial(3, 8)
+
+    real(wp) :: mid(3, 4), director(3, 4), mean(3), spread, length
+    integer :: a
+
+    call split(x_initial, mid, director)
+    mean = 0.25_wp*sum(director, dim=2)
+    spread = 0.0_wp
+    length = 0.0_wp
+    do a = 1, n_corner
+      spread = spread + sum((director(:, a) - mean)**2)
+      length = max(length, sum((mid(:, edge(2, a)) - mid(:, edge(1, a)))**2))
+    end do
+    weight = max(0.0_wp, 1.0_wp - 0.25_wp*spread*length/sum(mean**2)**2)
+  end function mean_director_weight
 
   !> Evaluate the natural strains of an increment; call `column_geometry` first.
   pure subroutine natural_strains(x_committed, x_trial, shell)

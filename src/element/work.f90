@@ -8,8 +8,8 @@ module dd3_element_work
 
   !> Data and results of one element. Kelvin vectors at points are in the material frame.
   type :: element_work_t
-    !> Committed and trial positions of the nodes, mm, set by the caller: `(3,n_node)`.
-    real(wp), allocatable :: x_committed(:, :), x_trial(:, :)
+    !> Initial, committed and trial positions of the nodes, mm, set by the caller: `(3,n_node)`.
+    real(wp), allocatable :: x_initial(:, :), x_committed(:, :), x_trial(:, :)
     !> Gradients of the shape functions in the trial configuration, 1/mm:
     !> `gradient(n_node,3,n_point)`.
     real(wp), allocatable :: gradient(:, :, :)
@@ -29,8 +29,7 @@ module dd3_element_work
     real(wp), allocatable :: strain(:, :)
     !> Trial material axes, as columns, in the global frame: `rotation(3,3,n_point)`.
     real(wp), allocatable :: rotation(:, :, :)
-    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: the committed one before
-    !> `deform` and `linearise`, then that of the trial configuration: `stress(6,n_point)`.
+    !> Cauchy stress, MPa, Kelvin, material frame, set by the caller: `stress(6,n_point)`.
     real(wp), allocatable :: stress(:, :)
     !> d stress/d strain, MPa, material frame, set by the caller: `tangent(6,6,n_point)`.
     real(wp), allocatable :: tangent(:, :, :)
@@ -80,7 +79,7 @@ contains
     integer, intent(in) :: n_node, n_point, n_group, n_enhanced
 
     associate (n => n_node, p => n_point, g => n_group, m => n_enhanced)
-      allocate (self%x_committed(3, n), self%x_trial(3, n))
+      allocate (self%x_initial(3, n), self%x_committed(3, n), self%x_trial(3, n))
       allocate (self%gradient(n, 3, p), self%mean_gradient(n, 3, g))
       allocate (self%weight(p), self%weight_committed(p), self%volume(g), self%volume_committed(g))
       allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))

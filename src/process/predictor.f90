@@ -201,7 +201,7 @@ contains
           element => model%element)
         work%x_committed(:, :) = committed%x(:, nodes)
         work%enhanced(:) = self%enhanced(:, e)
-        work%stress(:, :) = committed%stress(:, :, e)
+        work%x_initial(:, :) = model%x0(:, nodes)
         call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
         call element%evaluate_rate(element, self%displacement(:, nodes), &
             committed%orientation(:, :, :, e), work)

@@ -83,7 +83,7 @@ contains
       work%x_committed(:, :) = committed%x(:, nodes)
       work%x_trial(:, :) = trial%x(:, nodes)
       work%enhanced(:) = trial%enhanced(:, e)
-      work%stress(:, :) = committed%stress(:, :, e)
+      work%x_initial(:, :) = model%x0(:, nodes)
       call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
       verdict%element = e
       if (verdict%outcome /= verdict_converged) return
@@ -150,7 +150,7 @@ contains
     type(verdict_t) :: verdict
 
     work%x_committed(:, :) = committed%x(:, model%connectivity(:, e))
-    work%stress(:, :) = committed%stress(:, :, e)
+    work%x_initial(:, :) = model%x0(:, model%connectivity(:, e))
     associate (element => model%element)
       if (present(trial)) then
         work%x_trial(:, :) = trial%x(:, model%connectivity(:, e))
@@ -159,6 +159,7 @@ contains
         work%stress(:, :) = trial%stress(:, :, e)
       else
         call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+        work%stress(:, :) = committed%stress(:, :, e)
       end if
       call element%set_stress(element, work)
     end associate

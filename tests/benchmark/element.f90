@@ -82,6 +82,7 @@ contains
     call random_number(work%x_trial)
     call random_number(work%stress)
     work%stress = 200.0_wp*work%stress
+    work%x_initial = element%node
     work%x_committed = element%node + 0.1_wp*work%x_committed
     work%x_trial = work%x_committed + 0.003_wp*work%x_trial
     axes = 0.0_wp

@@ -225,7 +225,7 @@ contains
 
     work%x_committed(:, :) = x_committed
     work%x_trial(:, :) = x_trial
-    work%stress(:, :) = start
+    work%x_initial(:, :) = x_committed
     call element%deform(element, rotation_committed, work, verdict)
     ok = verdict%outcome == verdict_converged
     if (.not. ok) return
