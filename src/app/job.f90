@@ -221,6 +221,10 @@ contains
         trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
         to_text(model%n_contact)//" candidates for contact with "//to_text(model%n_tool)//" tools")
     end if
+    do i = 1, size(case%mesh)
+      call log%say("mesh of "//case%mesh(i)%file//": thickness from z_min to z_max "// &
+          thickness_range(model)//" mm")
+    end do
     call unit_warnings(case, model, warnings)
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
@@ -233,6 +237,15 @@ contains
           ": its yield surface is taken though it may not be convex")
     end do
   end subroutine introduce
+
+  !> Return the thickness of the sheet, or its range, as text.
+  pure function thickness_range(model) result(text)
+    type(model_t), intent(in) :: model
+    character(len=:), allocatable :: text
+
+    text = to_text(model%thickness, 4)
+    if (allocated(model%node_thickness)) text = text//" to "//to_text(model%largest_thickness(), 4)
+  end function thickness_range
 
   !> Log the totals of the run.
   subroutine conclude(log, summary)

@@ -11,8 +11,8 @@ module dd3_mesh_layers
   !> Outcome of the search.
   integer, parameter :: layers_found = 0, layers_none = 1, layers_ambiguous = 2
   !> A direction is the thickness if the body is at most this fraction as long along it as along any
-  !> other direction of extrusion.
-  real(wp), parameter :: thin = 0.5_wp
+  !> other direction of extrusion: a strip for plane strain may be narrower than it is thick.
+  real(wp), parameter :: thin = 0.1_wp
   !> Components of the mean thickness vector over its length below which it is not upright.
   real(wp), parameter :: upright = 1.0e-6_wp
 

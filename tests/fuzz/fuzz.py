@@ -177,7 +177,7 @@ def mutate_numbers(data, _, dice):
 
 def named_files(data, folder):
     """Return the files that a deck names and that exist."""
-    words = set(re.findall(rb'[\w./-]+\.(?:bez|inc|txt|dat|csv)', data))
+    words = set(re.findall(rb'[\w./-]+\.(?:bez|inp|inc|txt|dat|csv)', data))
     return sorted(word for word in words if (folder / word.decode()).is_file())
 
 
