@@ -1,7 +1,9 @@
 !> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean
 !> of the Cauchy stress, g_a the group's mean gradient; sum w j T G_a for points without a group.
+!> With a projection of the dilatation the sum of pi g_a is that of Pi_k g_a,k over its groups.
 module dd3_element_force
   use dd3_base_kinds, only : half_sqrt2, wp
+  use dd3_element_projection, only : project_mean_stress
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   implicit none
@@ -28,6 +30,7 @@ contains
       work%mean_stress_integral(g) = work%mean_stress_integral(g) &
           + (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
     end do
+    if (allocated(element%projection)) call project_mean_stress(element%n_point, work)
   end subroutine element_cauchy
 
   !> Evaluate the internal forces; call `element_cauchy` first.

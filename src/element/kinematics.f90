@@ -5,6 +5,7 @@
 module dd3_element_kinematics
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_element_projection, only : project_dilatations, project_gradients
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   implicit none
@@ -39,7 +40,12 @@ contains
         call record_failure(verdict, bad_point)
         return
       end if
-      call dilatations(m, element%n_group, element%group, work)
+      if (allocated(element%projection)) then
+        call project_dilatations(m, element%n_group, element%projection, work, bad_point)
+        if (bad_point > 0) call record_failure(verdict, bad_point)
+      else
+        call dilatations(m, element%n_group, element%group, work)
+      end if
     end associate
   end subroutine element_kinematics
 
@@ -67,8 +73,14 @@ contains
         call jacobians(3*m, n, element%slope, x, work%jacobian)
         call gradients(n, m, element%slope_row, element%weight, work%jacobian, work%gradient, &
             work%weight, bad_point)
-        if (bad_point == 0) call mean_gradients(3*n, m, g, element%group, work%weight, &
-            work%gradient, work%mean_gradient, work%volume)
+        if (bad_point > 0) then
+          continue
+        else if (allocated(element%projection)) then
+          call project_gradients(3*n, m, g, element%projection, work, bad_point)
+        else
+          call mean_gradients(3*n, m, g, element%group, work%weight, work%gradient, &
+              work%mean_gradient, work%volume)
+        end if
       end if
     end associate
     verdict%outcome = verdict_converged

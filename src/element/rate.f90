@@ -23,8 +23,12 @@ contains
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: l(3, 3), q(3, 3), excess
+    real(wp) :: mean(element%n_group)
     integer :: g, i, p
 
+    do g = 1, element%n_group
+      mean(g) = mean_dilatation(element%n_node, du, work%mean_gradient(:, :, g))
+    end do
     do p = 1, element%n_point
       g = element%group(p)
       l = displacement_gradient(element%n_node, du, work%gradient(:, :, p))
@@ -33,7 +37,11 @@ contains
       l = 0.5_wp*(l + transpose(l))
       if (g > 0) then
         excess = l(1, 1) + l(2, 2) + l(3, 3)
-        excess = (mean_dilatation(element%n_node, du, work%mean_gradient(:, :, g)) - excess)/3.0_wp
+        if (allocated(element%projection)) then
+          excess = (dot_product(work%fraction(p, :), mean) - excess)/3.0_wp
+        else
+          excess = (mean(g) - excess)/3.0_wp
+        end if
         do i = 1, 3
           l(i, i) = l(i, i) + excess
         end do

@@ -2,6 +2,8 @@
 !> kernels of its own gets those of the mean dilatation.
 module dd3_element_registry
   use dd3_base_error, only : error_t, fatal_error
+  use dd3_element_hex20, only : new_hex20
+  use dd3_element_hex27, only : new_hex27
   use dd3_element_hex8, only : new_hex8
   use dd3_element_mean_dilatation, only : use_mean_dilatation
   use dd3_element_solid_shell, only : new_solid_shell
@@ -44,7 +46,9 @@ contains
     type(row_t), allocatable :: row(:)
 
     row = [row_t("hex8", new_hex8), &
-        row_t("solid_shell", make_layered=new_solid_shell)]
+        row_t("solid_shell", make_layered=new_solid_shell), &
+        row_t("hex20", new_hex20), &
+        row_t("hex27", new_hex27)]
   end function registry
 
   !> Return the names of all elements.

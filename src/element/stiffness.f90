@@ -11,6 +11,11 @@
 !> All terms with the mean gradients, their variation included, are outer products, formed once per
 !> group. The sum over points and directions is one product of a (9 n_node) x (3 n_point) by a
 !> (3 n_point) x n_node matrix.
+!>
+!> With a projection of the dilatation (dd3_element_projection), c_pk the fractions of its groups:
+!>   S = T - pi I + sum_k (a_pk Pi_k/v_k) I, p_ak = sum c_pk w j dev(m) G_a/3,
+!>   q_bk = sum c_pk w j (tr c'/3 + pi I).G_b + sum_l sum c_pk c_pl w j (tr m/9 - pi) g_bl,
+!> and the outer products are summed over k.
 module dd3_element_stiffness
   use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_element_moduli, only : point_moduli
@@ -41,7 +46,11 @@ contains
         call add_outer(8, 1, work%row_factor, work%column_factor, work%mean_gradient, &
             work%stiffness)
       else
-        call point_operators(n, m, g, element%group, work)
+        if (allocated(element%projection)) then
+          call projected_operators(n, m, g, element%projection, work)
+        else
+          call point_operators(n, m, g, element%group, work)
+        end if
         call sum_points(9*n, 3*m, n, work%contracted, work%gradient, work%stiffness)
         call add_outer(n, g, work%row_factor, work%column_factor, work%mean_gradient, &
             work%stiffness)
@@ -94,6 +103,66 @@ contains
       end do
     end do
   end subroutine point_operators
+
+  !> Evaluate the same for an element with a projection of the dilatation.
+  subroutine projected_operators(n_node, n_point, n_group, projection, work)
+    integer, intent(in) :: n_node, n_point, n_group
+    !> a_pk.
+    real(wp), intent(in) :: projection(n_point, n_group)
+    !> Sets `contracted`, `row_factor` and `column_factor`.
+    type(element_work_t), intent(inout) :: work
+
+    real(wp) :: c(6, 6), s(3, 3), row(6), column(6), operator(3, 3, 3, 3), mean, bulk, &
+        coupling(n_group, n_group), pressure(n_group), part(n_node, 3)
+    integer :: i, k, l, p
+
+    work%row_factor = 0.0_wp
+    work%column_factor = 0.0_wp
+    coupling = 0.0_wp
+    pressure = work%mean_stress_integral/work%volume
+    do p = 1, n_point
+      call point_moduli(work%strain(:, p), work%stress(:, p), work%tangent(:, :, p), &
+          work%rotation(:, :, p), c)
+      s = work%cauchy(:, :, p)
+      mean = (s(1, 1) + s(2, 2) + s(3, 3))/3.0_wp
+      call split_volume(c, row, column)
+      bulk = (row(1) + row(2) + row(3))/3.0_wp
+      column(1:3) = column(1:3) + mean
+      row(1:3) = row(1:3) - bulk
+      call add_to_groups(row, work%row_factor)
+      call add_to_groups(column, work%column_factor)
+      do l = 1, n_group
+        coupling(:, l) = coupling(:, l) &
+            + (work%weight(p)*(bulk - mean)*work%fraction(p, l))*work%fraction(p, :)
+      end do
+      do i = 1, 3
+        s(i, i) = s(i, i) - mean + dot_product(projection(p, :), pressure)
+      end do
+      call point_operator(work%weight(p), c, s, operator)
+      call contract(n_node, operator, work%gradient(:, :, p), work%contracted(:, :, :, :, p))
+    end do
+    do k = 1, n_group
+      do l = 1, n_group
+        work%column_factor(:, :, k) = work%column_factor(:, :, k) &
+            + coupling(k, l)*work%mean_gradient(:, :, l)
+      end do
+    end do
+
+  contains
+
+    !> Add w j times a symmetric tensor, applied to the gradients of point p, to all groups.
+    subroutine add_to_groups(kelvin, factor)
+      real(wp), intent(in) :: kelvin(6)
+      real(wp), intent(inout) :: factor(n_node, 3, n_group)
+
+      part = 0.0_wp
+      call add_factor(n_node, work%weight(p), kelvin, work%gradient(:, :, p), part)
+      do k = 1, n_group
+        factor(:, :, k) = factor(:, :, k) + work%fraction(p, k)*part
+      end do
+    end subroutine add_to_groups
+
+  end subroutine projected_operators
 
   !> Remove the group's volumetric part from the moduli: c becomes dev c'. Return the parts of the
   !> outer products.

@@ -22,7 +22,8 @@ module dd3_element_table
     integer :: n_node = 0
     !> Number of integration points.
     integer :: n_point = 0
-    !> Number of groups of points that share a mean dilatation; 0 if each point keeps its own.
+    !> Number of groups of points that share a mean dilatation, 0 if each point keeps its own; or
+    !> number of functions on which the dilatation is projected.
     integer :: n_group = 0
     !> Number of node pairs through the thickness.
     integer :: n_pair = 0
@@ -49,6 +50,10 @@ module dd3_element_table
     real(wp), allocatable :: slope(:, :, :), slope_row(:, :, :)
     !> Group of each point, 1 ... n_group, or 0: `group(n_point)`.
     integer, allocatable :: group(:)
+    !> The functions on which the dilatation is projected, at the points, with the sum 1:
+    !> `projection(n_point,n_group)`; not allocated if points share mean dilatations. With it all
+    !> points have the group 1.
+    real(wp), allocatable :: projection(:, :)
     !> Nodal values from point values: `extrapolation(n_node,n_point)`; rows sum to 1.
     real(wp), allocatable :: extrapolation(:, :)
     !> Node pairs through the thickness, bottom then top: `pair(2,n_pair)`.
@@ -178,6 +183,7 @@ contains
       self%slope_row(:, :, p) = transpose(self%dshape(:, :, p))
     end do
     self%n_group = maxval(self%group)
+    if (allocated(self%projection)) self%n_group = size(self%projection, 2)
     self%n_pair = size(self%pair, 2)
     self%n_face = size(self%face, 2)
     self%n_face_node = size(self%face, 1)

@@ -18,6 +18,9 @@ module dd3_element_work
     !> Quadrature weight times Jacobian in the trial and the committed configuration, mm3:
     !> `(n_point)`.
     real(wp), allocatable :: weight(:), weight_committed(:)
+    !> Fraction of each group in the relative change of a point's dilatation, for elements with a
+    !> projection: `fraction(n_point,n_group)`.
+    real(wp), allocatable :: fraction(:, :)
     !> Volume of each group in both configurations, mm3: `(n_group)`.
     real(wp), allocatable :: volume(:), volume_committed(:)
     !> Interpolated deformation gradient of the increment: `deformation(3,3,n_point)`.
@@ -82,6 +85,7 @@ contains
       allocate (self%x_initial(3, n), self%x_committed(3, n), self%x_trial(3, n))
       allocate (self%gradient(n, 3, p), self%mean_gradient(n, 3, g))
       allocate (self%weight(p), self%weight_committed(p), self%volume(g), self%volume_committed(g))
+      allocate (self%fraction(p, g))
       allocate (self%deformation(3, 3, p), self%dilatation(p), self%strain(6, p))
       allocate (self%rotation(3, 3, p), self%stress(6, p), self%tangent(6, 6, p))
       allocate (self%force(3, n), self%stiffness(3, 3, n, n))

@@ -155,7 +155,7 @@ contains
     model%title = buffer%text()
   end subroutine set_title
 
-  !> Read the surfaces of the tools.
+  !> Read the surfaces of the tools; report them if the element's faces cannot be in contact.
   subroutine read_tools(model, case, errors)
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
@@ -173,6 +173,14 @@ contains
       model%tool(t)%position = case%tool(t)%position
       call read_tool_surface(model%tool(t)%surface, case%tool(t)%patches, &
           case%tool(t)%source%at("patches"), errors)
+    end do
+    if (model%element%n_node == 0) return
+    if (all(model%element%face_weight > 0.0_wp)) return
+    do t = 1, model%n_tool
+      if (.not. case%tool(t)%source%has("contact")) cycle
+      call errors%push_input(case%tool(t)%source%at("contact"), "the element "// &
+          trim(model%element%name)//" cannot be in contact: pressure on its faces pulls at the "// &
+          "corners", "no tools, or an element whose nodes all push: hex8, hex27 or solid_shell")
     end do
   end subroutine read_tools
 

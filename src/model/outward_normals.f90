@@ -19,7 +19,7 @@ contains
 
     allocate (touches(model%face%n), source=.false.)
     do f = 1, model%face%n
-      associate (candidate => model%candidate_of(model%face%corner(:, f)))
+      associate (candidate => model%candidate_of(model%face%node(:, f)))
         if (all(candidate > 0)) touches(f) = any(all(model%candidate(:, candidate), dim=2))
       end associate
     end do
@@ -39,10 +39,11 @@ contains
 
     allocate (normal(3, model%n_contact), source=0.0_wp)
     do f = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(f)))
+      associate (corner => model%face%corner(:, model%contact_face(f)), &
+          node => model%face%node(:, model%contact_face(f)))
         area = cross(x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2)))
-        do i = 1, size(corner)
-          c = model%candidate_of(corner(i))
+        do i = 1, size(node)
+          c = model%candidate_of(node(i))
           normal(:, c) = normal(:, c) + area
         end do
       end associate

@@ -40,9 +40,9 @@ contains
     young = model%material(model%material_of(1))%young
     do f = 1, size(model%contact_face)
       associate (corner => model%face%corner(:, model%contact_face(f)), x => model%x0)
-        associate (candidate => model%candidate_of(corner))
-          area(candidate) = area(candidate) + 0.125_wp*norm2(cross( &
-              x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2))))
+        associate (candidate => model%candidate_of(model%face%node(:, model%contact_face(f))))
+          area(candidate) = area(candidate) + model%element%face_weight*(0.5_wp*norm2(cross( &
+              x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2)))))
           young(candidate) = model%material(model%material_of(model%face%element( &
               model%contact_face(f))))%young
         end associate

@@ -13,6 +13,8 @@ module dd3_model_sheet_faces
     integer :: n = 0
     !> Their corners, counter-clockwise seen from outside, `(4, n)`, and their elements, `(n)`.
     integer, allocatable :: corner(:, :), element(:)
+    !> All their nodes, corners first, `(n_face_node, n)`.
+    integer, allocatable :: node(:, :)
   end type sheet_faces_t
 
 contains
@@ -50,6 +52,14 @@ contains
     self%n = count(.not. inner)
     self%element = pack([((i - 1)/element%n_face + 1, i=1, size(inner))], .not. inner)
     self%corner = corner(:, pack([(i, i=1, size(inner))], .not. inner))
+    allocate (self%node(element%n_face_node, self%n))
+    k = 0
+    do i = 1, size(inner)
+      if (inner(i)) cycle
+      k = k + 1
+      f = modulo(i - 1, element%n_face) + 1
+      self%node(:, k) = connectivity(element%face(:, f), self%element(k))
+    end do
   end subroutine new_sheet_faces
 
   !> Return the outward unit normal at the centre of a face; zero if the face has no area.
