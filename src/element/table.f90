@@ -196,8 +196,8 @@ contains
   end subroutine complete_table
 
   !> Evaluate the shape functions of a face at 2 x 2 points, or at 3 x 3 with nodes between the
-  !> corners. They are those of the last face, zeta = 1, whose corners run from xi to eta as those of
-  !> the other faces run about their outward normals.
+  !> corners: those of the last face, zeta = 1, whose nodes run from xi to eta. The other faces have
+  !> the same, by the order of their nodes.
   subroutine set_face_points(self, evaluate)
     type(element_t), intent(inout) :: self
     procedure(shape_interface) :: evaluate

@@ -162,8 +162,8 @@ contains
     end do
   end subroutine add_middles
 
-  !> Place the middles of the edges on the rim, and the centres of its elements half as far outwards,
-  !> as transfinite interpolation does.
+  !> Move the middles of the edges on the rim to the circle, and the centres of its elements half as
+  !> far, as transfinite interpolation does.
   pure subroutine round_rim(x, n, radius)
     real(wp), intent(inout) :: x(:, 0:, 0:)
     !> Number of the point on the diagonal.

@@ -61,8 +61,8 @@ contains
     end do
   end function face_force
 
-  !> Return the derivatives of the nodal forces of a unit pressure in the positions of the nodes, mm:
-  !> component of the force, of the position, node of the force, of the position.
+  !> Return the derivatives of the nodal forces of a unit pressure in the positions of the nodes,
+  !> mm: component of the force, of the position, node of the force, of the position.
   pure function face_stiffness(element, x) result(stiffness)
     type(element_t), intent(in) :: element
     !> Nodes of the face, mm.
