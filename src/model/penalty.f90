@@ -7,46 +7,32 @@ module dd3_model_penalty
   use dd3_model_phase, only : phase_t
   implicit none
   private
-  public :: contact_penalty, reduce_penalty, set_contact_stiffness
+  public :: contact_penalty, set_contact_stiffness
 
   !> Automatic penalty over the stiffness of the sheet under a candidate. Where a node closes, the
   !> linearisation leaves gaps and slips of the order of the curvature of tool and path; a penalty
   !> near the stiffness of the sheet turns them into forces that decide the status wrongly.
   real(wp), parameter :: fraction = 1.0e-3_wp
-  !> Factor of one reduction of the penalty.
-  real(wp), parameter :: reduction = 0.1_wp
 
 contains
 
-  !> Return the penalty of a candidate, N/mm: the automatic one, or that of the input, reduced if it
-  !> is higher than the automatic one.
-  pure real(wp) function contact_penalty(model, phase, c, factor)
+  !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one if there is none
+  !> in the input, or if it is reduced.
+  pure real(wp) function contact_penalty(model, phase, c, reduced)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     !> Number of the candidate.
     integer, intent(in) :: c
-    !> Factor on the penalty of the input, at most 1.
-    real(wp), intent(in) :: factor
+    !> Whether a penalty of the input is reduced to the automatic one, if that is lower.
+    logical, intent(in) :: reduced
 
     real(wp) :: automatic
 
     automatic = fraction*model%contact_stiffness(c)
-    contact_penalty = automatic
-    if (phase%penalty > 0.0_wp) &
-        contact_penalty = max(factor*phase%penalty, min(phase%penalty, automatic))
+    contact_penalty = phase%penalty
+    if (phase%penalty <= 0.0_wp) contact_penalty = automatic
+    if (reduced) contact_penalty = min(contact_penalty, automatic)
   end function contact_penalty
-
-  !> Reduce the factor on the penalty of the input, down to the value with which all candidates have
-  !> the automatic penalty.
-  pure subroutine reduce_penalty(model, phase, factor)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    real(wp), intent(inout) :: factor
-
-    if (phase%penalty <= 0.0_wp) return
-    factor = max(reduction*factor, &
-        min(factor, fraction*minval(model%contact_stiffness)/phase%penalty))
-  end subroutine reduce_penalty
 
   !> Set the stiffness of the sheet through its thickness under each candidate, E A/t, with its
   !> tributary area A, the thickness there, and Young's modulus of the last element at the node. A

@@ -54,8 +54,8 @@ module dd3_process_attempt
   type :: attempt_t
     !> Number of the attempt at this increment, from 1.
     integer :: number = 1
-    !> Factor on the penalty of the input.
-    real(wp) :: penalty_factor = 1.0_wp
+    !> Whether the penalty of the input is reduced to the automatic one.
+    logical :: penalty_reduced = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit
     !> Bound by the limiter of contact forces alone; its name is empty if it sets none.

@@ -34,7 +34,7 @@ module dd3_process_corrector
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Iterations with the criterion above a value after which an attempt is given up, unless it has
   !> fallen to a new minimum in the last ones.
-  integer, parameter :: lost_iterations = 13, without_progress = 6
+  integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
   !> Largest number of nodes listed in a message.
   integer, parameter :: most_listed = 4

@@ -5,10 +5,8 @@ module dd3_process_increment
   use dd3_base_verdict, only : verdict_converged
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
-  use dd3_model_penalty, only : reduce_penalty
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_active_set, only : unsettled
   use dd3_process_attempt, only : new_attempt
   use dd3_process_corrector, only : correct
   use dd3_process_external, only : evaluate_external, set_loads
@@ -37,7 +35,7 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     call new_attempt(stepper%attempt, model%n_contact)
-    stepper%attempt%penalty_factor = committed%penalty_factor
+    stepper%attempt%penalty_reduced = committed%penalty_reduced
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
@@ -58,7 +56,7 @@ contains
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
-      trial%penalty_factor = stepper%attempt%penalty_factor
+      trial%penalty_reduced = stepper%attempt%penalty_reduced
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
@@ -111,10 +109,8 @@ contains
 
   end subroutine set_target
 
-  !> Reduce r for another attempt, if one is allowed, and the penalty where the status of contacts
-  !> did not settle.
-  subroutine shrink_increment(model, phase, stepper, again)
-    type(model_t), intent(in) :: model
+  !> Reduce r for another attempt, if one is allowed, and the penalty.
+  subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
     !> Whether another attempt is allowed.
@@ -127,8 +123,7 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
-      if (phase%newton%adapt_penalty .and. any(unsettled(attempt%correction))) &
-          call reduce_penalty(model, phase, attempt%penalty_factor)
+      attempt%penalty_reduced = phase%newton%adapt_penalty
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate

@@ -82,7 +82,7 @@ contains
         remedy = material_remedy
       else if (c > 0) then
         remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c, &
-            attempt%penalty_factor), 3)// &
+            attempt%penalty_reduced), 3)// &
             " in *CONTACT"
       else
         remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)//" in *NEWTON"

@@ -253,7 +253,7 @@ contains
         began = wall_time()
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
-            call shrink_increment(model, phase, stepper, again)
+            call shrink_increment(phase, stepper, again)
         if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)

@@ -92,7 +92,7 @@ contains
           self%distance(c) = hit%distance
           self%normal(:, c) = hit%normal
           call evaluate_candidate(self, c, hit, slip, &
-              contact_penalty(model, phase, c, trial%penalty_factor), model%tool(tool)%friction)
+              contact_penalty(model, phase, c, trial%penalty_reduced), model%tool(tool)%friction)
         end if
         trial%status(c) = self%status(c)
       end do
@@ -145,7 +145,7 @@ contains
       do c = 1, model%n_contact
         if (committed%status(c) == status_gap) cycle
         if (norm2(committed%lambda(:, c)) &
-            <= round_off*contact_penalty(model, phase, c, committed%penalty_factor)) cycle
+            <= round_off*contact_penalty(model, phase, c, committed%penalty_reduced)) cycle
         touching(committed%contact_tool(c)) = .true.
       end do
       do c = 1, model%n_contact
@@ -164,7 +164,7 @@ contains
         call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
             model%tolerance%touch)
         call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-            self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_factor), &
+            self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
             friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
       end do
     end associate
