@@ -73,6 +73,7 @@ contains
     self%ring_x(:, 0, n:) = self%core_x(:, n:0:-1, n)
     call place_ring(self%ring_x, n, blank%radius)
     call add_middles(self%ring_x)
+    call round_rim(self%ring_x, n, blank%radius)
   end subroutine new_quarter
 
   !> Place the corners of the elements of the core by transfinite interpolation: below the diagonal,
@@ -156,6 +157,27 @@ contains
       end do
     end do
   end subroutine add_middles
+
+  !> Move the middles of the edges on the rim to the circle, and the centres of its elements half as
+  !> far, as transfinite interpolation does.
+  pure subroutine round_rim(x, n, radius)
+    real(wp), intent(inout) :: x(:, 0:, 0:)
+    !> Number of the point on the diagonal.
+    integer, intent(in) :: n
+    real(wp), intent(in) :: radius
+
+    real(wp) :: angle, shift(2)
+    integer :: j, last
+
+    last = ubound(x, 2)
+    do j = 1, n - 1, 2
+      angle = 0.25_wp*pi*real(j, wp)/real(n, wp)
+      shift = radius*[cos(angle), sin(angle)] - x(:, last, j)
+      x(:, last, j) = x(:, last, j) + shift
+      x(:, last - 1, j) = x(:, last - 1, j) + 0.5_wp*shift
+      x(:, last - 1:last, 2*n - j) = x([2, 1], last - 1:last, j)
+    end do
+  end subroutine round_rim
 
   !> Join the quarters: each is turned by 90 degrees from the one before, and the last one closes a
   !> full circle.
