@@ -345,6 +345,7 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
+    logical :: draw_in = .false.
     type(block_t) :: source
   end type history_spec_t
 

@@ -259,8 +259,8 @@ contains
     key = [ &
       row("set", kind_name, "", "", "node set", form="set"), &
       row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean "// &
-          "position, moment of the reactions about it", count=0, &
-          choices="displacement reaction position moment")]
+          "position, moment of the reactions about it, mean draw-in of the rim", count=0, &
+          choices="displacement reaction position moment draw_in")]
   end function history_keys
 
   function output_keys() result(key)

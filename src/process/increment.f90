@@ -14,6 +14,7 @@ module dd3_process_increment
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
   use dd3_process_stepper, only : stepper_t
+  use dd3_process_work, only : add_work
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
@@ -134,12 +135,14 @@ contains
   !> repeats its attempts.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: trial
+    !> Gets work and slip of the increment.
+    type(state_t), intent(inout) :: trial
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
     real(wp) :: factor
 
+    call add_work(model, stepper%system%contact, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
     factor = r_cap_factor
