@@ -49,6 +49,8 @@ module dd3_element_table
     !> The same laid out for the kernels: `slope(3,n_point,n_node)` and
     !> `slope_row(n_node,3,n_point)`.
     real(wp), allocatable :: slope(:, :, :), slope_row(:, :, :)
+    !> The derivatives at the nodes: `node_slope(3,n_node,n_node)`, the last index is the place.
+    real(wp), allocatable :: node_slope(:, :, :)
     !> Group of each point, 1 ... n_group, or 0: `group(n_point)`.
     integer, allocatable :: group(:)
     !> The functions on which the dilatation is projected, at the points, with the sum 1:
@@ -154,6 +156,7 @@ contains
     allocate (self%node(3, n_node), self%point(3, n_point), self%weight(n_point))
     allocate (self%shape(n_node, n_point), self%dshape(3, n_node, n_point))
     allocate (self%slope(3, n_point, n_node), self%slope_row(n_node, 3, n_point))
+    allocate (self%node_slope(3, n_node, n_node))
     allocate (self%extrapolation(n_node, n_point))
     allocate (self%group(n_point), source=0)
     allocate (self%vtk_order(n_node), source=[(a, a=1, n_node)])
@@ -180,12 +183,16 @@ contains
     !> The element's shape functions.
     procedure(shape_interface) :: evaluate
 
-    integer :: p
+    real(wp) :: shape(self%n_node)
+    integer :: p, a
 
     do p = 1, self%n_point
       call evaluate(self%point(:, p), self%shape(:, p), self%dshape(:, :, p))
       self%slope(:, p, :) = self%dshape(:, :, p)
       self%slope_row(:, :, p) = transpose(self%dshape(:, :, p))
+    end do
+    do a = 1, self%n_node
+      call evaluate(self%node(:, a), shape, self%node_slope(:, :, a))
     end do
     self%n_group = maxval(self%group)
     if (allocated(self%projection)) self%n_group = size(self%projection, 2)

@@ -5,7 +5,7 @@
 module dd3_mesh_round_blank
   use dd3_base_kinds, only : wp, pi
   use dd3_input_case, only : blank_spec_t
-  use dd3_input_sheet_sets, only : round_sets, set_name_length
+  use dd3_input_sheet_sets, only : n_quarters, round_sets, set_name_length
   use dd3_mesh_mesh, only : mesh_t, mesh_set_t
   implicit none
   private
@@ -47,13 +47,9 @@ contains
 
     type(quarter_t) :: quarter
     type(plane_t) :: plane
-    integer :: n_quarter
 
-    n_quarter = 1
-    if (blank%portion == "half") n_quarter = 2
-    if (blank%portion == "full") n_quarter = 4
     call new_quarter(quarter, blank)
-    call new_plane(plane, quarter, n_quarter)
+    call new_plane(plane, quarter, n_quarters(blank%portion))
     mesh%thickness = blank%size(3)
     call extrude(mesh, plane, blank, nint(natural))
     allocate (mesh%material(mesh%n_element), source=blank%material)
