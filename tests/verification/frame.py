@@ -64,7 +64,10 @@ class Mesh:
 
 @dataclass
 class Outcome:
-    """What a section gives: values, study, and pictures as pairs of a file name and a function that draws on axes."""
+    """What a section gives: values, study, and pictures as pairs of a file name and a function that draws on axes.
+
+    The errors of a study are drawn from its table on the page.
+    """
 
     values: list = field(default_factory=list)
     study: list = field(default_factory=list)
@@ -73,13 +76,14 @@ class Outcome:
 
 @dataclass
 class Section:
-    """A section of the page: `text` comes before the tables, `after` behind them."""
+    """A section of the page: `text` comes before the tables, `after` behind them; file name of the study's picture."""
 
     heading: str
     text: str
     produce: Callable
     slow: bool = False
     after: str = ""
+    picture: str = ""
 
 
 def per_cent(error):
@@ -95,13 +99,23 @@ def study_rows(study):
     for mesh in study:
         order = ""
         if before and before.element == mesh.element and before.length > mesh.length:
-            small = min(abs(before.error()), abs(mesh.error()))
-            if small > 1e-7:
-                order = f"{math.log(abs(before.error() / mesh.error())) / math.log(before.length / mesh.length):.1f}"
+            ratio = before.error() / mesh.error() if mesh.error() else 0.0
+            if ratio > 1:  # neither a change of sign nor a larger error
+                order = f"{math.log(ratio) / math.log(before.length / mesh.length):.1f}"
         rows.append([f"`{mesh.element}`", mesh.mesh, str(mesh.unknowns), f"{mesh.seconds:.2g}", f"{mesh.found:.6g}",
                      per_cent(mesh.error()), order])
         before = mesh
     return rows
+
+
+def geometric(number, first, length):
+    """Return the places of lines whose distances grow by a factor from the first one."""
+    low, high = 1.0, 10.0
+    for _ in range(100):
+        factor = 0.5 * (low + high)
+        low, high = (low, factor) if first * sum(factor**i for i in range(number)) > length else (factor, high)
+    places = [first * sum(factor**i for i in range(k)) for k in range(number)]
+    return [*places, length]
 
 
 def load(path):
@@ -123,7 +137,7 @@ class Run:
 
     def unknowns(self):
         """Return three times the number of nodes."""
-        return 3 * int(re.search(r"(\d+) nodes, ", read_text(self.folder / "job.log").split("elements", 1)[1])[1])
+        return 3 * int(re.search(r", (\d+) nodes, \d+ candidates", read_text(self.folder / "job.log"))[1])
 
     def last(self, column, phase=None):
         """Return the value in the last row of a phase, or of the run."""
