@@ -1,6 +1,6 @@
 !> Processor time and memory of reading a tool of many patches, and the time of closest-point queries on it. The
-!> tool is a wavy sheet of n x n patches of degrees 2 and 2 with common edges, as `utils/tool.py`
-!> writes them; its file is made if it is missing.
+!> tool is a wavy sheet of n x n patches of degrees 2 and 2 with common edges; its file is made if it
+!> is missing.
 !>
 !>     benchmark_tool_surface folder n
 !>
