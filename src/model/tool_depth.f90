@@ -4,6 +4,7 @@
 module dd3_model_tool_depth
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : n_sample, normal_at, patch_t
+  use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -141,19 +142,18 @@ contains
     logical, intent(out) :: near
 
     real(wp) :: edge
+    integer, allocatable :: patch(:)
     integer :: k
 
     edge = margin*face%size
     near = .false.
     associate (surface => model%tool(tool)%surface)
       if (any(face%lower - edge > surface%upper .or. face%upper + edge < surface%lower)) return
-      do k = 1, size(surface%patch)
-        associate (patch => surface%patch(k))
-          if (any(patch%lower > face%upper + edge .or. patch%upper < face%lower - edge)) cycle
-          if (largest_depth(patch, face) <= self%depth) cycle
-          near = .true.
-          call probe_patch(self, model, face, tool, k)
-        end associate
+      patch = overlapping(surface%tree, face%lower - edge, face%upper + edge)
+      do k = 1, size(patch)
+        if (largest_depth(surface%patch(patch(k)), face) <= self%depth) cycle
+        near = .true.
+        call probe_patch(self, model, face, tool, patch(k))
       end do
     end associate
   end subroutine probe_patches
