@@ -21,6 +21,7 @@ need("numpy", "scipy")
 import numpy as np  # noqa: E402
 from tools import moved, report, sides  # noqa: E402
 from tools.cad import SUFFIXES as CAD  # noqa: E402
+from tools.facet_files import SUFFIXES as FACETS  # noqa: E402
 from tools.joints import turn  # noqa: E402
 from tools.surface import turned, write  # noqa: E402
 
@@ -75,6 +76,50 @@ def from_cad(options, progress):
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
+def from_facets(options, progress):
+    """Return the surface of a file of facets, the number of its parts and the lines of the report."""
+    from tools import facets
+    mesh = facets.load(options)
+    progress(0.3)
+    face_facets(mesh, options)
+    surface, distance, angle = facets.patches(mesh, options.offset)
+    lines, errors = judge_distance(surface, distance, options, "estimated")
+    lines.append(("facets", f"{len(mesh.facets)}, turned by {angle:.3g} degrees at most at smooth edges"))
+    return surface, len(np.unique(mesh.part)), lines, errors
+
+
+def face_facets(mesh, options):
+    """Turn the facets of a mesh to the sheet and leave out those that face away."""
+    from tools import facets
+    from tools.mend import turn_facets
+    area, centre, region, sign, body, is_open, twisted = facets.sides_of(mesh)
+    sign, kept, turned_faces, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
+    if not kept.any():
+        raise nothing_faces(options)
+    if len(twisted):
+        raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip, near x y z = "
+                      + report.where(centre[twisted[0]]))
+    turned_facets = facets.turned_number(sign, body)
+    if turned_facets:
+        notes.append(f"turned: {report.plural(turned_facets, 'facet')} against the others of their body")
+    if not kept.all():
+        notes.append(f"left out: {report.plural(int((~kept).sum()), 'facet')} that face away from --toward")
+    del turned_faces
+    turn_facets(mesh, sign)
+    facets.keep(mesh, kept)
+    mesh.notes += notes
+
+
+def direction(options):
+    """Return the unit vector of --toward, or None."""
+    return None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
+
+
+def nothing_faces(options):
+    """Return the Problem of a --toward that no face has."""
+    return Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
+
+
 def judge_distance(surface, distance, options, how):
     """Return the line of the report on the distance of each face, and an error if one misses the tolerance."""
     used = np.unique(surface.face)
@@ -93,10 +138,9 @@ def judge_distance(surface, distance, options, how):
 
 def face_sheet(surface, joints, options):
     """Return the signs of the patches, which are kept, and lines for the report."""
-    toward = None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
-    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, toward)
+    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options))
     if not kept.any():
-        raise Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
+        raise nothing_faces(options)
     if len(twisted):
         patches = np.concatenate([joints.first[twisted], joints.second[twisted]]) // 4
         raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip: "
@@ -117,7 +161,9 @@ def reader_of(path):
         return "cad", from_cad
     if ending == ".shape":
         return "shape", from_shapes
-    raise Problem(f"{path}: unknown kind of file; expected one of {' '.join(CAD)} .shape")
+    if ending in FACETS:
+        return "facets", from_facets
+    raise Problem(f"{path}: unknown kind of file; expected one of {' '.join((*CAD, *FACETS))} .shape")
 
 
 def command_line():

@@ -15,7 +15,8 @@ import numpy as np
 from scripts import Problem
 from tools.closest import closest
 from tools.division import Division
-from tools.joints import find_joints, folded, kinks
+from tools.joints import find_joints, folded, kinks, to_chords
+from tools.report import REACH, up
 from tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -86,9 +87,34 @@ def load(gmsh, path):
 
 
 def free_edges(gmsh):
-    """Return the number of edges with one face."""
-    return sum(len(gmsh.model.getAdjacencies(1, tag)[0]) == 1 and tag not in seams(gmsh, tag)
-               for _, tag in gmsh.model.getEntities(1))
+    """Return the number of edges with one face, those without length left out."""
+    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
+    return sum(gmsh.model.occ.getMass(1, tag) > 1e-9 and not seams(gmsh, tag) for tag in single)
+
+
+def refuse_gaps(gmsh, path):
+    """Refuse free edges that run beside each other: the faces were not joined."""
+    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1
+              and gmsh.model.occ.getMass(1, tag) > 1e-9 and not seams(gmsh, tag)]
+    if not single:
+        return
+    fine = []
+    for tag in single:
+        low, high = gmsh.model.getParametrizationBounds(1, tag)
+        fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
+    worst, where, count = 0.0, None, 0
+    for i, (tag, points) in enumerate(zip(single, fine)):
+        limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
+        for j, other in enumerate(fine):
+            gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
+            if gap <= limit:
+                count += 1
+                if gap >= worst:
+                    worst, where = gap, (tag, single[j])
+    if count:
+        faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
+        raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
+                      f"{faces[0]} and {faces[1]}; --sew {up(worst):g} joins them")
 
 
 def seams(gmsh, edge):
@@ -99,8 +125,8 @@ def seams(gmsh, edge):
 
 
 def sew(gmsh, path, tolerance, wanted):
-    """Sew faces whose edges are not shared, if that joins any; return a note."""
-    before = free_edges(gmsh)
+    """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
+    before = free_edges(gmsh) if wanted or not gmsh.model.getEntities(3) else 0
     if not before:
         return []
     faces = len(gmsh.model.getEntities(2))
@@ -308,6 +334,7 @@ def read_cad(gmsh, path, options, progress):
     if options.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
         gmsh.model.occ.synchronize()
+    refuse_gaps(gmsh, path)
     model.parts = part_names(gmsh)
     tags = choose(path, model.parts, options.part)
     twins = doubled(gmsh, tags)
