@@ -6,6 +6,7 @@
 module dd3_element_table
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
+  use dd3_element_gauss, only : gauss_legendre
   use dd3_element_work, only : element_work_t
   implicit none
   private
@@ -66,6 +67,10 @@ module dd3_element_table
     !> Nodal fractions of a uniform load on a face, consistent with the shape functions:
     !> `face_weight(n_face_node)`; their sum is 1.
     real(wp), allocatable :: face_weight(:)
+    !> Quadrature weights of the integration points of a face, with the sum 4, and the shape
+    !> functions of its nodes there with their derivatives along the face: `(n_face_point)`,
+    !> `(n_face_node,n_face_point)` and `(n_face_node,2,n_face_point)`.
+    real(wp), allocatable :: face_point_weight(:), face_shape(:, :), face_slope(:, :, :)
     !> Our node at each place of VTK's order: `vtk_order(n_node)`.
     integer, allocatable :: vtk_order(:)
 
@@ -194,6 +199,34 @@ contains
     self%n_pair = size(self%pair, 2)
     self%n_face = size(self%face, 2)
     self%n_face_node = size(self%face, 1)
+    call set_face_points(self, evaluate)
   end subroutine complete_table
+
+  !> Evaluate the shape functions of a face at 2 x 2 points, or at 3 x 3 with nodes between the
+  !> corners: those of the last face, zeta = 1, whose nodes run from xi to eta. The other faces have
+  !> the same, by the order of their nodes.
+  subroutine set_face_points(self, evaluate)
+    type(element_t), intent(inout) :: self
+    procedure(shape_interface) :: evaluate
+
+    real(wp) :: abscissa(3), weight(3), shape(self%n_node), dshape(3, self%n_node)
+    integer :: i, j, n, p
+
+    n = merge(2, 3, self%n_face_node == 4)
+    call gauss_legendre(n, abscissa(:n), weight(:n))
+    allocate (self%face_point_weight(n*n), self%face_shape(self%n_face_node, n*n))
+    allocate (self%face_slope(self%n_face_node, 2, n*n))
+    associate (node => self%face(:, self%n_face))
+      do j = 1, n
+        do i = 1, n
+          p = i + n*(j - 1)
+          call evaluate([abscissa(i), abscissa(j), 1.0_wp], shape, dshape)
+          self%face_point_weight(p) = weight(i)*weight(j)
+          self%face_shape(:, p) = shape(node)
+          self%face_slope(:, :, p) = transpose(dshape(:2, node))
+        end do
+      end do
+    end associate
+  end subroutine set_face_points
 
 end module dd3_element_table

@@ -160,7 +160,8 @@ contains
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
           lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("tool_force", kind_real, "", "1e-2", "tolerance of the balance of a pressed tool "// &
-          "under which nodes keep opening and closing, over its force", lower=zero, upper=0.1_wp, lower_open=.true.), &
+          "under which nodes keep opening and closing, over its force", lower=zero, &
+          upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
@@ -173,6 +174,8 @@ contains
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
       row("active_set", kind_logical, "", "on", "on: hold the contact status of nodes where it "// &
           "cycles, then release the nodes that violate it"), &
+      row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
+          "it after a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
           "gradients or that inverts an element")]
   end function newton_keys

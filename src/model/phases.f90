@@ -223,8 +223,8 @@ contains
         if (any([(model%pressure_set(s)%name == set%name, s=1, size(model%pressure_set))])) cycle
         member = .false.
         member(mesh%nodes_of(set%name)) = .true.
-        inside = [(all(member(model%face%corner(:, f))), f=1, model%face%n)]
-        set%corner = model%face%corner(:, pack([(f, f=1, model%face%n)], inside))
+        inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
+        set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
         call append(model%pressure_set, set)
       end do
     end do

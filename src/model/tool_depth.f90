@@ -43,8 +43,8 @@ module dd3_model_tool_depth
     !> Longest diagonal, and thickness of the sheet, mm.
     real(wp) :: size = 0.0_wp, thickness = 0.0_wp
     !> Largest depth that is looked for, mm.
-    real(wp) :: reach = 0.0_wp
-    !> Bounding box of the face and the space behind it within the reach, mm.
+    real(wp) :: search_depth = 0.0_wp
+    !> Bounding box of the face and the space behind it within the search depth, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Largest component of a corner along the normal, mm.
     real(wp) :: height = 0.0_wp
@@ -87,9 +87,9 @@ contains
     self%normal = face_normal(self%x)
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
     self%thickness = model%thickness_at(model%face%corner(1, f))
-    self%reach = max(wrong_side_depth*self%thickness, self%size)
-    self%lower = minval(self%x, dim=2) - self%reach*max(self%normal, 0.0_wp)
-    self%upper = maxval(self%x, dim=2) - self%reach*min(self%normal, 0.0_wp)
+    self%search_depth = max(wrong_side_depth*self%thickness, self%size)
+    self%lower = minval(self%x, dim=2) - self%search_depth*max(self%normal, 0.0_wp)
+    self%upper = maxval(self%x, dim=2) - self%search_depth*min(self%normal, 0.0_wp)
     self%height = maxval(matmul(self%normal, self%x))
   end subroutine set_face
 
@@ -112,7 +112,7 @@ contains
     type(model_t), intent(in) :: model
     type(face_t), intent(in) :: face
     integer, intent(in) :: tool
-    !> Whether a patch may reach behind the face, or behind a margin around it.
+    !> Whether a patch may lie behind the face, or behind a margin around it.
     logical, intent(out) :: near
 
     real(wp) :: edge
@@ -216,7 +216,7 @@ contains
           if (depth <= self%depth) cycle
           if (any(point < face%lower .or. point > face%upper)) cycle
           call locate(face, point, depth)
-          if (depth <= self%depth .or. depth > face%reach) cycle
+          if (depth <= self%depth .or. depth > face%search_depth) cycle
           if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
           if (depth > face%thickness) then
             if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
@@ -293,7 +293,7 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
 
-    call find_contact(model%tool(tool)%surface, x, hint, face%reach, face%reach, hit)
+    call find_contact(model%tool(tool)%surface, x, hint, face%search_depth, face%search_depth, hit)
     is_inside = hit%found .and. hit%distance < 0.0_wp
   end function is_inside
 

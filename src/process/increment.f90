@@ -36,6 +36,7 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     call new_attempt(stepper%attempt, model%n_contact)
+    stepper%attempt%penalty_reduced = committed%penalty_reduced
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
@@ -56,6 +57,7 @@ contains
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
+      trial%penalty_reduced = stepper%attempt%penalty_reduced
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
@@ -108,7 +110,7 @@ contains
 
   end subroutine set_target
 
-  !> Reduce r for another attempt, if one is allowed.
+  !> Reduce r for another attempt, if one is allowed, and the penalty.
   subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
@@ -122,6 +124,7 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
+      attempt%penalty_reduced = phase%newton%adapt_penalty
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate

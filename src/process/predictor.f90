@@ -124,7 +124,7 @@ contains
         factor => self%progress*phase%slope(committed%progress))
       call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
           model%contact_node, self%progress*start%fading, problem%residual)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%pressure_set, &
+      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + self%progress*start%reaction
       problem%contact_residual = 0.0_wp
