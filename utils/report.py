@@ -15,7 +15,6 @@ import argparse
 import base64
 import html
 import re
-import sys
 from pathlib import Path
 
 import scripts
@@ -380,12 +379,11 @@ def main():
     report = Report(options)
     steps = (add_pictures, add_limit_diagram, add_sections, add_outline, add_force, add_warnings, add_statistics,
              add_setup)
-    for number, step in enumerate(steps, 1):
-        if sys.stderr.isatty():
-            print(f"\r{number}/{len(steps)} {step.__name__[4:].replace('_', ' '):20}", end="", file=sys.stderr)
+    progress = scripts.Progress("report")
+    for number, step in enumerate(steps):
+        progress(number / len(steps))
         step(report)
-    if sys.stderr.isatty():
-        print("\r" + " " * 30 + "\r", end="", file=sys.stderr)
+    progress.end()
     add_summary(report)
     report.parts.insert(0, report.parts.pop())
     path = options.output / "report.html"
