@@ -51,13 +51,12 @@ class Report:
 
     def __init__(self, options):
         self.options = options
-        self.folder = Path(options.run)
         self.sheet = Sheet(options.run)
         self.folder = self.sheet.folder
         self.history = plot_force.History(self.folder)
         self.log = results.read_text(self.folder / "job.log")
         self.last = self.sheet.last
-        self.pictures = options.output
+        self.pictures = options.output or self.folder / "report"
         self.pictures.mkdir(parents=True, exist_ok=True)
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts = []
@@ -173,11 +172,13 @@ def add_force(report):
     place = np.linalg.norm(history.vector(leader, "u")[rows] - history.vector(leader, "u")[rows][0], axis=1)
     figure, axes = plt.subplots(figsize=(8, 4), layout="constrained")
     left = [axis not in report.options.mirror for axis in AXES]  # the others are zero on the whole part
-    for tool in history.tools():
-        force = report.whole * np.linalg.norm(history.vector(tool, "f")[rows][:, left], axis=1) / 1000
-        axes.plot(place, force, linewidth=2 if tool == leader else 1, label=tool.replace("_", " "))
+    forces = {tool: report.whole * np.linalg.norm(history.vector(tool, "f")[rows][:, left], axis=1)
+              for tool in history.tools()}
+    unit, scale = ("kN", 1000) if max(force.max() for force in forces.values()) >= 1000 else ("N", 1)
+    for tool, force in forces.items():
+        axes.plot(place, force / scale, linewidth=2 if tool == leader else 1, label=tool.replace("_", " "))
     axes.set_xlabel(f"displacement of {leader.replace('_', ' ')} (mm)")
-    axes.set_ylabel("force (kN)" + (f", whole part, {report.whole} times the model" if report.whole > 1 else ""))
+    axes.set_ylabel(f"force ({unit})" + (f", whole part, {report.whole} times the model" if report.whole > 1 else ""))
     axes.grid(True, color="0.9")
     axes.legend(frameon=False)
     report.add(f"Forces in phase {history.phase[-1]}", report.figure("force", figure, "tool forces over displacement"))
@@ -286,6 +287,7 @@ def add_sections(report):
         axes[1].plot(*in_plane(section.now, normal).T, ".-", markersize=3, label=name)
     axes[0].set(xlabel="initial length along the section (mm)", ylabel="thickness (mm)")
     axes[1].set(xlabel="in the plane of the section (mm)", ylabel="z (mm)")
+    axes[0].ticklabel_format(useOffset=False)
     axes[1].set_aspect("equal", adjustable="datalim")
     axes[0].legend(frameon=False)
     for place in axes:
@@ -313,7 +315,7 @@ def add_outline(report):
         middle = (start.min(axis=0) + start.max(axis=0)) / 2
         middle = [0.0 if axis in report.options.mirror else middle[i] for i, axis in enumerate(AXES)]
         angle = np.degrees(np.unwrap(np.arctan2(start[line, 1] - middle[1], start[line, 0] - middle[0])))
-        along.plot(angle, value[line], ".-", markersize=3)
+        along.plot(angle - 360 * np.floor(angle.min() / 360 + 1e-9), value[line], ".-", markersize=3)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x (mm)", ylabel="y (mm)")
     axes.legend(handles=[Patch(color="0.5", label="before"), Patch(color="#d64541", label="after")], frameon=False)
@@ -368,7 +370,6 @@ def arguments():
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of page and pictures (default: RUN/report)")
     options = parser.parse_args()
     options.mirror = sorted(set(options.mirror))
-    options.output = options.output or Path(options.run) / "report"
     if options.n is not None and not options.n > 0 or options.margin < 0:
         parser.error("--n takes a positive number, --margin one that is not negative")
     return options
@@ -386,7 +387,7 @@ def main():
     progress.end()
     add_summary(report)
     report.parts.insert(0, report.parts.pop())
-    path = options.output / "report.html"
+    path = report.pictures / "report.html"
     path.write_text(page(report), encoding="utf-8")
     print(path)
 
