@@ -185,8 +185,7 @@ contains
 
     key = [ &
       row("method", kind_name, "", "auto", &
-          "linear solver; auto: cgs, and umfpack if it breaks down; dd3imp --help method lists "// &
-          "them"), &
+          "linear solver; auto: the cheapest; dd3imp --help method lists them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
       row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &
