@@ -176,8 +176,8 @@ contains
           "cycles, then release the nodes that violate it"), &
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
           "it after a failed attempt"), &
-      row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
-          "gradients or that inverts an element")]
+      row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
+          "displacement gradients, and any that inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)
