@@ -347,7 +347,7 @@ def read_cad(gmsh, path, options, progress):
                    + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
-    mesh_within(gmsh, model, options.tolerance, progress)
+    mesh_within(gmsh, model, max(options.tolerance, options.sew or 0.0), progress)
     return model
 
 

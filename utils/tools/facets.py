@@ -62,7 +62,8 @@ def choose(path, mesh, wanted):
     for word in wanted:
         found = [number for number, name in enumerate(mesh.names)
                  if word.lower() == str(name).lower() or word == str(name).split()[0]]
-        found = found or [int(word) - 1] * (word.isdigit() and 0 < int(word) <= len(mesh.names))
+        if not found and word.isdigit() and 0 < int(word) <= len(mesh.names):
+            found = [int(word) - 1]
         if not found:
             there = ", ".join(f"{number} '{name}'" for number, name in enumerate(mesh.names, 1))
             raise Problem(f"{path}: no part '{word}'; there are {there}")
