@@ -174,7 +174,8 @@ def check_profiles(folder, program):
     assert (normal[..., 2] < 1e-9).all() and abs(point[..., 0].max() - 160) < 3
     convert(shape, bez)
     check_program(program, bez, "z_min", -1)
-    for wrong, said in (("start = 1 1\n extrude = 0 1", "a profile has one start"), ("extrude = 0", "expected 2 numbers"),
+    for wrong, said in (("start = 1 1\n extrude = 0 1", "a profile has one start"),
+                        ("extrude = 0", "expected 2 numbers"),
                         ("extrude = 0 0", "two different values"), ("", "expected extrude or revolve"),
                         ("line = 70 0 1\n extrude = 0 1", "expected 2 numbers, got '70 0 1'"),
                         ("arc = 90 0 84 1\n extrude = 0 1", "from its centre"), ("bend = 1", "unknown key 'bend'"),
@@ -235,7 +236,8 @@ def check_stl(folder, program):
 
 MESHES = {
     "die.inp": "*Node\n1, 0, 0, 0\n2, 10, 0, 0\n3, 10, 10, 0\n4, 0, 10, 0\n5, 20, 0, 0\n6, 20, 10, 0\n"
-               "*Element, type=R3D4, elset=tool\n1, 1, 2, 3, 4\n*Element, type=S3R, elset=tool\n2, 2, 5, 6\n3, 2, 6, 3\n",
+               "*Element, type=R3D4, elset=tool\n1, 1, 2, 3, 4\n"
+               "*Element, type=S3R, elset=tool\n2, 2, 5, 6\n3, 2, 6, 3\n",
     "die.k": "*KEYWORD\n*PART\nthe tool\n         7         1         1\n*NODE\n"
              + "".join(f"{n:8d}{x:16.6f}{y:16.6f}{0.0:16.6f}\n"
                        for n, x, y in ((1, 0, 0), (2, 10, 0), (3, 10, 10), (4, 0, 10), (5, 20, 0), (6, 20, 10)))
