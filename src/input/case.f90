@@ -215,6 +215,8 @@ module dd3_input_case
     integer :: target_iterations = 0
     !> Whether the status of candidates that cycle is held, and whether iterations are damped.
     logical :: active_set = .false., damping = .false.
+    !> Whether a penalty above the automatic one is reduced to it after a failed attempt.
+    logical :: adapt_penalty = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.
@@ -343,6 +345,7 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
+    logical :: draw_in = .false.
     type(block_t) :: source
   end type history_spec_t
 

@@ -170,8 +170,7 @@ contains
       do s = 1, size(model%pressure_set)
         if (phase%keeps_pressure(s)) cycle
         call digest%add([phase%pressure_end(s)])
-        call digest%add(reshape(model%pressure_set(s)%corner, &
-            [size(model%pressure_set(s)%corner)]))
+        call digest%add(reshape(model%pressure_set(s)%node, [size(model%pressure_set(s)%node)]))
       end do
       do s = 1, size(phase%motion)
         associate (motion => phase%motion(s))

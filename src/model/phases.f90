@@ -14,6 +14,10 @@ module dd3_model_phases
   private
   public :: new_phases
 
+  !> Default of the tolerance of convergence once all tools are released: the residual stresses, by
+  !> which it is scaled, are far larger than what bends a slender sheet.
+  real(wp), parameter :: free_tolerance = 1.0e-5_wp
+
 contains
 
   !> Resolve all phases of the case.
@@ -135,6 +139,9 @@ contains
         call stop_pressing(phase, t)
       end do
     end if
+    if (size(phase%active) > 0 .and. .not. any(phase%active) &
+        .and. .not. spec%source%has("tolerance")) &
+        phase%newton%tolerance = min(phase%newton%tolerance, free_tolerance)
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return
@@ -223,8 +230,8 @@ contains
         if (any([(model%pressure_set(s)%name == set%name, s=1, size(model%pressure_set))])) cycle
         member = .false.
         member(mesh%nodes_of(set%name)) = .true.
-        inside = [(all(member(model%face%corner(:, f))), f=1, model%face%n)]
-        set%corner = model%face%corner(:, pack([(f, f=1, model%face%n)], inside))
+        inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
+        set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
         call append(model%pressure_set, set)
       end do
     end do
