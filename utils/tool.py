@@ -29,11 +29,10 @@ from tools.surface import turned, write  # noqa: E402
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
 
-def from_shapes(options, progress):
+def from_shapes(options, _):
     """Return the surface of a shape file, the number of its parts and the lines of the report."""
     from tools.joints import find_joints
     from tools.shapes import read_shapes
-    del progress
     if options.part:
         raise Problem(f"{options.source}: a shape file has no parts")
     surface = read_shapes(options.source)
@@ -93,7 +92,7 @@ def face_facets(mesh, options):
     from tools import facets
     from tools.mend import turn_facets
     area, centre, region, sign, body, is_open, twisted = facets.sides_of(mesh)
-    sign, kept, turned_faces, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
+    sign, kept, _, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
     if not kept.any():
         raise nothing_faces(options)
     if len(twisted):
@@ -104,7 +103,6 @@ def face_facets(mesh, options):
         notes.append(f"turned: {report.plural(turned_facets, 'facet')} against the others of their body")
     if not kept.all():
         notes.append(f"left out: {report.plural(int((~kept).sum()), 'facet')} that face away from --toward")
-    del turned_faces
     turn_facets(mesh, sign)
     facets.keep(mesh, kept)
     mesh.notes += notes

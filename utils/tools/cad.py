@@ -1,7 +1,7 @@
 """CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package.
 
-The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each is
-one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
+The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each
+is one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
 regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
 below the tolerance.
 """
@@ -87,15 +87,14 @@ def load(gmsh, path):
 
 
 def free_edges(gmsh):
-    """Return the number of edges with one face, those without length left out."""
+    """Return the edges with one face, those without length and seams left out."""
     single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
-    return sum(gmsh.model.occ.getMass(1, tag) > 1e-9 and not seams(gmsh, tag) for tag in single)
+    return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
 
 
 def refuse_gaps(gmsh, path):
     """Refuse free edges that run beside each other: the faces were not joined."""
-    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1
-              and gmsh.model.occ.getMass(1, tag) > 1e-9 and not seams(gmsh, tag)]
+    single = free_edges(gmsh)
     if not single:
         return
     fine = []
@@ -117,16 +116,16 @@ def refuse_gaps(gmsh, path):
                       f"{faces[0]} and {faces[1]}; --sew {up(worst):g} joins them")
 
 
-def seams(gmsh, edge):
-    """Return the edge if its only face has it on both sides."""
+def is_seam(gmsh, edge):
+    """Tell whether the only face of an edge has it on both sides."""
     up = gmsh.model.getAdjacencies(1, edge)[0]
     both = [abs(tag) for _, tag in gmsh.model.getBoundary([(2, up[0])], combined=False, oriented=True)]
-    return [edge] if both.count(edge) > 1 else []
+    return both.count(edge) > 1
 
 
 def sew(gmsh, path, tolerance, wanted):
     """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
-    before = free_edges(gmsh) if wanted or not gmsh.model.getEntities(3) else 0
+    before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
     if not before:
         return []
     faces = len(gmsh.model.getEntities(2))
@@ -134,7 +133,7 @@ def sew(gmsh, path, tolerance, wanted):
         with silence():
             gmsh.model.occ.healShapes([], tolerance, False, False, False, True, True)
             gmsh.model.occ.synchronize()
-        after = free_edges(gmsh)
+        after = len(free_edges(gmsh))
         lost = faces - len(gmsh.model.getEntities(2))
     except Exception as error:
         if wanted:
@@ -347,7 +346,7 @@ def read_cad(gmsh, path, options, progress):
                    + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
-    mesh_within(gmsh, model, options.tolerance, progress)
+    mesh_within(gmsh, model, max(options.tolerance, options.sew or 0.0), progress)
     return model
 
 

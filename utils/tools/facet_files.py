@@ -114,7 +114,8 @@ def from_cells(path, nodes, cells):
         raise Problem(f"{path}: node {min(missing)} of an element has no coordinates")
     place = np.where(facets < 0, -1, np.searchsorted(labels, facets))
     notes = [f"{len(skin)} facets are the outer faces of solids"] if skin else []
-    return Facets(np.array([nodes[label] for label in labels.tolist()], float), place, np.array(part), list(names), notes)
+    points = np.array([nodes[label] for label in labels.tolist()], float)
+    return Facets(points, place, np.array(part), list(names), notes)
 
 
 def read_inp(path):
@@ -237,7 +238,9 @@ def read_msh(path):
         cells = []
         for _, entity in gmsh.model.getEntities(dimension):
             groups = gmsh.model.getPhysicalGroupsForEntity(dimension, entity)
-            name = gmsh.model.getPhysicalName(dimension, groups[0]) or str(groups[0]) if len(groups) else f"face {entity}"
+            name = f"face {entity}"
+            if len(groups):
+                name = gmsh.model.getPhysicalName(dimension, groups[0]) or str(groups[0])
             for kind, _, members in zip(*gmsh.model.mesh.getElements(dimension, entity)):
                 _, _, _, count, _, corners = gmsh.model.mesh.getElementProperties(kind)
                 cells += [(name, dimension, tuple(row[:corners])) for row in np.reshape(members, (-1, count)).tolist()]

@@ -45,9 +45,9 @@ def refuse_gaps(path, mesh):
     pairs, distance = gaps(mesh, REACH)
     if len(pairs):
         worst = distance.argmax()
-        raise Problem(f"{path}: error: {plural(len(pairs), 'pair')} of nodes on free edges up to {distance[worst]:.3g} mm "
-                      f"apart, the widest at x y z = {where(mesh.nodes[pairs[worst, 0]])}; --sew "
-                      f"{up(distance[worst]):g} joins them")
+        raise Problem(f"{path}: error: {plural(len(pairs), 'pair')} of nodes on free edges up to "
+                      f"{distance[worst]:.3g} mm apart, the widest at x y z = {where(mesh.nodes[pairs[worst, 0]])}; "
+                      f"--sew {up(distance[worst]):g} joins them")
     inside = nodes_inside_edges(mesh)
     if len(inside):
         raise Problem(f"{path}: error: {plural(len(inside), 'node')} inside the edges of other facets, the first at "
@@ -62,7 +62,8 @@ def choose(path, mesh, wanted):
     for word in wanted:
         found = [number for number, name in enumerate(mesh.names)
                  if word.lower() == str(name).lower() or word == str(name).split()[0]]
-        found = found or [int(word) - 1] * (word.isdigit() and 0 < int(word) <= len(mesh.names))
+        if not found and word.isdigit() and 0 < int(word) <= len(mesh.names):
+            found = [int(word) - 1]
         if not found:
             there = ", ".join(f"{number} '{name}'" for number, name in enumerate(mesh.names, 1))
             raise Problem(f"{path}: no part '{word}'; there are {there}")

@@ -1,10 +1,11 @@
 """Curved patches from facets: normals at the nodes, quadratic interpolation of the edges.
 
 An edge is the quadratic that is perpendicular to the normals at its ends (Nagata, Computer Aided Geometric Design 22
-(2005) 327-347); triangles and quadrilaterals through such edges are exactly patches of degree 2 x 2. The normal of a node
-is the mean of those of its facets with the weights of Max (Journal of Graphics Tools 4 (1999) 1-6), which are exact on
-a sphere. A facet next to a flat region several times as large as its own does not count: on the line between a plane
-and a fillet, or between a straight and a curved part of a fillet, the normal is that of the larger one.
+(2005) 327-347); triangles and quadrilaterals through such edges are exactly patches of degree 2 x 2. The normal of a
+node is the mean of those of its facets with the weights of Max (Weights for computing vertex normals from facet
+normals, Journal of Graphics Tools 4 (1999)), which are exact on a sphere. A facet next to a flat region several times
+as large as its own does not count: on the line between a plane and a fillet, or between a straight and a curved part
+of a fillet, the normal is that of the larger one.
 """
 from dataclasses import dataclass
 
