@@ -240,6 +240,8 @@ contains
           form="set number number number number number number number"), &
       row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
           "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
+          "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
