@@ -19,7 +19,7 @@ BEGINNING = ROOT / "tests" / "cases" / "bending_start" / "case.dat"
 SLIDING = ROOT / "tests" / "cases" / "friction_above" / "case.dat"
 POINT = ROOT / "tests" / "cases" / "point_tension" / "case.dat"
 TENSION = ROOT / "tests" / "cases" / "tension_00" / "case.dat"
-SIZE_LIMIT = 750_000
+SIZE_LIMIT = 1_000_000
 
 
 def check(condition, text):
