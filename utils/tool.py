@@ -21,6 +21,7 @@ need("numpy", "scipy")
 import numpy as np  # noqa: E402
 from tools import moved, report, sides  # noqa: E402
 from tools.cad import SUFFIXES as CAD  # noqa: E402
+from tools.facet_files import SUFFIXES as FACETS  # noqa: E402
 from tools.joints import turn  # noqa: E402
 from tools.surface import turned, write  # noqa: E402
 
@@ -28,11 +29,10 @@ from tools.surface import turned, write  # noqa: E402
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
 
-def from_shapes(options, progress):
+def from_shapes(options, _):
     """Return the surface of a shape file, the number of its parts and the lines of the report."""
     from tools.joints import find_joints
     from tools.shapes import read_shapes
-    del progress
     if options.part:
         raise Problem(f"{options.source}: a shape file has no parts")
     surface = read_shapes(options.source)
@@ -75,6 +75,49 @@ def from_cad(options, progress):
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
+def from_facets(options, progress):
+    """Return the surface of a file of facets, the number of its parts and the lines of the report."""
+    from tools import facets
+    mesh = facets.load(options)
+    progress(0.3)
+    face_facets(mesh, options)
+    surface, distance, angle = facets.patches(mesh, options.offset)
+    lines, errors = judge_distance(surface, distance, options, "estimated")
+    lines.append(("facets", f"{len(mesh.facets)}, turned by {angle:.3g} degrees at most at smooth edges"))
+    return surface, len(np.unique(mesh.part)), lines, errors
+
+
+def face_facets(mesh, options):
+    """Turn the facets of a mesh to the sheet and leave out those that face away."""
+    from tools import facets
+    from tools.mend import turn_facets
+    area, centre, region, sign, body, is_open, twisted = facets.sides_of(mesh)
+    sign, kept, _, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
+    if not kept.any():
+        raise nothing_faces(options)
+    if len(twisted):
+        raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip, near x y z = "
+                      + report.where(centre[twisted[0]]))
+    turned_facets = facets.turned_number(sign, body)
+    if turned_facets:
+        notes.append(f"turned: {report.plural(turned_facets, 'facet')} against the others of their body")
+    if not kept.all():
+        notes.append(f"left out: {report.plural(int((~kept).sum()), 'facet')} that face away from --toward")
+    turn_facets(mesh, sign)
+    facets.keep(mesh, kept)
+    mesh.notes += notes
+
+
+def direction(options):
+    """Return the unit vector of --toward, or None."""
+    return None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
+
+
+def nothing_faces(options):
+    """Return the Problem of a --toward that no face has."""
+    return Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
+
+
 def judge_distance(surface, distance, options, how):
     """Return the line of the report on the distance of each face, and an error if one misses the tolerance."""
     used = np.unique(surface.face)
@@ -93,10 +136,9 @@ def judge_distance(surface, distance, options, how):
 
 def face_sheet(surface, joints, options):
     """Return the signs of the patches, which are kept, and lines for the report."""
-    toward = None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
-    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, toward)
+    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options))
     if not kept.any():
-        raise Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
+        raise nothing_faces(options)
     if len(twisted):
         patches = np.concatenate([joints.first[twisted], joints.second[twisted]]) // 4
         raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip: "
@@ -117,7 +159,9 @@ def reader_of(path):
         return "cad", from_cad
     if ending == ".shape":
         return "shape", from_shapes
-    raise Problem(f"{path}: unknown kind of file; expected one of {' '.join(CAD)} .shape")
+    if ending in FACETS:
+        return "facets", from_facets
+    raise Problem(f"{path}: unknown kind of file; expected one of {' '.join((*CAD, *FACETS))} .shape")
 
 
 def command_line():

@@ -176,8 +176,8 @@ contains
           "cycles, then release the nodes that violate it"), &
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
           "it after a failed attempt"), &
-      row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
-          "gradients or that inverts an element")]
+      row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
+          "displacement gradients, and any that inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)
@@ -185,8 +185,7 @@ contains
 
     key = [ &
       row("method", kind_name, "", "auto", &
-          "linear solver; auto: cgs, and umfpack if it breaks down; dd3imp --help method lists "// &
-          "them"), &
+          "linear solver; auto: the cheapest; dd3imp --help method lists them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
       row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &
@@ -241,6 +240,8 @@ contains
           form="set number number number number number number number"), &
       row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
           "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
+          "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &

@@ -6,7 +6,12 @@ module dd3_model_loads
   use dd3_linalg_tensor, only : cross
   implicit none
   private
-  public :: load_set_t, face_load_weights, nodal_forces
+  public :: load_set_t, face_load_weights, nodal_forces, spring_stiffness
+
+  !> Displacement at which the spring at a released node carries its contact force once more, in
+  !> thicknesses of the sheet. Half a thickness is where the couple of two opposing forces balances
+  !> that of their springs.
+  real(wp), parameter :: spring_length = 0.25_wp
 
   !> Node set that carries a load in some phase.
   type :: load_set_t
@@ -62,6 +67,18 @@ contains
 
     face_area = 0.5_wp*norm2(cross(corner(:, 3) - corner(:, 1), corner(:, 4) - corner(:, 2)))
   end function face_area
+
+  !> Return the stiffness of the spring that replaces the contact of a released node, N/mm. A contact
+  !> force that only faded would be a dead load: two opposing ones deflect the sheet between them
+  !> further, and a sheet that yields collapses under loads that the tools' shape could bear.
+  pure real(wp) function spring_stiffness(force, thickness)
+    !> Contact force at the release, N.
+    real(wp), intent(in) :: force(3)
+    !> Of the sheet at the node, mm.
+    real(wp), intent(in) :: thickness
+
+    spring_stiffness = norm2(force)/(spring_length*thickness)
+  end function spring_stiffness
 
   !> Evaluate the external forces on the nodes.
   pure subroutine nodal_forces(set, load, contact_node, fading, force)

@@ -1,13 +1,14 @@
-!> External forces of a trial state: loads, pressures, and forces that fade over the phase.
+!> External forces of a trial state: loads, pressures, and forces that fade over the phase. Contact
+!> forces of released tools fade with springs that hold the sheet where the tools left it.
 module dd3_process_external
   use dd3_base_kinds, only : wp
-  use dd3_model_loads, only : nodal_forces
+  use dd3_model_loads, only : nodal_forces, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: set_loads, evaluate_external
+  public :: set_loads, evaluate_external, unfaded_forces
 
 contains
 
@@ -17,26 +18,49 @@ contains
     type(state_t), intent(inout) :: trial
 
     real(wp) :: factor
+    integer :: tool
 
     factor = model%phase(trial%phase)%factor(trial%progress)
     associate (start => trial%start)
       trial%load = start%load + factor*(start%load_end - start%load)
       trial%pressure = start%pressure + factor*(start%pressure_end - start%pressure)
-      trial%fading = (1.0_wp - trial%progress)*start%fading
-      trial%tool_load = start%tool_load + trial%progress*(start%tool_load_end - start%tool_load)
+      do tool = 1, model%n_tool
+        trial%tool_load(:, tool) = model%phase(trial%phase)%tool_load(tool, trial%progress, &
+            start%tool_load(:, tool), start%tool_load_end(:, tool))
+      end do
     end associate
   end subroutine set_loads
 
-  !> Evaluate the external forces on the nodes; those of pressures depend on their positions.
+  !> Evaluate the external forces on the nodes; those of pressures and of springs depend on their
+  !> positions.
   subroutine evaluate_external(model, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: trial
 
+    trial%fading = (1.0_wp - trial%progress)*unfaded_forces(model, trial)
     call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
         trial%external_force)
     trial%external_force = trial%external_force + (1.0_wp - trial%progress)*trial%start%reaction
     if (size(trial%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
         trial%pressure, trial%x, trial%external_force)
   end subroutine evaluate_external
+
+  !> Return the forces of the candidates on released tools and on their springs before they fade, N.
+  pure function unfaded_forces(model, state) result(force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: force(3, model%n_contact)
+
+    integer :: c
+
+    force = state%start%fading
+    do c = 1, model%n_contact
+      if (all(abs(force(:, c)) <= 0.0_wp)) cycle
+      associate (node => model%contact_node(c))
+        force(:, c) = force(:, c) + spring_stiffness(force(:, c), model%thickness_at(node)) &
+            *(state%x(:, node) - state%start%x(:, node))
+      end associate
+    end do
+  end function unfaded_forces
 
 end module dd3_process_external

@@ -144,8 +144,8 @@ contains
     end do
   end subroutine hold_in_contact
 
-  !> Return a warning if the sheet yields while forces of released tools fade: as loads of constant
-  !> direction they can deform it where withdrawn tools would not; empty otherwise.
+  !> Return a warning if the sheet yields while forces of released tools fade: then the free shape
+  !> depends on how they fade; empty otherwise.
   function release_warning(phase, state) result(text)
     type(phase_t), intent(in) :: phase
     !> State at the end of the phase.

@@ -15,10 +15,12 @@ module dd3_process_predictor
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
+  use dd3_process_external, only : unfaded_forces
   use dd3_system_contact, only : predictor_contact
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_pressure, only : add_pressure_stiffness
+  use dd3_system_release, only : add_release_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -91,6 +93,7 @@ contains
         call system%profile%add(section_material)
         call assemble_stiffness(system, model, committed)
         call add_pressure_stiffness(system, model, committed)
+        call add_release_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
         if (attempt%verdict%outcome /= verdict_converged) return
@@ -123,7 +126,7 @@ contains
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
       call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
-          model%contact_node, self%progress*start%fading, problem%residual)
+          model%contact_node, self%progress*unfaded_forces(model, committed), problem%residual)
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + self%progress*start%reaction
@@ -133,8 +136,8 @@ contains
       problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
-            *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
-            phase%direction(:, tool))
+            *dot_product(phase%tool_load_rate(tool, committed%progress, &
+            start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial

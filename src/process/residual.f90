@@ -28,7 +28,8 @@ contains
     integer :: c, node, tool
 
     call evaluate_contact(system%contact, model, committed, trial)
-    if (any(abs(trial%pressure) > 0.0_wp)) call evaluate_external(model, trial)
+    if (any(abs(trial%pressure) > 0.0_wp) .or. any(abs(trial%start%fading) > 0.0_wp)) &
+        call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase))
       problem%residual = trial%internal_force - trial%external_force

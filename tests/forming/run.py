@@ -95,6 +95,40 @@ PRESS = """*BLANK sheet
   hold = table
   pressure = z_max 1.2
 """
+# A rigid cylinder of radius 100 mm on an elastic block in plane strain, one half: elements of 0.1 mm at the contact.
+HERTZ_RADIUS, HERTZ_YOUNG = 100.0, 1000.0
+HERTZ = """*BLANK block
+  size = 10 0.2 10
+  divisions = {nx} 1 {nz}
+  grading_x = {x}
+  grading_z = {z}
+  material = soft
+*MATERIAL soft
+  young = {young}
+  poisson = {poisson}
+  yield = von_mises
+  hardening = perfect Y0=1e4
+*TOOL cylinder
+  patches = "{patches}"
+  contact = z_max
+  position = 0 0 10
+*CONTACT
+*BOUNDARY symmetry
+  set = x_min
+  fix = x
+*BOUNDARY plane
+  set = all
+  fix = y
+*BOUNDARY bottom
+  set = z_min
+  fix = z
+*NEWTON
+  tolerance = 1e-6
+*PHASE press
+  control = load
+  trial = 0.5
+  press = cylinder 0 0 {force}
+"""
 SLIDE = ROOT / "tests" / "cases" / "friction_slide"
 
 
@@ -144,7 +178,7 @@ def plastic_work(strain):
 
 
 def check_stretch(options, element):
-    """Plane strain: von Mises, p = 2/sqrt(3) e1; the elastic part changes the volume by (1 - 2 nu)/E times the stress."""
+    """Plane strain: von Mises, p = 2/sqrt(3) e1; the volume changes by (1 - 2 nu)/E times the trace of the stress."""
     name = f"stretch_{element}"
     found = run(options, name, STRETCH.format(element=element))
     strain = math.log(1.2)
@@ -191,6 +225,36 @@ def check_press(options, element):
         close(f"{name}: {field} elsewhere", found.field(field)[~bottom], value)
 
 
+def graded(fine, count, ratio):
+    """Return node lines from 0 to 1 (10 mm): `count` elements of a length in mm, then longer ones."""
+    lines = [i * fine for i in range(count + 1)]
+    while lines[-1] < 10:
+        lines.append(min(10.0, lines[-1] + ratio * (lines[-1] - lines[-2])))
+    return np.array([*lines[:-2], 10.0]) / 10  # the last but one is too near to the end
+
+
+def check_hertz(options):
+    """Line contact (Hertz): half width a = 1 mm, pressure E a/(2 R (1 - nu^2)) sqrt(1 - x^2/a^2)."""
+    modulus = HERTZ_YOUNG / (1 - POISSON**2)
+    largest, force = modulus / (2 * HERTZ_RADIUS), math.pi * modulus / (4 * HERTZ_RADIUS)
+    angle = math.radians(20)
+    ends, middle = HERTZ_RADIUS * math.sin(angle), HERTZ_RADIUS * (1 - 1 / math.cos(angle))
+    rows = [f"{x} {y} {z} {weight}" for y in (1, -1) for x, z, weight in (
+        (-ends, HERTZ_RADIUS * (1 - math.cos(angle)), 1), (0, middle, math.cos(angle)),
+        (ends, HERTZ_RADIUS * (1 - math.cos(angle)), 1))]
+    patches = options.work / "cylinder.bez"
+    patches.write_text("\n".join(["patch 2 1 rational", *rows]) + "\n", encoding="utf-8")
+    x, z = graded(0.1, 20, 1.35), graded(0.1, 1, 1.25)
+    found = run(options, "hertz", HERTZ.format(
+        nx=len(x) - 1, nz=len(z) - 1, x=" ".join(f"{v:.8g}" for v in x), z=" ".join(f"{1 - v:.8g}" for v in z[::-1]),
+        young=HERTZ_YOUNG, poisson=POISSON, patches=patches.resolve(), force=-force * 0.2 / 2))
+    start = found.fields.points(0)
+    top = np.isclose(start[:, 2], 10) & (start[:, 0] < 0.85)
+    close("hertz: pressure", found.field("contact_pressure")[top], largest * np.sqrt(1 - start[top, 0]**2), 0.01)
+    close("hertz: largest pressure", found["cylinder_pressure"], largest, 0.005)
+    close("hertz: area", found["cylinder_area"], 0.2, 0.0, 0.02)
+
+
 def check_slide(options, element):
     """A block on a table under 120 N, dragged: it slides with the force 17.28 N."""
     name = f"slide_{element}"
@@ -212,6 +276,7 @@ def main():
     parser.add_argument("--work", type=Path, required=True)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
+    check_hertz(options)
     for element in ("hex8", "solid_shell", "hex20", "hex27"):
         check_stretch(options, element)
     for element in ("hex8", "solid_shell"):  # middle nodes would have to be led too, and pressures are bilinear

@@ -21,6 +21,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
 import numpy as np  # noqa: E402
 import scripts  # noqa: E402
 import tool  # noqa: E402
+from tools import cad  # noqa: E402
 from tools import surface as surfaces  # noqa: E402
 from tools.joints import find_joints, folded, kinks  # noqa: E402
 
@@ -173,13 +174,187 @@ def check_profiles(folder, program):
     assert (normal[..., 2] < 1e-9).all() and abs(point[..., 0].max() - 160) < 3
     convert(shape, bez)
     check_program(program, bez, "z_min", -1)
-    for wrong, said in (("start = 1 1\n extrude = 0 1", "a profile has one start"), ("extrude = 0", "expected 2 numbers"),
+    for wrong, said in (("start = 1 1\n extrude = 0 1", "a profile has one start"),
+                        ("extrude = 0", "expected 2 numbers"),
                         ("extrude = 0 0", "two different values"), ("", "expected extrude or revolve"),
                         ("line = 70 0 1\n extrude = 0 1", "expected 2 numbers, got '70 0 1'"),
                         ("arc = 90 0 84 1\n extrude = 0 1", "from its centre"), ("bend = 1", "unknown key 'bend'"),
                         ("corner = 80 50 50\n line = 81 50\n extrude = 0 1", "needs")):
         shape.write_text(PROFILE.format(axes="x z", led=wrong))
         assert said in convert(shape, bez, expect=2), wrong
+
+
+def write_stl(path, triangles):
+    """Write a binary STL file."""
+    record = np.zeros(len(triangles), np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("rest", "<u2")]))
+    record["points"] = triangles
+    path.write_bytes(b" " * 80 + np.uint32(len(triangles)).tobytes() + record.tobytes())
+
+
+def die_triangles(step, half=(35, 25), corner=10, radius=5):
+    """Return the triangles of a die of a rounded box, its radii in facets of `step` degrees."""
+    turn = np.radians(np.linspace(0, 90, round(90 / step) + 1))
+    profile = [(corner, -40), *zip(corner + radius - radius * np.cos(turn), radius * np.sin(turn) - radius), (45, 0)]
+    ring = [(np.array(sign) * (np.array(half) - corner), angle + np.pi / 2 * quarter)
+            for quarter, sign in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))) for angle in turn]
+    ring.append(ring[0])
+    net = np.array([[[*(centre + across * np.array([np.cos(a), np.sin(a)])), height] for centre, a in ring]
+                    for across, height in profile])
+    a, b, c, d = net[:-1, :-1], net[:-1, 1:], net[1:, 1:], net[1:, :-1]
+    return np.concatenate([np.stack(part, axis=2).reshape(-1, 3, 3) for part in ((a, b, c), (a, c, d))])
+
+
+def check_stl(folder, program):
+    """Check dies from STL against the closed form, and broken ones."""
+    stl, bez = folder / "die.stl", folder / "die.bez"
+    for step, error in ((10, 0.002), (15, 0.006)):
+        write_stl(stl, die_triangles(step))
+        said = convert(stl, bez, "--toward", 0, 0, 1)
+        point, normal = points_of(read(bez))
+        assert np.abs(box_distance(point, (35, 25), 10, 5, "die")).max() < error, said
+        assert (normal[np.abs(point[..., 2]) < 1e-6][:, 2] > 0.999).all()
+    check_program(program, bez, "z_min", -1)
+    write_stl(stl, die_triangles(30))
+    assert "too coarse" in convert(stl, bez, "--toward", 0, 0, 1, expect=2)
+    good = die_triangles(15)
+    half = np.where((np.arange(len(good)) % 2 == 0)[:, None, None], good[:, ::-1], good)
+    flat = [[good[0, 0], good[0, 0], good[0, 1]]]
+    moved = good.copy()
+    moved[:100] += [0, 0, 0.1]
+    for triangles, options, code, words in (
+            (half, (), 0, "turned: "), (np.concatenate([good, good[5:7]]), (), 0, "doubled facets left out: 2"),
+            (np.concatenate([good, flat]), (), 0, "facets without area removed: 1"),
+            (moved, (), 2, "--sew 0.15 joins them"), (moved, ("--sew", 0.12, "--tolerance", 1), 0, "nodes merged"),
+            (good / 1000, (), 0, "warning: "), (good / 1000, ("--scale", 1000), 0, "x -70 to 70"),
+            (good, ("--toward", 0, 0, 1, "--offset", 1), 0, "z -40 to 1 mm"),
+            (good[:0], (), 2, "without facets"), (good, ("--part", "x"), 2, "no part 'x'; there are 1 'stl'")):
+        write_stl(stl, triangles)
+        said = convert(stl, bez, *options, expect=code)
+        assert words in said, said
+        assert code or " 0 of more than two" in said and "folds      0" in said, said
+
+
+MESHES = {
+    "die.inp": "*Node\n1, 0, 0, 0\n2, 10, 0, 0\n3, 10, 10, 0\n4, 0, 10, 0\n5, 20, 0, 0\n6, 20, 10, 0\n"
+               "*Element, type=R3D4, elset=tool\n1, 1, 2, 3, 4\n"
+               "*Element, type=S3R, elset=tool\n2, 2, 5, 6\n3, 2, 6, 3\n",
+    "die.k": "*KEYWORD\n*PART\nthe tool\n         7         1         1\n*NODE\n"
+             + "".join(f"{n:8d}{x:16.6f}{y:16.6f}{0.0:16.6f}\n"
+                       for n, x, y in ((1, 0, 0), (2, 10, 0), (3, 10, 10), (4, 0, 10), (5, 20, 0), (6, 20, 10)))
+             + "*ELEMENT_SHELL\n" + "".join("".join(f"{v:8d}" for v in row) + "\n" for row in (
+                 (1, 7, 1, 2, 3, 4), (2, 7, 2, 5, 6, 6), (3, 7, 2, 6, 3, 3))) + "*END\n",
+    "die.stl": "solid tool\n" + "".join("facet normal 0 0 1\nouter loop\n" + "".join(
+        f"vertex {x} {y} 0\n" for x, y in ring) + "endloop\nendfacet\n" for ring in (
+            ((0, 0), (20, 0), (20, 10)), ((0, 0), (20, 10), (0, 10)))) + "endsolid\n",
+    "solid.inp": "*Node\n" + "".join(f"{1 + i + 2 * j + 4 * k}, {20 * i}, {10 * j}, {10 * k - 10}\n"
+                                     for k in (0, 1) for j in (0, 1) for i in (0, 1))
+                 + "*Element, type=C3D8\n1, 1, 2, 4, 3, 5, 6, 8, 7\n",
+}
+
+
+def check_meshes(folder, program):
+    """Check small meshes of all kinds: the same rectangle."""
+    for name, text in MESHES.items():
+        (folder / name).write_text(text)
+        said = convert(folder / name, folder / "out.bez", "--toward", 0, 0, 1)
+        point, normal = points_of(read(folder / "out.bez"))
+        top = np.abs(normal[..., 2] - 1) < 1e-9
+        assert top.any() and np.abs(point[top][:, 2]).max() < 1e-9, (name, said)
+        assert np.allclose(point[top].max(axis=0), [20, 10, 0], atol=0.2) and "error" not in said, (name, said)
+    assert "no part 'x'; there are 1 '7 the tool'" in convert(folder / "die.k", "--part", "x", expect=2)
+    for name in ("text.stl", "text.inp", "text.k", "text.shape"):
+        (folder / name).write_text("no tool\n")
+        convert(folder / name, folder / "out.bez", expect=2)
+    if importlib.util.find_spec("pyvista"):
+        (folder / "die.ply").write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                        "end_header\n0 0 0\n20 0 0\n20 10 0\n0 10 0\n4 0 1 2 3\n")
+        assert "1 patch," in convert(folder / "die.ply", folder / "out.bez")
+        (folder / "text.vtk").write_text("no tool\n")
+        convert(folder / "text.vtk", expect=2)
+    check_program(program, folder / "out.bez", "z_min", -1)
+
+
+def make_cad(folder):
+    """Write CAD files: a punch with fillets, in mm and inches, with a doubled face, with loose and shifted faces."""
+    import gmsh
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    occ, model = gmsh.model.occ, gmsh.model
+
+    def edges(chosen):
+        occ.synchronize()
+        return [tag for _, tag in model.getEntities(1) if chosen(model.getBoundingBox(1, tag))]
+
+    def punch():
+        gmsh.clear()
+        box = occ.addBox(-35, -25, 0, 70, 50, 40)
+        occ.fillet([box], edges(lambda ends: ends[5] - ends[2] > 30), [10])
+        occ.fillet([box], edges(lambda ends: ends[5] < 1e-3), [5])
+        occ.synchronize()
+        return box, [tag for _, tag in model.getEntities(2)]
+
+    def save(name):
+        occ.synchronize()
+        gmsh.write(str(folder / name))
+
+    with cad.silence():
+        punch()
+        save("punch.step")
+        text = (folder / "punch.step").read_text()
+        metre = "SI_UNIT(.MILLI.,.METRE.)"
+        assert metre in text
+        (folder / "metres.step").write_text(text.replace(metre, "SI_UNIT($,.METRE.)"))
+        save("punch.igs")
+        box, faces = punch()
+        occ.copy([(2, faces[3])])
+        save("doubled.brep")
+        for name, shift in (("loose.brep", 0.0), ("shifted.brep", 0.1)):
+            box, faces = punch()
+            copies = [occ.copy([(2, tag)])[0] for tag in faces]
+            occ.remove([(3, box)], recursive=True)
+            occ.translate([copies[3]], 0, shift, 0)
+            save(name)
+        gmsh.clear()
+        occ.addTorus(0, 0, 0, 30, 8)
+        save("torus.brep")
+        gmsh.clear()
+        occ.addSphere(0, 0, 0, 20)
+        save("sphere.brep")
+    gmsh.finalize()
+
+
+def check_cad(folder, program):
+    """Check CAD files against closed forms."""
+    make_cad(folder)
+    bez = folder / "cad.bez"
+    for name, words in (("punch.step", "left out: 1 face"), ("punch.igs", "sewn: "), ("doubled.brep", "doubled faces"),
+                        ("loose.brep", "sewn: ")):
+        said = convert(folder / name, bez, "--toward", 0, 0, -1)
+        assert words in said, said
+        net = read(bez)
+        point, normal = points_of(net, 5)
+        distance = box_distance(point, (35, 25), 10, 5, "punch")
+        inner = (point[..., 2] < 35)
+        assert np.abs(distance[inner]).max() < 0.002 and not len(folded(net)), (name, said)
+        ahead = box_distance(point + 1e-3 * normal, (35, 25), 10, 5, "punch")
+        assert (ahead - distance)[inner].min() > 0.99e-3, name
+    check_program(program, bez, "z_max", 2)
+    assert "metres --scale 1000" not in convert(folder / "metres.step")
+    convert(folder / "punch.step", bez, "--toward", 0, 0, -1, "--offset", 1, "--turn")
+    point, normal = points_of(read(bez), 5)
+    inner = (point[..., 2] < 35)
+    assert np.abs(box_distance(point, (35, 25), 10, 5, "punch") - 1)[inner].max() < 0.002
+    assert normal[np.abs(point[..., 2] + 1) < 1e-6][:, 2].min() > 0.999
+    assert "--sew 0.15 joins them" in convert(folder / "shifted.brep", bez, expect=2)
+    for name, distance in (("torus", lambda x: np.hypot(np.hypot(x[..., 0], x[..., 1]) - 30, x[..., 2]) - 8),
+                           ("sphere", lambda x: np.linalg.norm(x, axis=2) - 20)):
+        convert(folder / f"{name}.brep", bez)
+        assert np.abs(distance(points_of(read(bez), 5)[0])).max() < 0.002, name
+    assert "no part '9'; there are 1 " in convert(folder / "punch.step", "--part", "9", expect=2)
+    for name in ("text.step", "text.igs", "text.brep"):
+        (folder / name).write_text("no tool\n")
+        convert(folder / name, bez, expect=2)
 
 
 def check_messages(folder):
@@ -199,8 +374,10 @@ def main():
     parser.add_argument("--program", required=True)
     program = parser.parse_args().program
     with tempfile.TemporaryDirectory() as name:
-        for check in (check_boxes, check_profiles):
+        for check in (check_boxes, check_profiles, check_stl, check_meshes):
             check(Path(name), program)
+        if importlib.util.find_spec("gmsh"):
+            check_cad(Path(name), program)
         check_messages(Path(name))
     print("tool surfaces are right")
 

@@ -1,7 +1,7 @@
 """CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package.
 
-The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each is
-one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
+The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each
+is one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
 regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
 below the tolerance.
 """
@@ -15,7 +15,8 @@ import numpy as np
 from scripts import Problem
 from tools.closest import closest
 from tools.division import Division
-from tools.joints import find_joints, folded, kinks
+from tools.joints import find_joints, folded, kinks, to_chords
+from tools.report import REACH, up
 from tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -86,21 +87,45 @@ def load(gmsh, path):
 
 
 def free_edges(gmsh):
-    """Return the number of edges with one face."""
-    return sum(len(gmsh.model.getAdjacencies(1, tag)[0]) == 1 and tag not in seams(gmsh, tag)
-               for _, tag in gmsh.model.getEntities(1))
+    """Return the edges with one face, those without length and seams left out."""
+    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
+    return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
 
 
-def seams(gmsh, edge):
-    """Return the edge if its only face has it on both sides."""
+def refuse_gaps(gmsh, path):
+    """Refuse free edges that run beside each other: the faces were not joined."""
+    single = free_edges(gmsh)
+    if not single:
+        return
+    fine = []
+    for tag in single:
+        low, high = gmsh.model.getParametrizationBounds(1, tag)
+        fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
+    worst, where, count = 0.0, None, 0
+    for i, (tag, points) in enumerate(zip(single, fine)):
+        limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
+        for j, other in enumerate(fine):
+            gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
+            if gap <= limit:
+                count += 1
+                if gap >= worst:
+                    worst, where = gap, (tag, single[j])
+    if count:
+        faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
+        raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
+                      f"{faces[0]} and {faces[1]}; --sew {up(worst):g} joins them")
+
+
+def is_seam(gmsh, edge):
+    """Tell whether the only face of an edge has it on both sides."""
     up = gmsh.model.getAdjacencies(1, edge)[0]
     both = [abs(tag) for _, tag in gmsh.model.getBoundary([(2, up[0])], combined=False, oriented=True)]
-    return [edge] if both.count(edge) > 1 else []
+    return both.count(edge) > 1
 
 
 def sew(gmsh, path, tolerance, wanted):
-    """Sew faces whose edges are not shared, if that joins any; return a note."""
-    before = free_edges(gmsh)
+    """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
+    before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
     if not before:
         return []
     faces = len(gmsh.model.getEntities(2))
@@ -108,7 +133,7 @@ def sew(gmsh, path, tolerance, wanted):
         with silence():
             gmsh.model.occ.healShapes([], tolerance, False, False, False, True, True)
             gmsh.model.occ.synchronize()
-        after = free_edges(gmsh)
+        after = len(free_edges(gmsh))
         lost = faces - len(gmsh.model.getEntities(2))
     except Exception as error:
         if wanted:
@@ -308,6 +333,7 @@ def read_cad(gmsh, path, options, progress):
     if options.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
         gmsh.model.occ.synchronize()
+    refuse_gaps(gmsh, path)
     model.parts = part_names(gmsh)
     tags = choose(path, model.parts, options.part)
     twins = doubled(gmsh, tags)
@@ -320,7 +346,7 @@ def read_cad(gmsh, path, options, progress):
                    + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
-    mesh_within(gmsh, model, options.tolerance, progress)
+    mesh_within(gmsh, model, max(options.tolerance, options.sew or 0.0), progress)
     return model
 
 

@@ -7,6 +7,8 @@ import numpy as np
 TURN = 45.0
 # Corner angles of a face with a regular mesh, degrees.
 CORNERS = 25.0, 155.0
+# Fraction of its last value that the distance of a divided face must fall below for another division.
+STAGNANT = 0.8
 # Points at which an edge is examined.
 SAMPLES = 17
 OPTIONS = {"Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 1, "Mesh.SubdivisionAlgorithm": 1,
@@ -26,6 +28,7 @@ class Division:
     def __init__(self, gmsh, tags):
         self.tags = tags
         self.factor = {tag: 1.0 for tag in tags}
+        self.last = {}  # the distance of a face when it was divided further
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}
         for tag, loop in self.loops.items():
@@ -82,11 +85,13 @@ class Division:
         """Return the divisions of each edge; opposite edges of regular faces have the same."""
         need = defaultdict(lambda: 1)
         for (edge, tag), turn in self.turn.items():
+            if self.length[edge] <= 1e-9 * self.size:
+                continue
             count = max(1.0, turn / TURN - 1e-6)
             if self.curved[tag] and tag not in self.regular:
                 # Divisions of a trimmed face are at most four times as long as the curvature allows.
-                widest = max(self.turn[other, tag] / max(self.length[other], 1e-3 * self.size)
-                             for other in set(map(abs, self.loops[tag])))
+                widest = max((self.turn[other, tag] / self.length[other] for other in set(map(abs, self.loops[tag]))
+                              if self.length[other] > 1e-3 * self.size), default=0.0)
                 count = max(count, widest * self.length[edge] / TURN / 4)
             if not self.curved[tag] and self.factor[tag] > 1.0:
                 count = max(count, self.length[edge] / self.size * 4)
@@ -139,7 +144,9 @@ class Division:
         changed = False
         for index, tag in enumerate(self.tags):
             wanted = 1.0
-            if distance[index] > 1.0:
+            # A distance that does not fall is a gap of the CAD between edge and face.
+            if distance[index] > 1.0 and distance[index] < STAGNANT * self.last.get(tag, np.inf):
+                self.last[tag] = distance[index]
                 wanted = float(np.clip(1.1 * distance[index]**0.3, 1.25, 2.5))
             elif kink[index] > 1.0:
                 wanted = float(np.clip(1.1 * kink[index]**0.5, 1.2, 2.0))

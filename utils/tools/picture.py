@@ -38,13 +38,16 @@ def arrows(pv, net, size):
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     cloud = pv.PolyData(points_at(net, half, half)[:, 0])
     cloud["normal"] = normal
-    return cloud.glyph(orient="normal", scale=False, factor=0.03 * size, geom=pv.Arrow(tip_radius=.18, shaft_radius=.05))
+    arrow = pv.Arrow(tip_radius=0.18, shaft_radius=0.05)
+    return cloud.glyph(orient="normal", scale=False, factor=0.03 * size, geom=arrow)
 
 
 def draw(surface, joints, path):
     """Write the picture: faces in colours, free edges blue, those of more than two patches red, normals as arrows."""
     need("pyvista")
     import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkLogger
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     pv.OFF_SCREEN = True
     plotter = pv.Plotter(off_screen=True, window_size=[1500, 1100])
     plotter.set_background("white")
@@ -53,7 +56,7 @@ def draw(surface, joints, path):
     for colour in range(min(len(COLOURS), len(faces))):
         points, cells = quads(surface.net[np.isin(surface.face, faces[colour::len(COLOURS)])])
         plotter.add_mesh(pv.PolyData(points, cells), color=COLOURS[colour], ambient=0.25)
-    for edges, colour, width in ((np.concatenate([joints.first]), JOINED, 1), (joints.free, FREE, 3),
+    for edges, colour, width in ((joints.first, JOINED, 1.5), (joints.free, FREE, 3),
                                  (joints.multiple, MULTIPLE, 6)):
         if len(edges):
             plotter.add_mesh(lines(pv, surface.net, edges), color=colour, line_width=width)

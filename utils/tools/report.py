@@ -37,9 +37,14 @@ def named(surface, faces):
     return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
 
 
+def where(point):
+    """Return a point as a text."""
+    return " ".join(f"{value:.4g}" for value in point + 0.0)
+
+
 def place_of(joints, edge):
     """Return the middle of an edge as a text."""
-    return "x y z = " + " ".join(f"{value:.4g}" for value in joints.points[edge, 2] + 0.0)
+    return "x y z = " + where(joints.points[edge, 2])
 
 
 def judge(surface, options, parts):
@@ -99,9 +104,8 @@ def say_folds(report, surface):
     bent = folded(surface.net)
     report.add("folds", str(len(bent)))
     if len(bent):
-        middle = points_at(surface.net[bent[:1]], np.array([0.5]), np.array([0.5]))[0, 0] + 0.0
-        where = " ".join(f"{value:.4g}" for value in middle)
-        report.errors.append(f"{plural(len(bent), 'folded patch')}, the first at x y z = {where}: "
+        middle = points_at(surface.net[bent[:1]], np.array([0.5]), np.array([0.5]))[0, 0]
+        report.errors.append(f"{plural(len(bent), 'folded patch')}, the first at x y z = {where(middle)}: "
                              f"{named(surface, surface.face[bent])}")
 
 
