@@ -42,9 +42,10 @@ Forming tests with measured values are in the reports, such as the [bending test
 The times in the studies of refinement are those of one thread of a loaded machine: compare within a table. Unknowns are
 three for each node. The order is that of the error between a mesh and the coarser one above it.
 """
-BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements below;
-none where the meshes tried do not reach it. No element is the best in all cases: `solid_shell` in the bending of sheets,
-`hex8` and the quadratic elements in the plastic flow of thick bodies, the quadratic ones where the stress is smooth.
+BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements
+below; none where the meshes tried do not reach it. No element is the best in all cases: `solid_shell` in the bending of
+sheets, `hex8` and the quadratic elements in the plastic flow of thick bodies, the quadratic ones where the stress is
+smooth.
 """
 
 
