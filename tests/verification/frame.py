@@ -11,7 +11,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(ROOT / "utils"))
 from results import command, find_program, launch, number, read_table, read_text  # noqa: E402
-from scripts import Problem  # noqa: E402
+from scripts import Problem, need  # noqa: E402
 
 VALUE_HEAD = ["quantity", "expected", "computed", "error", "tolerance"]
 STUDY_HEAD = ["element", "mesh", "unknowns", "seconds", "computed", "error", "order"]

@@ -1,14 +1,12 @@
-"""Structured meshes of hexahedra as .inp files, and the nodal forces of a pressure on their faces."""
-import math
+"""Structured meshes of hexahedra as .inp files."""
 
 CORNERS = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
 EDGES = [(0, -1, -1), (1, 0, -1), (0, 1, -1), (-1, 0, -1), (0, -1, 1), (1, 0, 1), (0, 1, 1), (-1, 0, 1),
          (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
 INNER = [(0, 0, 0), (0, 0, -1), (0, 0, 1), (0, -1, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0)]
 NODES = {8: CORNERS, 20: CORNERS + EDGES, 27: CORNERS + EDGES + INNER}
-FACES = {8: [(-1, -1), (1, -1), (1, 1), (-1, 1)], 27: [(i, j) for j in (-1, 0, 1) for i in (-1, 0, 1)]}
-FACES[20] = FACES[8] + [(0, -1), (1, 0), (0, 1), (-1, 0)]
-GAUSS = [(-math.sqrt(0.6), 5 / 9), (0.0, 8 / 9), (math.sqrt(0.6), 5 / 9)]
+# Weights of a uniform load on a face: corners, middles of edges, centre.
+FACE_WEIGHTS = {8: (1 / 4,), 20: (-1 / 12, 1 / 3), 27: (1 / 36, 4 / 36, 16 / 36)}
 
 
 def node_count(element):
@@ -47,48 +45,13 @@ class Mesh:
             lines += [", ".join(labels[i:i + 14]) for i in range(0, len(labels), 14)]
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
-    def pressure_forces(self, axis):
-        """Return the forces of a unit pressure on the first plane of an axis by node, consistent with the element."""
-        forces, others = {}, [a for a in range(3) if a != axis]
+    def fractions(self, axis, side):
+        """Return the fractions of a uniform load on the first or last plane of an axis by node; its faces are equal."""
+        result, plane = {}, 2 * side * self.divisions[axis]
         for nodes in self.elements:
-            if min(key[axis] for key in nodes) > 0:
-                continue
-            face = {}
             for node, key in zip(NODES[self.count], nodes):
-                if key[axis] == 0:
-                    face[node[others[0]], node[others[1]]] = key
-            for s, weight_s in GAUSS:
-                for t, weight_t in GAUSS:
-                    shape = {node: face_shape(self.count, node, s, t) for node in face}
-                    base = [[sum(shape[node][d] * self.place[key][x] for node, key in face.items()) for x in range(3)]
-                            for d in (1, 2)]
-                    normal = cross(*base) if axis != 1 else cross(*base[::-1])
-                    for node, key in face.items():
-                        force = forces.setdefault(key, [0.0, 0.0, 0.0])
-                        for x in range(3):
-                            force[x] += weight_s * weight_t * shape[node][0] * normal[x]
-        return forces
-
-
-def cross(a, b):
-    """Return the vector product."""
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def face_shape(count, node, s, t):
-    """Return the shape function of a node of a face and its derivatives along s and t."""
-    (a, da), (b, db) = (line_shape(count, *pair) for pair in zip(node, (s, t)))
-    if count == 20 and 0 not in node:  # serendipity corner: (1 + s a)(1 + t b)(s a + t b - 1)/4
-        i, j = node
-        p, q, r = 1 + s * i, 1 + t * j, s * i + t * j - 1
-        return p * q * r / 4, i * q * (r + p) / 4, j * p * (r + q) / 4
-    return a * b, da * b, a * db
-
-
-def line_shape(count, node, s):
-    """Return the shape function of a line and its derivative: linear for corners of 8 or 20 nodes."""
-    if node == 0:
-        return 1 - s * s, -2 * s
-    if count == 27:
-        return 0.5 * s * (s + node), s + 0.5 * node
-    return 0.5 * (1 + s * node), 0.5 * node
+                if key[axis] == plane:
+                    middle = [n for a, n in enumerate(node) if a != axis].count(0)
+                    result[key] = result.get(key, 0.0) + FACE_WEIGHTS[self.count][middle]
+        total = sum(result.values())
+        return {key: weight / total for key, weight in result.items()}

@@ -21,15 +21,14 @@ def run(bench, element, n):
     """Run the panel with n x n elements; return the run and the tip displacement for E = F = 1."""
     mesh, name = meshes.Mesh(element, (n, n, 1), panel), f"cook_{element}_{n}"
     file = bench.work / f"{name}.inp"
-    groups, edge = {}, meshes.Mesh(element, (n, n, 1), lambda u, v, w: panel(1 - u, v, w)).pressure_forces(0)
-    for key, force in edge.items():  # of the mirrored panel, whose first plane is the loaded edge
-        groups.setdefault(round(force[0] / 16, 9), []).append((2 * n, *key[1:]))
+    groups = {}
+    for key, fraction in mesh.fractions(0, 1).items():
+        groups.setdefault(round(fraction, 12), []).append(key)
     sets = {f"edge{i}": keys for i, keys in enumerate(groups.values())}
-    mesh.write(file, {"clamp": mesh.plane(0, 0), "z_low": mesh.plane(2, 0), **sets})
-    total = sum(share * len(keys) for share, keys in groups.items())
+    mesh.write(file, {"clamp": mesh.plane(0, 0), **sets})
     text = (HERE / "case.dat").read_text(encoding="utf-8")
-    for i, (share, keys) in enumerate(groups.items()):
-        text += f"  load = edge{i} 0 {FORCE * share * len(keys) / total:.12g} 0\n"
+    for i, (fraction, keys) in enumerate(groups.items()):
+        text += f"  load = edge{i} 0 {FORCE * fraction * len(keys):.12g} 0\n"
     found = bench.run(name, text, {"mesh": f'"{file}"', "element": element})
     return found, found.last("middle_uy") * YOUNG / FORCE
 
