@@ -251,10 +251,10 @@ def command_line():
     return parser
 
 
-def arguments():
+def arguments(words=None):
     """Return the options after their checks."""
     parser = command_line()
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     options.mirror = sorted(set("".join(options.mirror)))
     if options.view not in VIEWS and not direction(options.view):
         parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
@@ -317,14 +317,8 @@ def new_plotter(options, count):
     return plotter
 
 
-def main():
-    options = arguments()
-    run = Run(options.run)
-    if options.list:
-        print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
-        print("at nodes: " + ", ".join(run.grid["PointData"]))
-        print("at cells: " + ", ".join(run.grid["CellData"]))
-        return
+def make_picture(run, options):
+    """Draw the steps of the options and write the picture."""
     tools = find_tools(run, options)
     steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
     limits, box = limits_of(run, steps, options), box_of(run, steps, options)
@@ -338,6 +332,19 @@ def main():
         plotter.screenshot(options.output)
     except (OSError, ValueError) as error:
         sys.exit(f"{options.output}: {error}")
+    finally:
+        plotter.close()
+
+
+def main():
+    options = arguments()
+    run = Run(options.run)
+    if options.list:
+        print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
+        print("at nodes: " + ", ".join(run.grid["PointData"]))
+        print("at cells: " + ", ".join(run.grid["CellData"]))
+        return
+    make_picture(run, options)
     print(options.output)
 
 

@@ -1,8 +1,12 @@
-"""Start and end of a script: missing packages, errors as one line on stderr."""
+"""Start and end of a script: missing packages, errors as one line on stderr, a progress bar."""
 
 import importlib.util
 import os
 import sys
+import time
+from pathlib import Path
+
+ENVIRONMENT = Path(__file__).resolve().parent.parent / ".venv"
 
 
 class Problem(Exception):
@@ -10,9 +14,17 @@ class Problem(Exception):
 
 
 def need(*packages):
-    """End the script if a package is missing. Call it before the imports."""
+    """Continue in the project's .venv if a package is missing; end the script if it is missing there too.
+
+    Call it before the imports.
+    """
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
+        python = ENVIRONMENT / "bin" / "python3"
+        main = getattr(sys.modules["__main__"], "__file__", None)
+        if main and python.exists() and Path(sys.prefix).resolve() != ENVIRONMENT.resolve():
+            sys.stdout.flush()
+            os.execv(python, [str(python), main, *sys.argv[1:]])
         end(f"no package {', '.join(missing)}: utils/install_needed.sh installs utils/requirements.txt into .venv, "
             "then call .venv/bin/python")
 
@@ -21,6 +33,27 @@ def end(message):
     """Print one line and exit with code 2; messages in the program's format, file:line: error: ..., are not changed."""
     print(message if "error: " in message else f"error: {message}", file=sys.stderr)
     sys.exit(2)
+
+
+class Progress:
+    """A bar on stderr for work of more than a second; on a terminal only. Call it with the fraction that is done."""
+
+    WIDTH = 40
+
+    def __init__(self, title):
+        self.title, self.began, self.shown = title, time.monotonic(), False
+
+    def __call__(self, fraction):
+        if sys.stderr.isatty() and time.monotonic() - self.began > 1.0:
+            full = round(self.WIDTH * min(max(fraction, 0.0), 1.0))
+            print(f"\r{self.title} [{'#' * full}{'.' * (self.WIDTH - full)}]", end="", file=sys.stderr, flush=True)
+            self.shown = True
+
+    def end(self):
+        """Remove the bar."""
+        if self.shown:
+            print("\r" + " " * (len(self.title) + self.WIDTH + 3) + "\r", end="", file=sys.stderr, flush=True)
+            self.shown = False
 
 
 def run(main):

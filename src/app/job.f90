@@ -82,6 +82,7 @@ contains
 
     start%solver = case%solver
     start%threads = options%threads
+    start%reproducible = options%reproducible
     start%directory = results_directory(options, case)
     if (size(case%point) > 0) then
       if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &

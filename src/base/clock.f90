@@ -1,9 +1,10 @@
-!> Wall-clock time, and the time spent in the sections of a run.
+!> Wall-clock and processor time, and the time spent in the sections of a run.
 module dd3_base_clock
+  use, intrinsic :: iso_c_binding, only : c_int, c_long
   use dd3_base_kinds, only : wp, i8
   implicit none
   private
-  public :: wall_time, profile_t, section_names
+  public :: wall_time, processor_time, profile_t, section_names
   public :: section_material, section_assembly, section_contact, section_factorisation, &
       section_solve, section_output
 
@@ -23,7 +24,34 @@ module dd3_base_clock
     procedure :: add => profile_add
   end type profile_t
 
+  !> Clock of the processor time of the calling thread (CLOCK_THREAD_CPUTIME_ID of Linux).
+  integer(c_int), parameter :: thread_clock = 3
+
+  !> Seconds and nanoseconds (POSIX).
+  type, bind(c) :: timespec_t
+    integer(c_long) :: seconds = 0_c_long, nanoseconds = 0_c_long
+  end type timespec_t
+
+  interface
+    !> Read a clock (POSIX).
+    integer(c_int) function clock_gettime(clock, time) bind(c, name="clock_gettime")
+      import :: c_int, timespec_t
+      integer(c_int), value :: clock
+      type(timespec_t), intent(out) :: time
+    end function clock_gettime
+  end interface
+
 contains
+
+  !> Return the time that the processor has spent on the calling thread, s: other load on the
+  !> machine does not count.
+  real(wp) function processor_time()
+    type(timespec_t) :: time
+    integer(c_int) :: ignored
+
+    ignored = clock_gettime(thread_clock, time)
+    processor_time = real(time%seconds, wp) + 1.0e-9_wp*real(time%nanoseconds, wp)
+  end function processor_time
 
   !> Return the time of a monotonic clock, s.
   real(wp) function wall_time()

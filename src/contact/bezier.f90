@@ -12,7 +12,7 @@ module dd3_contact_bezier
   implicit none
   private
   public :: patch_t, new_patch, evaluate, evaluate_relative, position_at, normal_at, unit_normal
-  public :: curve_length, largest_degree, n_sample
+  public :: largest_degree, n_sample
 
   !> Largest degree of a patch in u or v.
   integer, parameter :: largest_degree = 25
@@ -42,6 +42,8 @@ module dd3_contact_bezier
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Diagonal of the bounding box, mm.
     real(wp) :: size = 0.0_wp
+    !> Lengths of the parameter lines at 0, 1/2 and 1 of the other parameter: along u, along v, mm.
+    real(wp) :: length(3, 2) = 0.0_wp
     !> Smaller of the mean lengths in u and v, mm.
     real(wp) :: shorter_side = 0.0_wp
     !> First line of the patch in its file, or 0.
@@ -86,59 +88,83 @@ contains
       self%flat = all(abs(self%control(:, 0, 0) - self%control(:, 1, 0) - self%control(:, 0, 1) &
           + self%control(:, 1, 1)) <= 1.0e-14_wp*self%size)
     end if
-    if (.not. self%flat) call store_sample(self)
-    self%shorter_side = min(mean_length(self, 1), mean_length(self, 2))
+    call measure(self)
   end subroutine new_patch
 
-  !> Store the points from which a global projection starts.
-  subroutine store_sample(self)
+  !> Measure lengths on a grid of points; store it for curved patches, as the points from which a
+  !> global projection starts.
+  pure subroutine measure(self)
     type(patch_t), intent(inout) :: self
 
-    real(wp), parameter :: step = 1.0_wp/n_sample
-    integer :: i, j
+    real(wp) :: point(3, 0:n_sample, 0:n_sample)
+    integer :: i
 
+    call set_grid(self, point)
+    do i = 1, 3
+      self%length(i, 1) = polygon_length(point(:, :, (i - 1)*n_sample/2))
+      self%length(i, 2) = polygon_length(point(:, (i - 1)*n_sample/2, :))
+    end do
+    self%shorter_side = min(mean(self%length(:, 1)), mean(self%length(:, 2)))
+    if (self%flat) return
     allocate (self%sample(3, 0:n_sample, 0:n_sample))
-    do j = 0, n_sample
-      do i = 0, n_sample
-        self%sample(:, i, j) = position_at(self, real(i, wp)*step, real(j, wp)*step) - self%centre
+    do i = 1, 3
+      self%sample(i, :, :) = point(i, :, :) - self%centre(i)
+    end do
+
+  contains
+
+    pure real(wp) function mean(length)
+      real(wp), intent(in) :: length(3)
+
+      mean = length(1)/3.0_wp + length(2)/3.0_wp + length(3)/3.0_wp
+    end function mean
+
+  end subroutine measure
+
+  !> Evaluate the points on a regular grid of parameters.
+  pure subroutine set_grid(self, point)
+    type(patch_t), intent(in) :: self
+    !> mm.
+    real(wp), intent(out) :: point(3, 0:n_sample, 0:n_sample)
+
+    real(wp) :: b(0:largest_degree, 0:n_sample, 2), row(4, 0:largest_degree), p(4)
+    integer :: i, j, k, l
+
+    do i = 0, n_sample
+      do k = 1, 2
+        call bernstein_values(self%degree(k), real(i, wp)/n_sample, b(:, i, k))
       end do
     end do
-  end subroutine store_sample
+    do i = 0, n_sample
+      row(:, :self%degree(2)) = 0.0_wp
+      do l = 0, self%degree(2)
+        do k = 0, self%degree(1)
+          row(:, l) = row(:, l) + b(k, i, 1)*self%homogeneous(:, k, l)
+        end do
+      end do
+      do j = 0, n_sample
+        p = 0.0_wp
+        do l = 0, self%degree(2)
+          p = p + b(l, j, 2)*row(:, l)
+        end do
+        if (self%rational) p(:3) = 1.0_wp/p(4)*p(:3)
+        point(:, i, j) = p(:3) + self%centre
+      end do
+    end do
+  end subroutine set_grid
 
-  !> Return the mean length of the patch in u or v, mm.
-  pure real(wp) function mean_length(self, direction)
-    type(patch_t), intent(in) :: self
-    !> 1 for u, 2 for v.
-    integer, intent(in) :: direction
+  !> Return the length of a polygon, mm.
+  pure real(wp) function polygon_length(point) result(length)
+    !> Corners, mm.
+    real(wp), intent(in) :: point(:, :)
 
     integer :: i
 
-    mean_length = 0.0_wp
-    do i = 0, 2
-      mean_length = mean_length + curve_length(self, direction, 0.5_wp*real(i, wp))/3.0_wp
+    length = 0.0_wp
+    do i = 2, size(point, 2)
+      length = length + sqrt(sum((point(:, i) - point(:, i - 1))**2))
     end do
-  end function mean_length
-
-  !> Return the length of a parameter line, as the sum of eight chords, mm.
-  pure real(wp) function curve_length(self, direction, other)
-    type(patch_t), intent(in) :: self
-    !> Parameter that varies along the line: 1 for u, 2 for v.
-    integer, intent(in) :: direction
-    !> Value of the other parameter.
-    real(wp), intent(in) :: other
-
-    real(wp) :: uv(2), previous(3), next(3)
-    integer :: i
-
-    curve_length = 0.0_wp
-    uv = other
-    do i = 0, 8
-      uv(direction) = 0.125_wp*real(i, wp)
-      next = position_at(self, uv(1), uv(2))
-      if (i > 0) curve_length = curve_length + sqrt(sum((next - previous)**2))
-      previous = next
-    end do
-  end function curve_length
+  end function polygon_length
 
   !> Evaluate a point of the patch and its first and second derivatives.
   pure subroutine evaluate(self, u, v, point, first, second)
@@ -260,6 +286,26 @@ contains
     b(1, 2) = factor*(b(1, 2) - 2.0_wp*b(0, 2))
     b(0, 2) = factor*b(0, 2)
   end subroutine bernstein
+
+  !> Evaluate the Bernstein polynomials of a degree.
+  pure subroutine bernstein_values(degree, t, b)
+    !> At least 1.
+    integer, intent(in) :: degree
+    real(wp), intent(in) :: t
+    !> `b(0:degree)`.
+    real(wp), intent(out) :: b(0:largest_degree)
+
+    integer :: k, i
+
+    b(0) = 1.0_wp
+    do k = 1, degree
+      b(k) = t*b(k - 1)
+      do i = k - 1, 1, -1
+        b(i) = (1.0_wp - t)*b(i) + t*b(i - 1)
+      end do
+      b(0) = (1.0_wp - t)*b(0)
+    end do
+  end subroutine bernstein_values
 
   !> Return a point of the patch, mm.
   pure function position_at(self, u, v) result(point)

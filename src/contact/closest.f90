@@ -1,8 +1,8 @@
 !> Closest point of a tool's surface to a node.
 !>
 !> The global search runs once per increment, and again for a node that has moved far: it projects
-!> the node on every patch whose bounding box is near enough and keeps the nearest point; among
-!> equal ones it prefers the patch of the last query. All other queries are local: they start from
+!> the node on every patch whose bounding box is near enough and keeps the nearest point; of equal
+!> ones it prefers the patch of the last query. All other queries are local: they start from
 !> the last closest point and cross edges to neighbouring patches. Patches are extended by a narrow
 !> band beyond smooth edges, so that a node near such an edge does not change patch in every
 !> iteration. A node deeper inside the tool than a given depth, and one where the sheet turns its
@@ -12,9 +12,10 @@
 !> (2008) 113-162.
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
-  use dd3_contact_bezier, only : patch_t
   use dd3_contact_hit, only : hit_t, new_hit, projection_location, on_border
-  use dd3_contact_project, only : project, project_globally
+  use dd3_contact_global_search, only : apply_limits, edge_margin, query_t, search_all, &
+      search_tree
+  use dd3_contact_project, only : project
   use dd3_contact_projection, only : projection_t
   use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
   implicit none
@@ -25,10 +26,6 @@ module dd3_contact_closest
   integer, parameter :: most_patches = 4
   !> Largest difference of equal distances, relative to the surface's size.
   real(wp), parameter :: equal_distance = 1.0e-9_wp
-  !> Distance, relative to the surface's size, by which a point on an edge must be nearer than
-  !> another one to be preferred.
-  real(wp), parameter :: edge_margin = 1.0e-12_wp
-
   !> What is kept of a node's last query.
   type :: hint_t
     !> Patch of the closest point; 0 if none was found.
@@ -42,16 +39,6 @@ module dd3_contact_closest
     !> Lower bound of its distance from the surface there, used if nothing was found, mm.
     real(wp) :: clearance = 0.0_wp
   end type hint_t
-
-  !> A query for the closest point.
-  type :: query_t
-    !> Position of the node in the surface's frame, mm.
-    real(wp) :: x(3)
-    !> Largest distances of a contact outside and inside the tool, mm.
-    real(wp) :: search_distance, depth
-    !> Outward normal of the sheet; zero if unknown.
-    real(wp) :: outward(3) = 0.0_wp
-  end type query_t
 
 contains
 
@@ -106,15 +93,6 @@ contains
     call apply_limits(hit, query)
     if (hit%found) call keep_point(hint, hit)
   end subroutine search_locally
-
-  !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
-  pure subroutine apply_limits(hit, query)
-    type(hit_t), intent(inout) :: hit
-    type(query_t), intent(in) :: query
-
-    hit%found = hit%found .and. hit%distance <= query%search_distance &
-        .and. hit%distance > -query%depth .and. dot_product(hit%normal, query%outward) <= 0.0_wp
-  end subroutine apply_limits
 
   !> Keep the closest point for the next query.
   pure subroutine keep_point(hint, hit)
@@ -190,34 +168,11 @@ contains
     type(hint_t), intent(inout) :: hint
     type(hit_t), intent(out) :: hit
 
-    type(projection_t) :: projection
-    type(hit_t) :: candidate
-    real(wp) :: radius, best, distance, clearance, near
-    integer :: k
+    real(wp) :: best, clearance
+    logical :: ok
 
-    radius = max(query%search_distance, query%depth)
-    best = huge(1.0_wp)
-    clearance = huge(1.0_wp)
-    do k = 1, size(surface%patch)
-      near = box_distance(surface%patch(k), query%x)
-      if (near <= min(radius, best)) then
-        call project_globally(surface%patch(k), query%x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], &
-            projection)
-        near = projection%distance
-      end if
-      clearance = min(clearance, near)
-      if (near > min(radius, best)) cycle
-      distance = projection%distance
-      if (any(projection%active /= 0)) distance = distance + edge_margin*surface%size
-      if (distance >= best) cycle
-      call new_hit(candidate, surface, k, query%x, projection)
-      if (candidate%found) then
-        call apply_limits(candidate, query)
-        if (.not. candidate%found) cycle
-      end if
-      hit = candidate
-      best = distance
-    end do
+    call search_tree(surface, query, hit, best, clearance, ok)
+    if (.not. ok) call search_all(surface, query, hit, best, clearance)
     if (hint%patch > 0) call prefer_last_patch(surface, query, hint, best, hit)
     hint%due = .false.
     hint%anchor = query%x
@@ -249,18 +204,5 @@ contains
     call apply_limits(candidate, query)
     if (candidate%found) hit = candidate
   end subroutine prefer_last_patch
-
-  !> Return the distance of a point from a patch's bounding box, mm: a lower bound of its distance
-  !> from the patch.
-  pure real(wp) function box_distance(patch, x)
-    type(patch_t), intent(in) :: patch
-    !> mm.
-    real(wp), intent(in) :: x(3)
-
-    real(wp) :: outside(3)
-
-    outside = max(patch%lower - x, x - patch%upper, 0.0_wp)
-    box_distance = sqrt(dot_product(outside, outside))
-  end function box_distance
 
 end module dd3_contact_closest

@@ -19,18 +19,18 @@ contains
     !> at the spacing of its grid.
     real(wp), intent(in) :: distance
 
-    real(wp) :: largest, reach
+    real(wp) :: largest, range
     integer :: k, i, j
 
     largest = 0.0_wp
     do k = 1, size(surface%patch)
       associate (patch => surface%patch(k))
         if (patch%flat) cycle
-        reach = distance + patch%size/n_sample
-        if (any(patch%lower > x + reach .or. patch%upper < x - reach)) cycle
+        range = distance + patch%size/n_sample
+        if (any(patch%lower > x + range .or. patch%upper < x - range)) cycle
         do j = 0, n_sample
           do i = 0, n_sample
-            if (sum((patch%centre + patch%sample(:, i, j) - x)**2) > reach**2) cycle
+            if (sum((patch%centre + patch%sample(:, i, j) - x)**2) > range**2) cycle
             largest = max(largest, convex_curvature(patch, real([i, j], wp)/n_sample))
           end do
         end do

@@ -89,16 +89,16 @@ contains
   end function direction_at
 
   !> Find the closest point of the curve: the nearest end of a chord, improved by golden sections.
-  pure subroutine closest_on(surface, curve, x, reach, t, distance)
+  pure subroutine closest_on(surface, curve, x, search_distance, t, distance)
     type(surface_t), intent(in) :: surface
     type(edge_curve_t), intent(in) :: curve
     !> mm.
     real(wp), intent(in) :: x(3)
     !> Distances beyond it are not needed, mm.
-    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: search_distance
     !> Parameter of the closest point.
     real(wp), intent(out) :: t
-    !> mm; a huge value beyond `reach`.
+    !> mm; a huge value beyond `search_distance`.
     real(wp), intent(out) :: distance
 
     real(wp), parameter :: ratio = 0.5_wp*(sqrt(5.0_wp) - 1.0_wp)
@@ -108,7 +108,7 @@ contains
     distance = huge(1.0_wp)
     nearest = minloc(sum((curve%point - spread(x, 2, n_chord + 1))**2, dim=1), dim=1) - 1
     t = real(nearest, wp)/n_chord
-    if (norm2(curve%point(:, nearest) - x) > reach + curve%chord) return
+    if (norm2(curve%point(:, nearest) - x) > search_distance + curve%chord) return
     lower = max(0.0_wp, t - 1.0_wp/n_chord)
     upper = min(1.0_wp, t + 1.0_wp/n_chord)
     a = upper - ratio*(upper - lower)

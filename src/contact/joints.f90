@@ -3,6 +3,7 @@
 !> sweep along the longest axis of the surface.
 module dd3_contact_joints
   use dd3_base_kinds, only : wp
+  use dd3_base_sorting, only : ascending
   use dd3_contact_bezier, only : normal_at
   use dd3_contact_edge_curve, only : edge_curve_t, open_edges, point_on, direction_at, closest_on
   use dd3_contact_surface, only : surface_t, coincident, edge_parameters
@@ -48,11 +49,11 @@ module dd3_contact_joints
 contains
 
   !> Report the joints of a surface.
-  pure subroutine new_surface_report(self, surface, reach)
+  pure subroutine new_surface_report(self, surface, largest_gap)
     type(surface_report_t), intent(out) :: self
     type(surface_t), intent(in) :: surface
     !> Largest gap of edges that count as near, mm.
-    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: largest_gap
 
     type(edge_curve_t), allocatable :: curve(:)
 
@@ -63,7 +64,7 @@ contains
     allocate (self%t_junction(3, 0), self%t_patch(2, 0), self%near_miss(0))
     curve = open_edges(surface)
     self%n_open = size(curve)
-    call compare_near_curves(self, surface, curve, reach)
+    call compare_near_curves(self, surface, curve, largest_gap)
   end subroutine new_surface_report
 
   !> Count the joined edges across which the normal jumps, and find the largest jump.
@@ -113,11 +114,11 @@ contains
   end function angle_across
 
   !> Compare all pairs of open edges whose bounding boxes are near.
-  pure subroutine compare_near_curves(self, surface, curve, reach)
+  pure subroutine compare_near_curves(self, surface, curve, largest_gap)
     type(surface_report_t), intent(inout) :: self
     type(surface_t), intent(in) :: surface
     type(edge_curve_t), intent(in) :: curve(:)
-    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: largest_gap
 
     integer :: order(size(curve)), axis, a, b, i, j
 
@@ -127,57 +128,27 @@ contains
       a = order(i)
       do j = i + 1, size(curve)
         b = order(j)
-        if (curve(b)%lower(axis) > curve(a)%upper(axis) + reach) exit
-        if (any(curve(a)%lower > curve(b)%upper + reach)) cycle
-        if (any(curve(b)%lower > curve(a)%upper + reach)) cycle
+        if (curve(b)%lower(axis) > curve(a)%upper(axis) + largest_gap) exit
+        if (any(curve(a)%lower > curve(b)%upper + largest_gap)) cycle
+        if (any(curve(b)%lower > curve(a)%upper + largest_gap)) cycle
         if (curve(a)%patch == curve(b)%patch) cycle
-        call compare_curves(self, surface, curve(min(a, b)), curve(max(a, b)), reach)
+        call compare_curves(self, surface, curve(min(a, b)), curve(max(a, b)), largest_gap)
       end do
     end do
   end subroutine compare_near_curves
 
-  !> Return the order that sorts the keys, by merging.
-  pure recursive function ascending(key) result(order)
-    real(wp), intent(in) :: key(:)
-    integer :: order(size(key))
-
-    integer :: left(size(key)/2), right(size(key) - size(key)/2), i, j, k
-
-    order = 1
-    if (size(key) < 2) return
-    left = ascending(key(:size(left)))
-    right = size(left) + ascending(key(size(left) + 1:))
-    i = 1
-    j = 1
-    do k = 1, size(key)
-      if (j > size(right)) then
-        order(k) = left(i)
-        i = i + 1
-      else if (i > size(left)) then
-        order(k) = right(j)
-        j = j + 1
-      else if (key(left(i)) <= key(right(j))) then
-        order(k) = left(i)
-        i = i + 1
-      else
-        order(k) = right(j)
-        j = j + 1
-      end if
-    end do
-  end function ascending
-
   !> Compare two open edges: do they nearly coincide, does one end inside the other?
-  pure subroutine compare_curves(self, surface, a, b, reach)
+  pure subroutine compare_curves(self, surface, a, b, largest_gap)
     type(surface_report_t), intent(inout) :: self
     type(surface_t), intent(in) :: surface
     type(edge_curve_t), intent(in) :: a, b
-    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: largest_gap
 
     real(wp) :: tolerance, limit, gap
     integer :: beside(2)
 
     tolerance = coincident*surface%size
-    limit = min(reach, widest_gap*min(surface%patch(a%patch)%shorter_side, &
+    limit = min(largest_gap, widest_gap*min(surface%patch(a%patch)%shorter_side, &
         surface%patch(b%patch)%shorter_side))
     call find_t_junctions(self, surface, a, b, tolerance)
     call find_t_junctions(self, surface, b, a, tolerance)

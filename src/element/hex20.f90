@@ -27,12 +27,8 @@ contains
 
   !> Evaluate the shape functions and their derivatives.
   pure subroutine hex20_shape(natural, shape, dshape)
-    !> Natural coordinates.
     real(wp), intent(in) :: natural(3)
-    !> Shape functions, one per node.
-    real(wp), intent(out) :: shape(:)
-    !> Their derivatives: `dshape(3,n_node)`.
-    real(wp), intent(out) :: dshape(:, :)
+    real(wp), intent(out) :: shape(:), dshape(:, :)
 
     real(wp) :: c(3), part(3), slope(3), excess
     integer :: a, i

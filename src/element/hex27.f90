@@ -1,8 +1,8 @@
 !> Hexahedron with 27 nodes, products of quadratic Lagrange polynomials (Zienkiewicz & Taylor, The
-!> Finite Element Method, 1989, chap. 7), and selective reduced integration as in Menezes &
-!> Teodosiu (2000): 3 x 3 x 3 Gauss points, the dilatation of 2 x 2 x 2 points. It is projected on
-!> the trilinear functions N_k that are 1 at one of those points and 0 at the others: for a
-!> dilatation that is quadratic in each natural coordinate this is interpolation between them.
+!> Finite Element Method, 1989, chap. 7), and selective reduced integration: 3 x 3 x 3 Gauss points,
+!> the dilatation of 2 x 2 x 2 points (Hughes 1980, B-bar). It is projected on the trilinear
+!> functions N_k that are 1 at one of those points and 0 at the others: for a dilatation that is
+!> quadratic in each natural coordinate this is interpolation between them.
 module dd3_element_hex27
   use dd3_base_kinds, only : wp
   use dd3_element_gauss, only : gauss_legendre
@@ -74,12 +74,8 @@ contains
 
   !> Evaluate N_a = L_a(xi) L_a(eta) L_a(zeta) and its derivatives.
   pure subroutine hex27_shape(natural, shape, dshape)
-    !> Natural coordinates.
     real(wp), intent(in) :: natural(3)
-    !> Shape functions, one per node.
-    real(wp), intent(out) :: shape(:)
-    !> Their derivatives: `dshape(3,n_node)`.
-    real(wp), intent(out) :: dshape(:, :)
+    real(wp), intent(out) :: shape(:), dshape(:, :)
 
     real(wp) :: value(3, -1:1), slope(3, -1:1)
     integer :: a

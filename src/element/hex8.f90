@@ -51,12 +51,8 @@ contains
 
   !> Evaluate N_a = (1 + xi xi_a)(1 + eta eta_a)(1 + zeta zeta_a)/8 and its derivatives.
   pure subroutine hex8_shape(natural, shape, dshape)
-    !> Natural coordinates.
     real(wp), intent(in) :: natural(3)
-    !> Shape functions, one per node.
-    real(wp), intent(out) :: shape(:)
-    !> Their derivatives: `dshape(3,n_node)`.
-    real(wp), intent(out) :: dshape(:, :)
+    real(wp), intent(out) :: shape(:), dshape(:, :)
 
     real(wp) :: part(3)
     integer :: a

@@ -25,13 +25,12 @@ contains
     self%set_stress => element_cauchy
     self%evaluate_force => element_force
     self%evaluate_stiffness => element_stiffness
-    self%evaluate_rate => evaluate_rate
+    self%evaluate_rate => element_rate
   end subroutine use_mean_dilatation
 
   !> Evaluate kinematics, strain increments and trial material axes.
   subroutine deform(element, rotation_committed, work, verdict)
     type(element_t), intent(in) :: element
-    !> Committed material axes, as columns.
     real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     type(element_work_t), intent(inout) :: work
     type(verdict_t), intent(out) :: verdict
@@ -43,7 +42,6 @@ contains
   !> Evaluate the gradients in the committed configuration.
   subroutine linearise(element, rotation_committed, work, verdict)
     type(element_t), intent(in) :: element
-    !> Committed material axes, as columns.
     real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     type(element_work_t), intent(inout) :: work
     type(verdict_t), intent(out) :: verdict
@@ -52,17 +50,5 @@ contains
     work%strain = 0.0_wp
     work%rotation(:, :, :) = rotation_committed
   end subroutine linearise
-
-  !> Evaluate the strain and rotation increments.
-  subroutine evaluate_rate(element, du, rotation_committed, work)
-    type(element_t), intent(in) :: element
-    !> Trial displacement, mm.
-    real(wp), intent(in) :: du(:, :)
-    !> Committed material axes, as columns.
-    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
-    type(element_work_t), intent(inout) :: work
-
-    call element_rate(element, du, rotation_committed, work)
-  end subroutine evaluate_rate
 
 end module dd3_element_mean_dilatation

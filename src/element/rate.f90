@@ -13,12 +13,11 @@ contains
 
   !> Evaluate strain increments in the material frame, with the mean dilatation, and rotations; call
   !> `element_gradients` first.
-  subroutine element_rate(element, du, rotation, work)
+  subroutine element_rate(element, du, rotation_committed, work)
     type(element_t), intent(in) :: element
     !> Trial displacement, mm.
-    real(wp), intent(in) :: du(3, element%n_node)
-    !> Material axes as columns.
-    real(wp), intent(in) :: rotation(3, 3, element%n_point)
+    real(wp), intent(in) :: du(:, :)
+    real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     !> Sets `strain_increment` and `rotation_increment`.
     type(element_work_t), intent(inout) :: work
 
@@ -46,7 +45,7 @@ contains
           l(i, i) = l(i, i) + excess
         end do
       end if
-      q = rotation(:, :, p)
+      q = rotation_committed(:, :, p)
       work%strain_increment(:, p) = kelvin_from_tensor(matmul(transpose(q), matmul(l, q)))
     end do
   end subroutine element_rate

@@ -29,7 +29,6 @@ contains
   !> Evaluate strain increments and trial material axes.
   subroutine shell_deform(element, rotation_committed, work, verdict)
     type(element_t), intent(in) :: element
-    !> Committed material axes, as columns.
     real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     type(element_work_t), intent(inout) :: work
     !> Retry, with the point, if a Jacobian determinant is not positive or no stretch belongs to the
@@ -62,7 +61,6 @@ contains
   !> Evaluate the committed configuration without an increment.
   subroutine shell_linearise(element, rotation_committed, work, verdict)
     type(element_t), intent(in) :: element
-    !> Committed material axes, as columns.
     real(wp), contiguous, intent(in) :: rotation_committed(:, :, :)
     type(element_work_t), intent(inout) :: work
     type(verdict_t), intent(out) :: verdict

@@ -1,7 +1,7 @@
 !> Solid-shell: 8 nodes, 2 x 2 columns of integration points through the thickness, assumed natural
-!> transverse shear and thickness strain, three modes of enhanced thickness strain. One layer bends
-!> exactly whatever the ratio of its length to its thickness. zeta runs through the thickness, from
-!> nodes 1-4 to nodes 5-8.
+!> transverse shear and thickness strain, three modes of enhanced thickness strain. For small angles
+!> between its sections one layer bends exactly whatever the ratio of its length to its thickness.
+!> zeta runs through the thickness, from nodes 1-4 to nodes 5-8.
 !>
 !> Kernels: `shell_deform` (strain increments), `shell_force`, `shell_stiffness`.
 !> Sources: Dvorkin & Bathe 1984 and Hauptmann & Schweizerhof 1998 (assumed shear), Betsch & Stein

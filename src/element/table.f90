@@ -6,6 +6,7 @@
 module dd3_element_table
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
+  use dd3_element_gauss, only : gauss_legendre
   use dd3_element_work, only : element_work_t
   implicit none
   private
@@ -48,6 +49,8 @@ module dd3_element_table
     !> The same laid out for the kernels: `slope(3,n_point,n_node)` and
     !> `slope_row(n_node,3,n_point)`.
     real(wp), allocatable :: slope(:, :, :), slope_row(:, :, :)
+    !> The derivatives at the nodes: `node_slope(3,n_node,n_node)`, the last index is the place.
+    real(wp), allocatable :: node_slope(:, :, :)
     !> Group of each point, 1 ... n_group, or 0: `group(n_point)`.
     integer, allocatable :: group(:)
     !> The functions on which the dilatation is projected, at the points, with the sum 1:
@@ -64,6 +67,10 @@ module dd3_element_table
     !> Nodal fractions of a uniform load on a face, consistent with the shape functions:
     !> `face_weight(n_face_node)`; their sum is 1.
     real(wp), allocatable :: face_weight(:)
+    !> Quadrature weights of the integration points of a face, with the sum 4, and the shape
+    !> functions of its nodes there with their derivatives along the face: `(n_face_point)`,
+    !> `(n_face_node,n_face_point)` and `(n_face_node,2,n_face_point)`.
+    real(wp), allocatable :: face_point_weight(:), face_shape(:, :), face_slope(:, :, :)
     !> Our node at each place of VTK's order: `vtk_order(n_node)`.
     integer, allocatable :: vtk_order(:)
 
@@ -149,6 +156,7 @@ contains
     allocate (self%node(3, n_node), self%point(3, n_point), self%weight(n_point))
     allocate (self%shape(n_node, n_point), self%dshape(3, n_node, n_point))
     allocate (self%slope(3, n_point, n_node), self%slope_row(n_node, 3, n_point))
+    allocate (self%node_slope(3, n_node, n_node))
     allocate (self%extrapolation(n_node, n_point))
     allocate (self%group(n_point), source=0)
     allocate (self%vtk_order(n_node), source=[(a, a=1, n_node)])
@@ -175,18 +183,50 @@ contains
     !> The element's shape functions.
     procedure(shape_interface) :: evaluate
 
-    integer :: p
+    real(wp) :: shape(self%n_node)
+    integer :: p, a
 
     do p = 1, self%n_point
       call evaluate(self%point(:, p), self%shape(:, p), self%dshape(:, :, p))
       self%slope(:, p, :) = self%dshape(:, :, p)
       self%slope_row(:, :, p) = transpose(self%dshape(:, :, p))
     end do
+    do a = 1, self%n_node
+      call evaluate(self%node(:, a), shape, self%node_slope(:, :, a))
+    end do
     self%n_group = maxval(self%group)
     if (allocated(self%projection)) self%n_group = size(self%projection, 2)
     self%n_pair = size(self%pair, 2)
     self%n_face = size(self%face, 2)
     self%n_face_node = size(self%face, 1)
+    call set_face_points(self, evaluate)
   end subroutine complete_table
+
+  !> Evaluate the shape functions of a face at 2 x 2 points, or at 3 x 3 with nodes between the
+  !> corners: those of the last face, zeta = 1, whose nodes run from xi to eta. The other faces have
+  !> the same, by the order of their nodes.
+  subroutine set_face_points(self, evaluate)
+    type(element_t), intent(inout) :: self
+    procedure(shape_interface) :: evaluate
+
+    real(wp) :: abscissa(3), weight(3), shape(self%n_node), dshape(3, self%n_node)
+    integer :: i, j, n, p
+
+    n = merge(2, 3, self%n_face_node == 4)
+    call gauss_legendre(n, abscissa(:n), weight(:n))
+    allocate (self%face_point_weight(n*n), self%face_shape(self%n_face_node, n*n))
+    allocate (self%face_slope(self%n_face_node, 2, n*n))
+    associate (node => self%face(:, self%n_face))
+      do j = 1, n
+        do i = 1, n
+          p = i + n*(j - 1)
+          call evaluate([abscissa(i), abscissa(j), 1.0_wp], shape, dshape)
+          self%face_point_weight(p) = weight(i)*weight(j)
+          self%face_shape(:, p) = shape(node)
+          self%face_slope(:, :, p) = transpose(dshape(:2, node))
+        end do
+      end do
+    end associate
+  end subroutine set_face_points
 
 end module dd3_element_table

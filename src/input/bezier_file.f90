@@ -76,9 +76,9 @@ contains
     type(error_t), allocatable :: error
     integer :: i
 
-    allocate (patches(0))
     call read_lines(file, line, error)
     if (allocated(error)) then
+      allocate (patches(0))
       call errors%push_input(location, "cannot read the tool surface '"//file//"': "// &
           error%message, "a file of Bézier patches")
       return
@@ -92,11 +92,13 @@ contains
     end do
     if (self%errors%count <= most_errors) call close_patch(self)
     if (self%n_begun == 0 .and. self%errors%count == 0) then
+      allocate (patches(0))
       call errors%push_input(location, "the tool surface '"//file//"' contains no patch", header)
       return
     end if
     call push_file_errors(errors, self%errors, location)
-    patches = self%patch(:self%n_patch)
+    call resize(self, self%n_patch)
+    call move_alloc(self%patch, patches)
   end subroutine read_patches
 
   !> Add the errors of a file to those of the input, sorted at the place that names the file. At
@@ -133,8 +135,12 @@ contains
     type(line_t) :: line
     type(token_list_t) :: token
     type(location_t) :: here
-    logical :: continues
+    logical :: continues, ok
 
+    if (self%open) then
+      call read_plain_point(self, text, ok)
+      if (ok) return
+    end if
     line%file = self%file
     line%number = number
     line%text = text
@@ -156,6 +162,58 @@ contains
           "' is outside a patch", header)
     end if
   end subroutine read_line
+
+  !> Read a control point from a line with nothing but its valid numbers; other lines are left to
+  !> the reader of words, which is slower and reports errors.
+  subroutine read_plain_point(self, text, ok)
+    type(reading_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    !> Whether the point was read.
+    logical, intent(out) :: ok
+
+    real(wp) :: value(4)
+    integer :: i, n, first, last
+
+    ok = .false.
+    if (self%n_read == size(self%current%point, 2)) return
+    n = merge(4, 3, self%current%rational)
+    last = 0
+    do i = 1, n
+      do first = last + 1, len(text)
+        if (.not. is_blank(text(first:first))) exit
+      end do
+      do last = first, len(text)
+        if (is_blank(text(last:last))) exit
+      end do
+      ok = last > first
+      if (.not. ok) return
+      call parse_real(text(first:last - 1), value(i), ok)
+      ok = ok .and. in_range(value(i), i)
+      if (.not. ok) return
+    end do
+    do i = last, len(text)
+      ok = is_blank(text(i:i))
+      if (.not. ok) return
+    end do
+    self%n_read = self%n_read + 1
+    self%current%point(:n, self%n_read) = value(:n)
+  end subroutine read_plain_point
+
+  pure logical function is_blank(letter)
+    character(len=1), intent(in) :: letter
+
+    is_blank = letter == " " .or. letter == achar(9) .or. letter == achar(12)
+  end function is_blank
+
+  !> Whether a component of a point is in its range.
+  pure logical function in_range(value, i)
+    real(wp), intent(in) :: value
+    !> Component of the point: 1 to 3 for a coordinate, 4 for the weight.
+    integer, intent(in) :: i
+
+    in_range = abs(value) <= largest_coordinate
+    if (i == 4) in_range = value >= 1.0_wp/largest_weight .and. value <= largest_weight
+  end function in_range
 
   !> Read the header of a patch.
   subroutine open_patch(self, token, here)
@@ -260,9 +318,11 @@ contains
       call parse_real(token%text, value, ok)
       if (.not. ok) then
         call refuse(self, token, not_a_number(token%text), "coordinates in mm: "//expected)
-      else if (i < 4 .and. abs(value) > largest_coordinate) then
+      else if (in_range(value, i)) then
+        return
+      else if (i < 4) then
         call refuse(self, token, "'"//token%text//"' is out of range", "at most 1e7 mm")
-      else if (i == 4 .and. (value < 1.0_wp/largest_weight .or. value > largest_weight)) then
+      else
         call refuse(self, token, "'"//token%text//"' is not a valid weight", &
             "a number from 1e-6 to 1e6")
       end if
@@ -291,7 +351,6 @@ contains
   subroutine close_patch(self)
     type(reading_t), intent(inout) :: self
 
-    type(patch_spec_t), allocatable :: larger(:)
     integer :: n_point
 
     if (.not. self%open) return
@@ -304,13 +363,42 @@ contains
       return
     end if
     if (.not. self%valid) return
-    if (self%n_patch == size(self%patch)) then
-      allocate (larger(2*self%n_patch))
-      larger(:self%n_patch) = self%patch
-      call move_alloc(larger, self%patch)
-    end if
+    if (self%n_patch == size(self%patch)) call resize(self, 2*self%n_patch)
     self%n_patch = self%n_patch + 1
-    self%patch(self%n_patch) = self%current
+    call move_patch(self%current, self%patch(self%n_patch))
   end subroutine close_patch
+
+  !> Change the room for patches.
+  subroutine resize(self, n)
+    type(reading_t), intent(inout) :: self
+    !> At least the number of patches.
+    integer, intent(in) :: n
+
+    type(patch_spec_t), allocatable :: list(:)
+    integer :: i
+
+    allocate (list(n))
+    do i = 1, self%n_patch
+      call move_patch(self%patch(i), list(i))
+    end do
+    call move_alloc(list, self%patch)
+  end subroutine resize
+
+  !> Move a patch without copying its points.
+  subroutine move_patch(from, to)
+    type(patch_spec_t), intent(inout) :: from
+    type(patch_spec_t), intent(out) :: to
+
+    to%degree = from%degree
+    to%rational = from%rational
+    to%number = from%number
+    call move_alloc(from%point, to%point)
+    call move_alloc(from%at%file, to%at%file)
+    call move_alloc(from%at%text, to%at%text)
+    to%at%line = from%at%line
+    to%at%column = from%at%column
+    to%at%width = from%at%width
+    to%at%order = from%at%order
+  end subroutine move_patch
 
 end module dd3_input_bezier_file

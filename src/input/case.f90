@@ -215,6 +215,8 @@ module dd3_input_case
     integer :: target_iterations = 0
     !> Whether the status of candidates that cycle is held, and whether iterations are damped.
     logical :: active_set = .false., damping = .false.
+    !> Whether a penalty above the automatic one is reduced to it after a failed attempt.
+    logical :: adapt_penalty = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.
@@ -328,6 +330,8 @@ module dd3_input_case
     type(pressure_spec_t), allocatable :: pressure(:)
     !> Progress and factor on displacements and loads, in pairs; size 0 if not given.
     real(wp), allocatable :: table(:)
+    !> Progress and factor on the forces of `press`, in pairs; size 0 if not given.
+    real(wp), allocatable :: press_table(:)
     type(until_spec_t) :: until
     !> Settings in this phase, with those inherited from the phases before.
     type(limits_spec_t) :: limits
@@ -343,6 +347,7 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
+    logical :: draw_in = .false.
     type(block_t) :: source
   end type history_spec_t
 

@@ -6,6 +6,7 @@ module dd3_input_cross_check
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
       limits_spec_t, fields_every, fields_at
+  use dd3_input_sheet_sets, only : n_quarters
   implicit none
   private
   public :: cross_check
@@ -58,8 +59,8 @@ contains
     call check_form(blank%source, errors)
     if (errors%count > before) return
     n_element = product(real(blank%divisions, wp))
-    if (blank%radius > 0.0_wp) n_element = n_element*(8.0_wp + 4.0_wp* &
-        real(blank%divisions(1), wp)/real(blank%divisions(2), wp))
+    if (blank%radius > 0.0_wp) n_element = n_element*(2.0_wp + real(blank%divisions(1), wp) &
+        /real(blank%divisions(2), wp))*real(n_quarters(blank%portion), wp)
     call check_grading(blank%source, "grading_x", blank%divisions(1), errors)
     call check_grading(blank%source, "grading_y", blank%divisions(2), errors)
     call check_grading(blank%source, "grading_z", blank%divisions(3), errors)

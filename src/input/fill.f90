@@ -248,6 +248,8 @@ contains
           history%position = .true.
         case ("moment")
           history%moment = .true.
+        case ("draw_in")
+          history%draw_in = .true.
         end select
       end do
     end associate

@@ -47,6 +47,7 @@ contains
     call fill_motions(phase%motion, block)
     call fill_pressures(phase%pressure, block)
     phase%table = block%numbers("table")
+    phase%press_table = block%numbers("press_table")
     call fill_until(phase%until, case, block)
     case%phase(i) = phase
   end subroutine fill_phase
@@ -280,6 +281,8 @@ contains
     if (block%has("target_iterations")) &
         newton%target_iterations = nint(block%number("target_iterations"))
     if (block%has("active_set")) newton%active_set = block%number("active_set") > 0.5_wp
+    if (block%has("adapt_penalty")) &
+        newton%adapt_penalty = block%number("adapt_penalty") > 0.5_wp
     if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp
   end subroutine fill_newton
 

@@ -160,7 +160,8 @@ contains
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
           lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("tool_force", kind_real, "", "1e-2", "tolerance of the balance of a pressed tool "// &
-          "under which nodes keep opening and closing, over its force", lower=zero, upper=0.1_wp, lower_open=.true.), &
+          "under which nodes keep opening and closing, over its force", lower=zero, &
+          upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
@@ -173,8 +174,10 @@ contains
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
       row("active_set", kind_logical, "", "on", "on: hold the contact status of nodes where it "// &
           "cycles, then release the nodes that violate it"), &
-      row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
-          "gradients or that inverts an element")]
+      row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
+          "it after a failed attempt"), &
+      row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
+          "displacement gradients, and any that inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)
@@ -182,8 +185,7 @@ contains
 
     key = [ &
       row("method", kind_name, "", "auto", &
-          "linear solver; auto: cgs, and umfpack if it breaks down; dd3imp --help method lists "// &
-          "them"), &
+          "linear solver; auto: the cheapest; dd3imp --help method lists them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
       row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &
@@ -238,6 +240,8 @@ contains
           form="set number number number number number number number"), &
       row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
           "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
+          "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
@@ -256,8 +260,8 @@ contains
     key = [ &
       row("set", kind_name, "", "", "node set", form="set"), &
       row("quantities", kind_names, "", "", "mean displacement, sum of reactions, mean "// &
-          "position, moment of the reactions about it", count=0, &
-          choices="displacement reaction position moment")]
+          "position, moment of the reactions about it, mean draw-in of the rim", count=0, &
+          choices="displacement reaction position moment draw_in")]
   end function history_keys
 
   function output_keys() result(key)

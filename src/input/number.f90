@@ -1,5 +1,6 @@
 !> Parser of numbers as in Fortran or C: 12, -1.5, .5, 1.e-3, 1d3, 2.1E+5.
 module dd3_input_number
+  use, intrinsic :: iso_c_binding, only : c_char, c_double, c_null_char, c_null_ptr, c_ptr
   use dd3_base_kinds, only : wp
   implicit none
   private
@@ -7,6 +8,17 @@ module dd3_input_number
 
   !> Largest decimal exponent accepted.
   integer, parameter :: largest_exponent = 300
+  !> Largest number of characters of a number.
+  integer, parameter :: longest_number = 60
+
+  interface
+    !> strtod(3): several times faster than an internal read, which calls it too.
+    pure real(c_double) function c_strtod(text, end) bind(c, name="strtod")
+      import :: c_char, c_double, c_ptr
+      character(kind=c_char), intent(in) :: text(*)
+      type(c_ptr), value :: end
+    end function c_strtod
+  end interface
 
 contains
 
@@ -18,12 +30,13 @@ contains
     !> Whether the text is a number within the range of the kind.
     logical, intent(out) :: ok
 
-    integer :: mantissa, exponent, status
+    character(len=longest_number + 1, kind=c_char) :: buffer
+    integer :: mantissa, exponent
 
     value = 0.0_wp
     ok = .false.
     mantissa = mantissa_length(text)
-    if (mantissa == 0 .or. len(text) > 60) return
+    if (mantissa == 0 .or. len(text) > longest_number) return
     exponent = 0
     if (mantissa < len(text)) then
       if (scan(text(mantissa + 1:mantissa + 1), "eEdD") == 0) return
@@ -32,8 +45,10 @@ contains
       ok = .false.
     end if
     if (abs(exponent) > largest_exponent) return
-    read (text, '(f60.0)', iostat=status) value
-    ok = status == 0
+    buffer = text//c_null_char
+    if (mantissa < len(text)) buffer(mantissa + 1:mantissa + 1) = "e"
+    value = real(c_strtod(buffer, c_null_ptr), wp)
+    ok = abs(value) <= huge(value)
     if (.not. ok) value = 0.0_wp
   end subroutine parse_real
 

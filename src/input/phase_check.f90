@@ -35,7 +35,10 @@ contains
       call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
+      call check_bends(case, i, errors)
+      call check_loads(case%phase(i), errors)
       call check_table(case%phase(i), errors)
+      call check_press_table(case%phase(i), errors)
     end do
   end subroutine check_phases
 
@@ -213,30 +216,115 @@ contains
     end do
   end subroutine check_motions
 
-  !> Check that the table begins at 0 0, and that its progress increases to 1.
+  !> Report a bend of a set that an earlier phase bends to an angle that is not known.
+  subroutine check_bends(case, i, errors)
+    type(case_t), intent(in) :: case
+    !> Number of the phase.
+    integer, intent(in) :: i
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: j, k, m
+
+    do k = 1, size(case%phase(i)%motion)
+      associate (motion => case%phase(i)%motion(k))
+        do j = 1, i - 1
+          if (.not. motion%bends .or. case%phase(j)%until%kind == until_never) cycle
+          associate (earlier => case%phase(j)%motion)
+            if (.not. any([(earlier(m)%bends .and. earlier(m)%set == motion%set, &
+                m=1, size(earlier))])) cycle
+          end associate
+          call errors%push_input(motion%at, "phase '"//case%phase(j)%source%called()// &
+              "' bends '"//motion%set//"' to an angle that is not known, as `until` may end it "// &
+              "early", "no until in a phase with a bend that a later phase continues")
+        end do
+      end associate
+    end do
+  end subroutine check_bends
+
+  !> Report sets with two loads or two pressures: only the last one would act.
+  subroutine check_loads(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, j
+
+    do i = 2, size(phase%load)
+      if (any([(phase%load(j)%set == phase%load(i)%set, j=1, i - 1)])) call errors%push_input( &
+          phase%load(i)%at, "'"//phase%load(i)%set//"' is given two loads in this phase", &
+          "one load for each set")
+    end do
+    do i = 2, size(phase%pressure)
+      if (any([(phase%pressure(j)%set == phase%pressure(i)%set, j=1, i - 1)])) &
+          call errors%push_input(phase%pressure(i)%at, "'"//phase%pressure(i)%set// &
+          "' is given two pressures in this phase", "one pressure for each set")
+    end do
+  end subroutine check_loads
+
+  !> Check that the table begins at 0 0, that its progress increases to 1, and that it acts on
+  !> something.
   subroutine check_table(phase, errors)
     type(phase_spec_t), intent(in) :: phase
     type(error_list_t), intent(inout) :: errors
 
     character(len=*), parameter :: form = "table = 0 0  s1 f1 ... 1 fn, with the progress s "// &
         "increasing from 0 to 1"
-    type(location_t) :: at
-    integer :: n
+    integer :: n, i
 
     n = size(phase%table)
     if (n == 0) return
-    at = phase%source%at("table")
-    associate (x => phase%table(1::2))
+    associate (x => phase%table, &
+        value => phase%source%entry(phase%source%find("table"))%value)
       if (mod(n, 2) == 1 .or. n < 4) then
-        call errors%push_input(at, "expected pairs of progress and factor, at least two, got "// &
-            to_text(n)//" numbers", form)
-      else if (any(abs(phase%table(:2)) > 0.0_wp) .or. abs(x(size(x)) - 1.0_wp) > 0.0_wp) then
-        call errors%push_input(at, "the table does not go from 0 0 to a progress of 1", form)
-      else if (any(x(2:) - x(:size(x) - 1) < 1.0e-6_wp)) then
-        call errors%push_input(at, "the progress in the table does not increase", form)
+        call errors%push_input(value(1)%at, "expected pairs of progress and factor, at least "// &
+            "two, got "//to_text(n)//" numbers", form)
+      else if (any(abs(x(:2)) > 0.0_wp)) then
+        call errors%push_input(value(1)%at, "the table does not begin with 0 0", form)
+      else if (abs(x(n - 1) - 1.0_wp) > 0.0_wp) then
+        call errors%push_input(value(n - 1)%at, "the table does not end at a progress of 1", form)
+      else if (size(phase%displace) + size(phase%motion) + size(phase%load) &
+          + size(phase%pressure) == 0) then
+        call errors%push_input(value(1)%at, "the table has no effect in this phase", &
+            "a phase with displace, rotate, bend, load or pressure; tools move linearly")
       end if
+      do i = 3, n - 1, 2
+        if (x(i) - x(i - 2) >= 1.0e-6_wp) cycle
+        call errors%push_input(value(i)%at, "the progress does not increase here", form)
+        exit
+      end do
     end associate
   end subroutine check_table
+
+  !> Check that the progress of the table of forces increases to 1, that no factor is negative, and
+  !> that a tool is pressed.
+  subroutine check_press_table(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=*), parameter :: form = "press_table = s1 f1 ... 1 fn, with the progress s "// &
+        "increasing to 1 and factors f >= 0"
+    integer :: n, i
+
+    n = size(phase%press_table)
+    if (n == 0) return
+    associate (x => phase%press_table, &
+        value => phase%source%entry(phase%source%find("press_table"))%value)
+      if (mod(n, 2) == 1) then
+        call errors%push_input(value(1)%at, "expected pairs of progress and factor, got "// &
+            to_text(n)//" numbers", form)
+        return
+      end if
+      if (size(phase%press) == 0) call errors%push_input(value(1)%at, &
+          "the table has no effect in this phase", "a phase with press")
+      if (abs(x(n - 1) - 1.0_wp) > 0.0_wp) call errors%push_input(value(n - 1)%at, &
+          "the table does not end at a progress of 1", form)
+      do i = 1, n - 1, 2
+        if (x(i) - merge(0.0_wp, x(max(1, i - 2)), i == 1) < 1.0e-6_wp) &
+            call errors%push_input(value(i)%at, "the progress does not increase here", form)
+        if (x(i + 1) < 0.0_wp) call errors%push_input(value(i + 1)%at, &
+            "the factor is negative", form)
+      end do
+    end associate
+  end subroutine check_press_table
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

@@ -1,10 +1,10 @@
-!> Names of the node sets that the program makes for a sheet.
+!> Names of the node sets that the program makes for a sheet, and portions of a round blank.
 module dd3_input_sheet_sets
   use dd3_input_block, only : deck_t
   use dd3_input_case, only : blank_sets
   implicit none
   private
-  public :: sheet_sets, round_sets, set_name_length
+  public :: sheet_sets, round_sets, n_quarters, set_name_length
 
   integer, parameter :: set_name_length = 5
   !> Sets of a mesh from a file besides its own.
@@ -23,6 +23,16 @@ contains
     if (portion == "half") name = name([1, 3, 4, 5, 6])
     if (portion == "full") name = name(3:)
   end function round_sets
+
+  !> Return the number of quarters of a portion of a round blank.
+  pure integer function n_quarters(portion)
+    !> quarter, half or full.
+    character(len=*), intent(in) :: portion
+
+    n_quarters = 1
+    if (portion == "half") n_quarters = 2
+    if (portion == "full") n_quarters = 4
+  end function n_quarters
 
   !> Return the sets of the sheet of an input; those of a box if it has none.
   pure function sheet_sets(deck) result(name)

@@ -88,7 +88,6 @@ contains
     type(text_t), allocatable, intent(out) :: line(:)
 
     character(len=*), parameter :: mark = char(239)//char(187)//char(191)
-    character(len=*), parameter :: ends = achar(10)//achar(13)
     integer :: start, next, pass, n
 
     do pass = 1, 2
@@ -98,11 +97,12 @@ contains
         if (content(:3) == mark) start = 4
       end if
       do while (start <= len(content))
-        next = scan(content(start:), ends)
-        if (next == 0) next = len(content) - start + 2
+        do next = start, len(content)
+          if (content(next:next) == achar(10) .or. content(next:next) == achar(13)) exit
+        end do
         n = n + 1
-        if (pass == 2) line(n)%s = content(start:start + next - 2)
-        start = start + next
+        if (pass == 2) line(n)%s = content(start:next - 1)
+        start = next + 1
         if (start > len(content)) exit
         if (content(start - 1:start) == achar(13)//achar(10)) start = start + 1
       end do

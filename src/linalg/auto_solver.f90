@@ -1,41 +1,69 @@
-!> Automatic choice: CGS, with UMFPACK as fallback.
+!> Automatic choice of the solver.
 !>
-!> After several failures in a row on one pattern, CGS is skipped for a number of factorisations,
-!> tried again, and skipped for twice that number after each further failure.
+!> The set-up counts operations. If a complete factorisation on blocks costs no more than an
+!> incomplete one with a few iterations, as on all sheets of some thousand elements, it is taken.
+!> Otherwise CGS and the complete factorisation are tried in turn and the one that takes less time is
+!> kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
+!> factorisations when it was slower or failed several times in a row, tried again, and skipped for
+!> twice that number if that repeats. UMFPACK, which interchanges rows freely, is the last resort.
 module dd3_linalg_auto_solver
+  use dd3_base_clock, only : processor_time
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_linalg_block_lu_solver, only : block_lu_solver_t, new_block_lu_solver
   use dd3_linalg_cgs_solver, only : cgs_solver_t, new_cgs_solver
+  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern, elimination_cost
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_umfpack_solver, only : umfpack_solver_t, new_umfpack_solver
   implicit none
   private
-  public :: auto_solver_t, make_auto_solver, memory_failures, memory_rest, memory_next_rest
+  public :: auto_solver_t, make_auto_solver, memory_failures, memory_rest, memory_next_rest, &
+      memory_time
 
   !> Entries of `memory`: consecutive failures of CGS, factorisations for which it is still skipped,
-  !> and length of the next such rest.
-  integer, parameter :: memory_failures = 1, memory_rest = 2, memory_next_rest = 3
+  !> length of the next such rest, and the time of the complete factorisation with its solution, us.
+  integer, parameter :: memory_failures = 1, memory_rest = 2, memory_next_rest = 3, memory_time = 4
   !> Number of these entries.
-  integer, parameter :: memory_size = 3
+  integer, parameter :: memory_size = 4
   !> Consecutive failures that start a rest.
   integer, parameter :: failures_allowed = 3
   !> Shortest and longest rest, in factorisations.
   integer, parameter :: first_rest = 20, longest_rest = 320
+  !> Iterations with which an incomplete factorisation is compared with a complete one.
+  real(wp), parameter :: assumed_iterations = 8.0_wp
+  !> Block products of an elimination in the time of an iteration, for each block of matrix and
+  !> factors: there are two of each, which are read from memory.
+  real(wp), parameter :: products_per_block = 4.0_wp
+  !> Time of a block product, s, if the choice must not depend on the clock.
+  real(wp), parameter :: product_time = 9.0e-9_wp
+  !> Largest cost of CGS, divided by that of the complete factorisation, and fewest iterations.
+  real(wp), parameter :: largest_cost = 2.0_wp
+  integer, parameter :: least_iterations = 20
+  !> What solves with the present matrix.
+  integer, parameter :: by_none = 0, by_cgs = 1, by_block = 2, by_direct = 3
 
-  !> CGS with UMFPACK as fallback.
+  !> CGS, the complete factorisation, and UMFPACK.
   type, extends(linear_solver_t) :: auto_solver_t
     type(cgs_solver_t) :: cgs
+    type(block_lu_solver_t) :: block
     type(umfpack_solver_t) :: direct
+    !> Whether CGS, with its complete factorisation by rows on a narrow strip, is used; whether the
+    !> complete factorisation by fronts is.
+    logical :: may_iterate = .false., may_factorise = .false.
     !> Whether `direct` is set up; done on first use.
     logical :: direct_set_up = .false.
-    !> Whether CGS and UMFPACK can solve with the present matrix.
-    logical :: cgs_ready = .false., direct_ready = .false.
+    !> One of the `by_*` values.
+    integer :: ready = by_none
     !> Whether a failure of CGS with the present matrix has been recorded.
     logical :: failure_recorded = .false.
-    !> Why UMFPACK is used for the present matrix.
+    !> Why the present matrix is not solved by the first choice; empty if another one is faster.
     character(len=160) :: reason = ""
+    !> Block products of the set-up of CGS, and of one iteration.
+    real(wp) :: setup_products = 0.0_wp, iteration_products = 0.0_wp
+    !> Time of the present factorisation, s.
+    real(wp) :: seconds = 0.0_wp
   contains
     procedure :: setup_scaled => auto_solver_setup
     procedure :: factor_scaled => auto_solver_factor
@@ -54,46 +82,111 @@ contains
 
     allocate (made)
     made%options = options
-    call new_cgs_solver(made%cgs, options, may_raise=.true.)
+    call new_block_lu_solver(made%block, options)
     call new_umfpack_solver(made%direct, options)
     call move_alloc(made, solver)
   end subroutine make_auto_solver
 
-  !> Set up CGS and forget earlier failures.
+  !> Choose by counting, or prepare for measuring, and forget earlier failures.
   subroutine auto_solver_setup(self, matrix)
     class(auto_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
-    call self%cgs%setup_scaled(matrix)
-    self%description = trim(self%cgs%description)//", UMFPACK to fall back on"
-    allocate (self%memory(memory_size))
-    self%memory(memory_failures) = 0
-    self%memory(memory_rest) = 0
+    type(solver_options_t) :: options
+    character(len=:), allocatable :: level
+    logical :: outright
+
+    options = self%options
+    level = "ILU("//to_text(options%ilu_level)//")"
+    call self%block%setup_scaled(matrix)
+    call count_products(self, matrix)
+    outright = self%block%products <= self%setup_products &
+        + assumed_iterations*self%iteration_products
+    self%may_iterate = self%block%by_rows .or. .not. outright
+    self%may_factorise = .not. (self%block%by_rows .and. outright)
+    if (.not. outright) options%iterations = min(options%iterations, max(least_iterations, &
+        int(largest_cost*self%block%products/self%iteration_products)))
+    if (.not. self%may_factorise) options%ilu_level = matrix%n
+    call new_cgs_solver(self%cgs, options)
+    if (self%may_iterate) call self%cgs%setup_scaled(matrix)
+    if (.not. outright) then
+      self%description = "CGS with "//level//" or "//trim(self%block%description)// &
+          ", whichever takes less time"
+      if (options%reproducible) self%description = trim(self%description)//" by count"
+    else if (self%may_factorise) then
+      self%description = trim(self%block%description)//", cheaper than CGS with "//level
+    else
+      self%description = "CGS with complete LU in place of "//level
+    end if
+    self%description = trim(self%description)//"; UMFPACK to fall back on"
+    allocate (self%memory(memory_size), source=0)
     self%memory(memory_next_rest) = first_rest
   end subroutine auto_solver_setup
 
-  !> Build the preconditioner, or the direct factors if CGS is skipped or cannot start.
+  !> Count the operations of CGS.
+  subroutine count_products(self, matrix)
+    type(auto_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    type(fill_pattern_t) :: pattern
+
+    call new_fill_pattern(pattern, matrix, self%options%ilu_level)
+    self%setup_products = real(elimination_cost(pattern), wp)
+    self%iteration_products = products_per_block &
+        *real(size(pattern%column) + size(matrix%column), wp)
+  end subroutine count_products
+
+  !> Factorise for the solver whose turn it is, or for the next one if that fails.
   subroutine auto_solver_factor(self, matrix, verdict)
     class(auto_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
     type(verdict_t), intent(out) :: verdict
 
-    self%cgs_ready = .false.
-    self%direct_ready = .false.
+    real(wp) :: began
+
+    began = processor_time()
+    self%ready = by_none
     self%failure_recorded = .false.
     self%reason = ""
-    if (self%memory(memory_rest) == 0) then
+    if (self%may_iterate .and. self%memory(memory_rest) == 0) then
       call self%cgs%factor_scaled(matrix, verdict)
-      self%cgs_ready = verdict%outcome == verdict_converged
-      if (.not. self%cgs_ready) call record_failure(self, verdict%reason)
-    else
+      if (verdict%outcome == verdict_converged) self%ready = by_cgs
+      if (self%ready == by_none) call record_failure(self, verdict%reason)
+    else if (self%may_iterate) then
       self%memory(memory_rest) = self%memory(memory_rest) - 1
-      self%reason = "CGS skipped after "//to_text(self%memory(memory_failures)) &
-          //" failures in a row"
+      if (self%memory(memory_failures) > 0) self%reason = "CGS skipped after "// &
+          to_text(self%memory(memory_failures))//" failures in a row"
     end if
-    if (.not. self%cgs_ready) call factor_directly(self, matrix, verdict)
-    self%method = merge("cgs    ", "umfpack", self%cgs_ready)
+    if (self%ready == by_none) call factor_completely(self, matrix, verdict)
+    self%method = name_of(self%ready)
+    self%seconds = processor_time() - began
   end subroutine auto_solver_factor
+
+  !> Return the name of a solver in the registry.
+  pure function name_of(ready) result(name)
+    !> One of the `by_*` values.
+    integer, intent(in) :: ready
+    character(len=8) :: name
+
+    name = "umfpack"
+    if (ready == by_cgs) name = "cgs"
+    if (ready == by_block) name = "block_lu"
+  end function name_of
+
+  !> Factorise on blocks, or by UMFPACK if that fails.
+  subroutine factor_completely(self, matrix, verdict)
+    type(auto_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    type(verdict_t), intent(out) :: verdict
+
+    if (self%may_factorise) then
+      call self%block%factor_scaled(matrix, verdict)
+      self%ready = by_block
+      if (verdict%outcome == verdict_converged) return
+      self%reason = verdict%reason
+    end if
+    call factor_directly(self, matrix, verdict)
+  end subroutine factor_completely
 
   !> Factorise by UMFPACK.
   subroutine factor_directly(self, matrix, verdict)
@@ -104,7 +197,7 @@ contains
     if (.not. self%direct_set_up) call self%direct%setup_scaled(matrix)
     self%direct_set_up = .true.
     call self%direct%factor_scaled(matrix, verdict)
-    self%direct_ready = verdict%outcome == verdict_converged
+    self%ready = merge(by_direct, by_none, verdict%outcome == verdict_converged)
   end subroutine factor_directly
 
   !> Count a failure of CGS, once per matrix; too many start a rest.
@@ -115,16 +208,22 @@ contains
     self%reason = reason
     if (self%failure_recorded) return
     self%failure_recorded = .true.
-    associate (failures => self%memory(memory_failures), rest => self%memory(memory_rest), &
-        next_rest => self%memory(memory_next_rest))
-      failures = failures + 1
-      if (failures < failures_allowed) return
-      rest = next_rest
-      next_rest = min(2*next_rest, longest_rest)
-    end associate
+    self%memory(memory_failures) = self%memory(memory_failures) + 1
+    if (self%memory(memory_failures) < failures_allowed) return
+    call start_rest(self)
+    self%news = "linear solver: CGS skipped for "//to_text(self%memory(memory_rest))// &
+        " factorisations: "//reason
   end subroutine record_failure
 
-  !> Solve by CGS if it is ready, else or on failure by UMFPACK.
+  !> Skip CGS for a while.
+  subroutine start_rest(self)
+    type(auto_solver_t), intent(inout) :: self
+
+    self%memory(memory_rest) = self%memory(memory_next_rest)
+    self%memory(memory_next_rest) = min(2*self%memory(memory_next_rest), longest_rest)
+  end subroutine start_rest
+
+  !> Solve; a solver that fails is replaced by the next one.
   subroutine auto_solver_solve(self, matrix, b, x, report)
     class(auto_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
@@ -133,25 +232,78 @@ contains
     type(solver_report_t), intent(inout) :: report
 
     type(verdict_t) :: verdict
+    real(wp) :: began
 
-    if (self%cgs_ready) then
+    began = processor_time()
+    if (self%ready == by_cgs) then
       call self%cgs%solve_scaled(matrix, b, x, report)
       if (report%converged) then
-        self%memory(memory_failures) = 0
-        self%memory(memory_next_rest) = first_rest
+        call compare_times(self, self%seconds + processor_time() - began, report%iterations)
         return
       end if
       call record_failure(self, trim(report%reason))
+      call factor_completely(self, matrix, verdict)
+      self%seconds = 0.0_wp
     end if
-    report%fallback = .true.
+    if (self%ready == by_block) then
+      call self%block%solve_scaled(matrix, b, x, report)
+      if (report%converged) then
+        call keep_time(self, self%seconds + processor_time() - began)
+      else
+        self%reason = report%reason
+        call factor_directly(self, matrix, verdict)
+      end if
+    end if
+    report%fallback = len_trim(self%reason) > 0
     report%reason = self%reason
-    if (.not. self%direct_ready) call factor_directly(self, matrix, verdict)
-    if (self%direct_ready) then
-      call self%direct%solve_scaled(matrix, b, x, report)
-    else
-      report%reason = verdict%reason
-    end if
+    if (self%ready == by_direct) call self%direct%solve_scaled(matrix, b, x, report)
+    if (self%ready == by_none) report%reason = verdict%reason
   end subroutine auto_solver_solve
+
+  !> Skip CGS for a while if it took longer than the complete factorisation, or once if that has not
+  !> been measured yet.
+  subroutine compare_times(self, measured, iterations)
+    type(auto_solver_t), intent(inout) :: self
+    !> Time of a solution by CGS, s, and its iterations.
+    real(wp), intent(in) :: measured
+    integer, intent(in) :: iterations
+
+    real(wp) :: seconds, other
+
+    self%memory(memory_failures) = 0
+    seconds = measured
+    if (self%options%reproducible) seconds = product_time*(self%setup_products &
+        + real(iterations, wp)*self%iteration_products)
+    other = 1.0e-6_wp*real(self%memory(memory_time), wp)
+    if (.not. self%may_factorise) then
+      self%memory(memory_next_rest) = first_rest
+    else if (self%memory(memory_time) == 0) then
+      self%memory(memory_rest) = 1
+    else if (seconds > other) then
+      call start_rest(self)
+      self%news = "linear solver: "//trim(self%block%description)//" for "// &
+          to_text(self%memory(memory_rest))//" factorisations, "//to_text(other, 3)// &
+          " s each; CGS took "//to_text(seconds, 3)//" s with "//to_text(iterations)//" iterations"
+    else
+      if (self%memory(memory_next_rest) > first_rest) self%news = "linear solver: CGS, "// &
+          to_text(seconds, 3)//" s; "//trim(self%block%description)//" took "//to_text(other, 3)// &
+          " s"
+      self%memory(memory_next_rest) = first_rest
+    end if
+  end subroutine compare_times
+
+  !> Remember the time of a solution by the complete factorisation.
+  subroutine keep_time(self, measured)
+    type(auto_solver_t), intent(inout) :: self
+    real(wp), intent(in) :: measured
+
+    real(wp) :: seconds
+
+    if (.not. self%may_iterate) return
+    seconds = measured
+    if (self%options%reproducible) seconds = product_time*self%block%products
+    self%memory(memory_time) = max(1, nint(min(1.0e6_wp*seconds, 1.0e9_wp)))
+  end subroutine keep_time
 
   !> Free UMFPACK's factors.
   subroutine auto_solver_release(self)
@@ -160,7 +312,7 @@ contains
     self%method = ""
     call self%direct%release()
     self%direct_set_up = .false.
-    self%direct_ready = .false.
+    self%ready = by_none
   end subroutine auto_solver_release
 
 end module dd3_linalg_auto_solver

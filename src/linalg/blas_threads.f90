@@ -2,8 +2,8 @@
 !> for several, and waking the thread pool for each takes a third of the time. The call is looked up
 !> by name in the running program; no-op with any other BLAS.
 module dd3_linalg_blas_threads
-  use, intrinsic :: iso_c_binding, only : c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, &
-      c_associated, c_f_procpointer
+  use, intrinsic :: iso_c_binding, only : c_int, c_funptr, c_associated, c_f_procpointer
+  use dd3_linalg_program_symbol, only : program_symbol
   implicit none
   private
   public :: use_one_blas_thread
@@ -16,17 +16,6 @@ module dd3_linalg_blas_threads
     end subroutine set_threads_interface
   end interface
 
-  interface
-    !> Return the address of a symbol of the running program (POSIX).
-    type(c_funptr) function dlsym(handle, name) bind(c, name="dlsym")
-      import :: c_ptr, c_funptr, c_char
-      !> Library to search; null for the whole program.
-      type(c_ptr), value :: handle
-      !> Null-terminated name.
-      character(kind=c_char), intent(in) :: name(*)
-    end function dlsym
-  end interface
-
 contains
 
   !> Set the number of OpenBLAS threads to one.
@@ -34,7 +23,7 @@ contains
     procedure(set_threads_interface), pointer :: set_threads
     type(c_funptr) :: address
 
-    address = dlsym(c_null_ptr, "openblas_set_num_threads"//c_null_char)
+    address = program_symbol("openblas_set_num_threads")
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set_threads)
     call set_threads(1_c_int)

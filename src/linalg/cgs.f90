@@ -82,7 +82,7 @@ contains
     !> Row-scaled matrix.
     type(block_matrix_t), intent(in) :: matrix
     !> Preconditioner, built for the matrix.
-    class(preconditioner_t), intent(in) :: preconditioner
+    class(preconditioner_t), intent(inout) :: preconditioner
     real(wp), intent(in) :: b(:)
     !> Best solution found.
     real(wp), intent(out) :: x(:)
@@ -120,7 +120,7 @@ contains
   subroutine start(self, matrix, preconditioner, b, x)
     class(cgs_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    class(preconditioner_t), intent(in) :: preconditioner
+    class(preconditioner_t), intent(inout) :: preconditioner
     real(wp), intent(in) :: b(:)
     real(wp), intent(out) :: x(:)
 
@@ -138,7 +138,7 @@ contains
   subroutine run_cycle(self, matrix, preconditioner, ended)
     class(cgs_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    class(preconditioner_t), intent(in) :: preconditioner
+    class(preconditioner_t), intent(inout) :: preconditioner
     !> How the cycle ended.
     integer, intent(out) :: ended
 

@@ -30,19 +30,17 @@ contains
     type(cgs_solver_t), allocatable :: made
 
     allocate (made)
-    call new_cgs_solver(made, options, may_raise=.false.)
+    call new_cgs_solver(made, options)
     call move_alloc(made, solver)
   end subroutine make_cgs_solver
 
   !> Create the solver.
-  subroutine new_cgs_solver(self, options, may_raise)
+  subroutine new_cgs_solver(self, options)
     type(cgs_solver_t), intent(out) :: self
     type(solver_options_t), intent(in) :: options
-    !> Whether the complete factorisation may replace ILU(k), see `ilu_t`.
-    logical, intent(in) :: may_raise
 
     self%options = options
-    call new_ilu(self%preconditioner, options%ilu_level, may_raise)
+    call new_ilu(self%preconditioner, options%ilu_level)
   end subroutine new_cgs_solver
 
   !> Set up the preconditioner and the vectors of the iteration.

@@ -3,18 +3,14 @@
 !> The numeric factorisation goes row by row (IKJ; Saad, Iterative Methods for Sparse Linear
 !> Systems, 2nd ed. 2003, section 10.3). Diagonal blocks are inverted, nearly singular ones shifted.
 !>
-!> On a narrow strip numbered section by section the complete factorisation has little more fill
-!> than an incomplete one. If allowed to, the set-up compares their costs and raises the level.
-!>
 !> For speed the factorisation holds a block row as three scalar rows: subtracting a multiple of an
 !> earlier row then runs over contiguous numbers, and the set-up lists for each pair of rows the
 !> stretches of blocks that both have. The triangular solves read blocks.
 module dd3_linalg_ilu
-  use dd3_base_kinds, only : wp, i8
+  use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
-  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern, elimination_cost, &
-      fill_limit
+  use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_ilu_factor, only : load_row, eliminate_row, finish_row
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_preconditioner, only : preconditioner_t
@@ -27,8 +23,6 @@ module dd3_linalg_ilu
   type, extends(preconditioner_t) :: ilu_t
     !> Highest level of fill kept.
     integer :: level = 0
-    !> Whether the complete factorisation is used if it costs less than ILU(k) and its iterations.
-    logical :: may_raise = .false.
     !> Pattern of the factors.
     type(fill_pattern_t) :: pattern
     !> Position in the factors of each block of the matrix.
@@ -50,22 +44,15 @@ module dd3_linalg_ilu
     procedure :: apply => ilu_apply
   end type ilu_t
 
-  !> Assumed cost of the iterative solve, in iterations (about 40, which read the blocks from memory
-  !> and so take twice the time of the same number of block products of an elimination).
-  integer, parameter :: assumed_iterations = 80
-
 contains
 
   !> Create an incomplete factorisation.
-  subroutine new_ilu(self, level, may_raise)
+  subroutine new_ilu(self, level)
     type(ilu_t), intent(out) :: self
     !> Highest level of fill kept.
     integer, intent(in) :: level
-    !> Whether the complete factorisation may be used instead.
-    logical, intent(in) :: may_raise
 
     self%level = level
-    self%may_raise = may_raise
   end subroutine new_ilu
 
   !> Symbolic factorisation.
@@ -77,31 +64,12 @@ contains
 
     call new_fill_pattern(self%pattern, matrix, self%level)
     self%description = "ILU("//to_text(self%level)//")"
-    if (self%may_raise) call raise_level(self, matrix)
     n_block = size(self%pattern%column)
     if (allocated(self%row)) deallocate (self%row, self%block)
     allocate (self%row(9*n_block), self%block(3, 3, n_block))
     call find_targets(self%pattern, matrix, self%target)
     call find_stretches(self%pattern, self%stretch_start, self%stretch)
   end subroutine ilu_setup
-
-  !> Use the pattern of the complete factorisation if it costs no more than the incomplete one and
-  !> its iterations.
-  subroutine raise_level(self, matrix)
-    class(ilu_t), intent(inout) :: self
-    type(block_matrix_t), intent(in) :: matrix
-
-    type(fill_pattern_t) :: complete
-    integer(i8) :: limit
-
-    call new_fill_pattern(complete, matrix, matrix%n, fill_limit*size(matrix%column))
-    if (.not. allocated(complete%column)) return
-    limit = elimination_cost(self%pattern) &
-        + 2_i8*assumed_iterations*int(size(self%pattern%column) + size(matrix%column), i8)
-    if (elimination_cost(complete) > limit) return
-    self%pattern = complete
-    self%description = "complete LU in place of "//trim(self%description)
-  end subroutine raise_level
 
   !> Find the position in the factors of each block of the matrix.
   subroutine find_targets(pattern, matrix, target)
@@ -215,7 +183,7 @@ contains
 
   !> Solve L U z = r.
   subroutine ilu_apply(self, r, z)
-    class(ilu_t), intent(in) :: self
+    class(ilu_t), intent(inout) :: self
     real(wp), intent(in) :: r(:)
     real(wp), intent(out) :: z(:)
 

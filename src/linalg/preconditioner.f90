@@ -39,7 +39,7 @@ module dd3_linalg_preconditioner
     !> Apply the approximate inverse: z = M^-1 r.
     subroutine apply_interface(self, r, z)
       import :: preconditioner_t, wp
-      class(preconditioner_t), intent(in) :: self
+      class(preconditioner_t), intent(inout) :: self
       !> Vectors, `(3n)`.
       real(wp), intent(in) :: r(:)
       real(wp), intent(out) :: z(:)

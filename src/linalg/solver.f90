@@ -30,6 +30,8 @@ module dd3_linalg_solver
     integer :: iterations = 0
     !> Numbering of the block rows, see `ordering_names`.
     character(len=24) :: ordering = ""
+    !> Whether a choice among solvers must not depend on the clock.
+    logical :: reproducible = .false.
   end type solver_options_t
 
   !> Outcome of one solution.
@@ -53,6 +55,8 @@ module dd3_linalg_solver
     type(solver_options_t) :: options
     !> One line for the log, known after `setup`.
     character(len=160) :: description = ""
+    !> What changed in the choice of the solver, and why, for the log; the reader clears it.
+    character(len=200) :: news = ""
     !> Solver that the present matrix is factorised for; empty if there is none.
     character(len=24) :: method = ""
     !> Data that the solver keeps from matrix to matrix and that change its results. Reset by

@@ -3,6 +3,7 @@ module dd3_linalg_solver_registry
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : join
   use dd3_linalg_auto_solver, only : make_auto_solver
+  use dd3_linalg_block_lu_solver, only : make_block_lu_solver
   use dd3_linalg_cgs_solver, only : make_cgs_solver
   use dd3_linalg_ordering, only : ordering_names
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
@@ -33,6 +34,7 @@ contains
     type(entry_t), allocatable :: entries(:)
 
     entries = [entry_t("cgs", make_cgs_solver), &
+               entry_t("block_lu", make_block_lu_solver), &
                entry_t("umfpack", make_umfpack_solver), &
                entry_t("auto", make_auto_solver)]
   end function registry

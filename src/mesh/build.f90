@@ -2,10 +2,10 @@
 !> the directions that are free again.
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_list_t
+  use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : text_t
   use dd3_input_block, only : deck_t
-  use dd3_input_case, only : case_t, phase_spec_t
+  use dd3_input_case, only : case_t, motion_spec_t, phase_spec_t
   use dd3_input_reference, only : check_references
   use dd3_input_table, only : block_table
   use dd3_mesh_blank, only : new_blank_mesh
@@ -105,7 +105,7 @@ contains
     end do
   end subroutine check_freed
 
-  !> Report displacements of nodes that are fixed by a boundary condition, or displaced twice.
+  !> Report motions of nodes that are fixed by a boundary condition, or that have two of them.
   subroutine check_displacements(mesh, phase, held, led, errors)
     type(mesh_t), intent(in) :: mesh
     type(phase_spec_t), intent(in) :: phase
@@ -116,58 +116,73 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     logical :: moved(3, mesh%n_node)
-    integer, allocatable :: node(:)
     integer :: i, axis
 
     moved = .false.
     do i = 1, size(phase%displace)
-      node = mesh%nodes_of(phase%displace(i)%set)
-      associate (set => phase%displace(i)%set, at => phase%displace(i)%at)
-        axis = phase%displace(i)%axis
-        if (any(held(axis, node)) .and. abs(phase%displace(i)%value) > 0.0_wp) then
-          call errors%push_input(at, "a node of '"//set// &
-              "' is fixed along this axis by *BOUNDARY", "nodes that are free along this axis")
-        else if (any(moved(axis, node))) then
-          call errors%push_input(at, "a node of '"//set// &
-              "' is displaced twice along this axis in this phase", "one displace for each node")
-        end if
-        moved(axis, node) = .true.
+      associate (this => phase%displace(i))
+        call check_direction(mesh, this%set, this%at, this%axis, held .and. &
+            abs(this%value) > 0.0_wp, moved, errors)
       end associate
     end do
-    call check_motions(mesh, phase, held, moved, errors)
+    do i = 1, size(phase%motion)
+      associate (this => phase%motion(i))
+        do axis = 1, 3
+          if (is_along(this%value(4:6), axis)) cycle
+          call check_direction(mesh, this%set, this%at, axis, held, moved, errors)
+        end do
+        if (this%bends) call check_length(mesh, this, errors)
+      end associate
+    end do
     led = led .or. (moved .and. .not. held)
   end subroutine check_displacements
 
-  !> Report rotations and bends of nodes that are fixed by a boundary condition, or displaced twice.
-  subroutine check_motions(mesh, phase, held, moved, errors)
+  !> Report a prescribed motion along an axis of nodes that are fixed, or that have another one.
+  subroutine check_direction(mesh, set, at, axis, held, moved, errors)
     type(mesh_t), intent(in) :: mesh
-    type(phase_spec_t), intent(in) :: phase
+    character(len=*), intent(in) :: set
+    !> Where the motion is given.
+    type(location_t), intent(in) :: at
+    integer, intent(in) :: axis
     !> Directions fixed by *BOUNDARY, `(3, n_node)`.
     logical, intent(in) :: held(:, :)
-    !> Directions that the phase displaces, `(3, n_node)`; gets those of rotations and bends.
+    !> Directions that the phase displaces, `(3, n_node)`; gets those of this motion.
     logical, intent(inout) :: moved(:, :)
     type(error_list_t), intent(inout) :: errors
 
     integer, allocatable :: node(:)
-    integer :: i, axis
 
-    do i = 1, size(phase%motion)
-      node = mesh%nodes_of(phase%motion(i)%set)
-      do axis = 1, 3
-        if (is_along(phase%motion(i)%value(4:6), axis)) cycle
-        if (any(held(axis, node))) then
-          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
-              "' is fixed along "//axis_name(axis)//" by *BOUNDARY", &
-              "nodes that are free in the plane of the rotation")
-        else if (any(moved(axis, node))) then
-          call errors%push_input(phase%motion(i)%at, "a node of '"//phase%motion(i)%set// &
-              "' is displaced twice along "//axis_name(axis)//" in this phase", &
-              "one of displace, rotate and bend for each node")
-        end if
-        moved(axis, node) = .true.
-      end do
-    end do
-  end subroutine check_motions
+    node = mesh%nodes_of(set)
+    if (any(held(axis, node))) then
+      call errors%push_input(at, "a node of '"//set//"' is fixed along "//axis_name(axis)// &
+          " by *BOUNDARY", "nodes that are free in this direction")
+    else if (any(moved(axis, node))) then
+      call errors%push_input(at, "a node of '"//set//"' is displaced twice along "// &
+          axis_name(axis)//" in this phase", "one of displace, rotate and bend for each node")
+    end if
+    moved(axis, node) = .true.
+  end subroutine check_direction
+
+  !> Report a bar that is bent and has no length: its fixed end is at its end section.
+  subroutine check_length(mesh, motion, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(motion_spec_t), intent(in) :: motion
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: line(3), axis(3)
+    integer, allocatable :: node(:)
+    integer :: i
+
+    if (.not. norm2(motion%value(4:6)) > 0.0_wp) return
+    node = mesh%nodes_of(motion%set)
+    axis = motion%value(4:6)/norm2(motion%value(4:6))
+    line = [(sum(mesh%x(i, node)), i=1, 3)]/real(size(node), wp) - motion%value(:3)
+    line = line - dot_product(line, axis)*axis
+    if (norm2(line) > 1.0e-6_wp*mesh%model_size()) return
+    call errors%push_input(motion%at, "the bar has no length across the axis, from the point "// &
+        "to the mean position of '"//motion%set//"'", &
+        "a point at the fixed end of the bar, or rotate to turn the set in its place")
+  end subroutine check_length
 
   !> Whether a vector is along a coordinate axis.
   pure logical function is_along(vector, axis)

@@ -2,7 +2,7 @@
 !> neighbours. Every error names the element and shows its line.
 module dd3_mesh_inp_check
   use dd3_base_kinds, only : wp
-  use dd3_base_sorting, only : ascending
+  use dd3_base_near_points, only : near_pairs
   use dd3_base_text, only : to_text
   use dd3_mesh_hexahedra, only : corner_shape, neighbours_t
   use dd3_mesh_inp, only : inp_t
@@ -15,8 +15,8 @@ module dd3_mesh_inp_check
   real(wp), parameter :: least_shape = 1.0e-6_wp
   !> Nodes nearer than this fraction of the shortest edge are at the same place.
   real(wp), parameter :: same_place = 1.0e-3_wp
-  !> Direction along which few nodes have the same abscissa.
-  real(wp), parameter :: generic(3) = [0.5377_wp, 0.8123_wp, 0.2257_wp]
+  !> Number of pairs of nodes at which the search for those at the same place ends.
+  integer, parameter :: most_pairs = 100
 
   !> Defects of an element.
   integer, parameter :: sound = 0, mirrored = 1, by_rows = 2, inverted = 3, flat = 4
@@ -118,20 +118,14 @@ contains
     integer, intent(in) :: corner(:, :)
 
     real(wp) :: tolerance
-    real(wp), allocatable :: abscissa(:)
-    integer, allocatable :: order(:)
-    integer :: i, j
+    integer, allocatable :: pair(:, :)
+    integer :: i
 
     tolerance = same_place*shortest_edge(inp%x, corner)
-    abscissa = matmul(generic, inp%x(:, :inp%n_node))
-    order = ascending(abscissa)
-    do i = 1, inp%n_node
-      do j = i + 1, inp%n_node
-        if (abscissa(order(j)) - abscissa(order(i)) > tolerance) exit
-        if (norm2(inp%x(:, order(j)) - inp%x(:, order(i))) > tolerance) cycle
-        call report_places(inp, corner, min(order(i), order(j)), max(order(i), order(j)))
-        if (inp%errors%count > 100) return
-      end do
+    call near_pairs(inp%x(:, :inp%n_node), tolerance, most_pairs, pair)
+    do i = 1, size(pair, 2)
+      if (norm2(inp%x(:, pair(2, i)) - inp%x(:, pair(1, i))) > tolerance) cycle
+      call report_places(inp, corner, pair(1, i), pair(2, i))
     end do
   end subroutine check_places
 

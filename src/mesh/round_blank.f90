@@ -5,7 +5,7 @@
 module dd3_mesh_round_blank
   use dd3_base_kinds, only : wp, pi
   use dd3_input_case, only : blank_spec_t
-  use dd3_input_sheet_sets, only : round_sets, set_name_length
+  use dd3_input_sheet_sets, only : n_quarters, round_sets, set_name_length
   use dd3_mesh_mesh, only : mesh_t, mesh_set_t
   implicit none
   private
@@ -47,13 +47,9 @@ contains
 
     type(quarter_t) :: quarter
     type(plane_t) :: plane
-    integer :: n_quarter
 
-    n_quarter = 1
-    if (blank%portion == "half") n_quarter = 2
-    if (blank%portion == "full") n_quarter = 4
     call new_quarter(quarter, blank)
-    call new_plane(plane, quarter, n_quarter)
+    call new_plane(plane, quarter, n_quarters(blank%portion))
     mesh%thickness = blank%size(3)
     call extrude(mesh, plane, blank, nint(natural))
     allocate (mesh%material(mesh%n_element), source=blank%material)
@@ -77,6 +73,7 @@ contains
     self%ring_x(:, 0, n:) = self%core_x(:, n:0:-1, n)
     call place_ring(self%ring_x, n, blank%radius)
     call add_middles(self%ring_x)
+    call round_rim(self%ring_x, n, blank%radius)
   end subroutine new_quarter
 
   !> Place the corners of the elements of the core by transfinite interpolation: below the diagonal,
@@ -160,6 +157,27 @@ contains
       end do
     end do
   end subroutine add_middles
+
+  !> Move the middles of the edges on the rim to the circle, and the centres of its elements half as
+  !> far, as transfinite interpolation does.
+  pure subroutine round_rim(x, n, radius)
+    real(wp), intent(inout) :: x(:, 0:, 0:)
+    !> Number of the point on the diagonal.
+    integer, intent(in) :: n
+    real(wp), intent(in) :: radius
+
+    real(wp) :: angle, shift(2)
+    integer :: j, last
+
+    last = ubound(x, 2)
+    do j = 1, n - 1, 2
+      angle = 0.25_wp*pi*real(j, wp)/real(n, wp)
+      shift = radius*[cos(angle), sin(angle)] - x(:, last, j)
+      x(:, last, j) = x(:, last, j) + shift
+      x(:, last - 1, j) = x(:, last - 1, j) + 0.5_wp*shift
+      x(:, last - 1:last, 2*n - j) = x([2, 1], last - 1:last, j)
+    end do
+  end subroutine round_rim
 
   !> Join the quarters: each is turned by 90 degrees from the one before, and the last one closes a
   !> full circle.

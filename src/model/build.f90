@@ -313,6 +313,7 @@ contains
       model%history(h)%reaction = case%history(h)%reaction
       model%history(h)%position = case%history(h)%position
       model%history(h)%moment = case%history(h)%moment
+      model%history(h)%draw_in = case%history(h)%draw_in
     end do
   end subroutine set_output
 

@@ -170,8 +170,7 @@ contains
       do s = 1, size(model%pressure_set)
         if (phase%keeps_pressure(s)) cycle
         call digest%add([phase%pressure_end(s)])
-        call digest%add(reshape(model%pressure_set(s)%corner, &
-            [size(model%pressure_set(s)%corner)]))
+        call digest%add(reshape(model%pressure_set(s)%node, [size(model%pressure_set(s)%node)]))
       end do
       do s = 1, size(phase%motion)
         associate (motion => phase%motion(s))
@@ -181,6 +180,8 @@ contains
         end associate
       end do
       if (allocated(phase%table)) call digest%add(reshape(phase%table, [size(phase%table)]))
+      if (allocated(phase%press_table)) &
+          call digest%add(reshape(phase%press_table, [size(phase%press_table)]))
     end associate
     phase_digest = digest%value()
   end function phase_digest

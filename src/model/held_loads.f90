@@ -45,7 +45,7 @@ contains
     call check_pressures(model, case, errors)
   end subroutine check_loads
 
-  !> Report pressures on sets without a face, and on faces with nodes between their corners.
+  !> Report pressures on sets without a face.
   subroutine check_pressures(model, case, errors)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
@@ -56,12 +56,9 @@ contains
     do i = 1, size(case%phase)
       do k = 1, size(case%phase(i)%pressure)
         associate (pressure => case%phase(i)%pressure(k))
-          if (model%element%n_face_node /= 4) call errors%push_input(pressure%at, &
-              "pressure is not available for "//trim(model%element%name), &
-              "an element with 4 nodes on its faces, or load")
           do s = 1, size(model%pressure_set)
             if (model%pressure_set(s)%name /= pressure%set) cycle
-            if (size(model%pressure_set(s)%corner, 2) == 0) call errors%push_input(pressure%at, &
+            if (size(model%pressure_set(s)%node, 2) == 0) call errors%push_input(pressure%at, &
                 "the set '"//pressure%set//"' contains no face of the sheet", &
                 "all nodes of at least one face on the boundary")
           end do

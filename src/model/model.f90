@@ -22,6 +22,7 @@ module dd3_model_model
     integer, allocatable :: node(:)
     !> Quantities written.
     logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
+    logical :: draw_in = .false.
   end type history_set_t
 
   !> Output and its intervals.

@@ -50,6 +50,8 @@ module dd3_model_state
     real(wp) :: r_cap = huge(1.0_wp)
     !> Whether the iterations set r_cap.
     logical :: r_cap_by_iterations = .false.
+    !> Whether the penalty of the input is reduced to the automatic one in the rest of the phase.
+    logical :: penalty_reduced = .false.
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
     !> Data that the linear solver keeps from matrix to matrix.
@@ -101,6 +103,12 @@ module dd3_model_state
     integer, allocatable :: deepest_face(:)
     !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
     real(wp), allocatable :: deepest_radius(:)
+    !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
+    real(wp), allocatable :: slip_path(:)
+    !> Work since the start of the job, mJ: of the contact forces on the sheet by the motion of the
+    !> tools, of loads and supports, of the internal forces, of the equivalent stress, of friction.
+    real(wp) :: tool_work = 0.0_wp, external_work = 0.0_wp, internal_work = 0.0_wp
+    real(wp) :: plastic_work = 0.0_wp, friction_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   end type state_t
@@ -121,6 +129,7 @@ contains
       allocate (self%status(n_contact), self%contact_tool(n_contact), source=0)
       allocate (self%fading_tool(n_contact), source=0)
       allocate (self%hint(n_tool, n_contact))
+      allocate (self%slip_path(n_contact), source=0.0_wp)
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
       allocate (self%tool_force(3, n_tool), source=0.0_wp)
       allocate (self%touched(n_tool), source=.false.)

@@ -67,6 +67,7 @@ contains
     call visitor%one_real("travel", state%travel)
     call visitor%one_real("r_cap", state%r_cap)
     call visitor%one_logical("r_cap_by_iterations", state%r_cap_by_iterations)
+    call visitor%one_logical("penalty_reduced", state%penalty_reduced)
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)
     call visitor%integers("solver_memory", size(state%solver_memory), state%solver_memory)
@@ -95,6 +96,12 @@ contains
     call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
     call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
+    call visitor%reals("slip_path", size(state%slip_path), state%slip_path)
+    call visitor%one_real("tool_work", state%tool_work)
+    call visitor%one_real("external_work", state%external_work)
+    call visitor%one_real("internal_work", state%internal_work)
+    call visitor%one_real("plastic_work", state%plastic_work)
+    call visitor%one_real("friction_work", state%friction_work)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 

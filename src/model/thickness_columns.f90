@@ -47,7 +47,29 @@ contains
         node = above(node)
       end do
     end do
+    call add_middle_nodes(model, column)
   end subroutine thickness_columns
+
+  !> Add the nodes in the middle of edges through the thickness to the columns of these edges.
+  pure subroutine add_middle_nodes(model, column)
+    type(model_t), intent(in) :: model
+    !> As in `thickness_columns`.
+    integer, intent(inout) :: column(:, :)
+
+    integer :: e, a, p
+
+    associate (element => model%element)
+      do a = 1, element%n_node
+        if (abs(element%node(3, a)) > 0.5_wp) cycle
+        do p = 1, element%n_pair
+          if (any(abs(element%node(:2, a) - element%node(:2, element%pair(1, p))) > 0.5_wp)) cycle
+          do e = 1, model%n_element
+            column(:, model%connectivity(a, e)) = column(:, model%connectivity(element%pair(1, p), e))
+          end do
+        end do
+      end do
+    end associate
+  end subroutine add_middle_nodes
 
   !> Set the thickness of a mesh from a file; that of a structured blank is given.
   pure subroutine set_thickness(model, given)
@@ -65,7 +87,6 @@ contains
     call thickness_columns(model, column)
     length = [(norm2(model%x0(:, column(2, i)) - model%x0(:, column(1, i))), i=1, model%n_node)]
     model%thickness = minval(length, mask=length > 0.0_wp)
-    ! Nodes in the middle of edges through the thickness are in no column.
     where (length <= 0.0_wp) length = model%thickness
     if (maxval(length) > (1.0_wp + round_off)*model%thickness) model%node_thickness = length
   end subroutine set_thickness

@@ -4,6 +4,7 @@
 module dd3_model_tool_depth
   use dd3_base_kinds, only : wp
   use dd3_contact_bezier, only : n_sample, normal_at, patch_t
+  use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -18,6 +19,9 @@ module dd3_model_tool_depth
   real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp
   real(wp), parameter :: sample_shape(4, 5) = &
       reshape([q, q, q, q, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], [4, 5])
+  !> Quadrilaterals between neighbouring nodes of a face with 9 nodes, in the order of the table.
+  integer, parameter :: part_of_nine(4, 4) = &
+      reshape([1, 5, 9, 8, 5, 2, 6, 9, 9, 6, 3, 7, 8, 9, 7, 4], [4, 4])
   !> Depth below which a tool does not enter a face, in thicknesses.
   real(wp), parameter :: slight_depth = 1.0e-3_wp
   !> Margin around a face in which closest points of its points are looked for, in diagonals.
@@ -35,7 +39,7 @@ module dd3_model_tool_depth
     real(wp) :: x(3) = 0.0_wp
   end type tool_depth_t
 
-  !> A face of the sheet in the frame of a tool.
+  !> A face of the sheet, or a quarter of one with 9 nodes, in the frame of a tool.
   type :: face_t
     integer :: number = 0
     !> Corners, mm, and outward unit normal.
@@ -43,8 +47,8 @@ module dd3_model_tool_depth
     !> Longest diagonal, and thickness of the sheet, mm.
     real(wp) :: size = 0.0_wp, thickness = 0.0_wp
     !> Largest depth that is looked for, mm.
-    real(wp) :: reach = 0.0_wp
-    !> Bounding box of the face and the space behind it within the reach, mm.
+    real(wp) :: search_depth = 0.0_wp
+    !> Bounding box of the face and the space behind it within the search depth, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Largest component of a corner along the normal, mm.
     real(wp) :: height = 0.0_wp
@@ -52,44 +56,66 @@ module dd3_model_tool_depth
 
 contains
 
-  !> Measure the depth of a tool in the faces whose nodes are its candidates.
+  !> Measure the depth of a tool in the faces whose nodes are its candidates. Those with 9 nodes are
+  !> curved; they are measured in four quadrilaterals.
   pure function measure_tool_depth(model, state, tool) result(self)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
     type(tool_depth_t) :: self
 
-    type(face_t) :: face
-    integer :: candidate(4), f
-    logical :: near
+    integer :: f, i
 
     self%depth = slight_depth*model%thickness
     do f = 1, model%face%n
-      candidate = model%candidate_of(model%face%corner(:, f))
-      if (any(candidate == 0)) cycle
-      if (.not. all(model%candidate(tool, candidate))) cycle
-      call set_face(face, model, state, tool, f)
-      call probe_patches(self, model, face, tool, near)
-      if (near) call probe_tool(self, model, face, state%hint(tool, candidate), tool)
+      associate (node => model%face%node(:, f))
+        if (size(node) == 9) then
+          do i = 1, 4
+            call probe_face(self, model, state, tool, f, node(part_of_nine(:, i)))
+          end do
+        else
+          call probe_face(self, model, state, tool, f, node(:4))
+        end if
+      end associate
     end do
     if (self%face == 0) self%depth = 0.0_wp
   end function measure_tool_depth
 
+  !> Measure the depth of a tool in a face, or a part of it.
+  pure subroutine probe_face(self, model, state, tool, f, node)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tool, face, and its corners or those of its part.
+    integer, intent(in) :: tool, f, node(4)
+
+    type(face_t) :: face
+    integer :: candidate(4)
+    logical :: near
+
+    candidate = model%candidate_of(node)
+    if (any(candidate == 0)) return
+    if (.not. all(model%candidate(tool, candidate))) return
+    call set_face(face, model, state, tool, f, node)
+    call probe_patches(self, model, face, tool, near)
+    if (near) call probe_tool(self, model, face, state%hint(tool, candidate), tool)
+  end subroutine probe_face
+
   !> Set a face in the frame of a tool.
-  pure subroutine set_face(self, model, state, tool, f)
+  pure subroutine set_face(self, model, state, tool, f, node)
     type(face_t), intent(out) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    integer, intent(in) :: tool, f
+    integer, intent(in) :: tool, f, node(4)
 
     self%number = f
-    self%x = state%x(:, model%face%corner(:, f)) - spread(state%tool_displacement(:, tool), 2, 4)
+    self%x = state%x(:, node) - spread(state%tool_displacement(:, tool), 2, 4)
     self%normal = face_normal(self%x)
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
-    self%thickness = model%thickness_at(model%face%corner(1, f))
-    self%reach = max(wrong_side_depth*self%thickness, self%size)
-    self%lower = minval(self%x, dim=2) - self%reach*max(self%normal, 0.0_wp)
-    self%upper = maxval(self%x, dim=2) - self%reach*min(self%normal, 0.0_wp)
+    self%thickness = model%thickness_at(node(1))
+    self%search_depth = max(wrong_side_depth*self%thickness, self%size)
+    self%lower = minval(self%x, dim=2) - self%search_depth*max(self%normal, 0.0_wp)
+    self%upper = maxval(self%x, dim=2) - self%search_depth*min(self%normal, 0.0_wp)
     self%height = maxval(matmul(self%normal, self%x))
   end subroutine set_face
 
@@ -112,23 +138,22 @@ contains
     type(model_t), intent(in) :: model
     type(face_t), intent(in) :: face
     integer, intent(in) :: tool
-    !> Whether a patch may reach behind the face, or behind a margin around it.
+    !> Whether a patch may lie behind the face, or behind a margin around it.
     logical, intent(out) :: near
 
     real(wp) :: edge
+    integer, allocatable :: patch(:)
     integer :: k
 
     edge = margin*face%size
     near = .false.
     associate (surface => model%tool(tool)%surface)
       if (any(face%lower - edge > surface%upper .or. face%upper + edge < surface%lower)) return
-      do k = 1, size(surface%patch)
-        associate (patch => surface%patch(k))
-          if (any(patch%lower > face%upper + edge .or. patch%upper < face%lower - edge)) cycle
-          if (largest_depth(patch, face) <= self%depth) cycle
-          near = .true.
-          call probe_patch(self, model, face, tool, k)
-        end associate
+      patch = overlapping(surface%tree, face%lower - edge, face%upper + edge)
+      do k = 1, size(patch)
+        if (largest_depth(surface%patch(patch(k)), face) <= self%depth) cycle
+        near = .true.
+        call probe_patch(self, model, face, tool, patch(k))
       end do
     end associate
   end subroutine probe_patches
@@ -216,7 +241,7 @@ contains
           if (depth <= self%depth) cycle
           if (any(point < face%lower .or. point > face%upper)) cycle
           call locate(face, point, depth)
-          if (depth <= self%depth .or. depth > face%reach) cycle
+          if (depth <= self%depth .or. depth > face%search_depth) cycle
           if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
           if (depth > face%thickness) then
             if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
@@ -293,7 +318,7 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
 
-    call find_contact(model%tool(tool)%surface, x, hint, face%reach, face%reach, hit)
+    call find_contact(model%tool(tool)%surface, x, hint, face%search_depth, face%search_depth, hit)
     is_inside = hit%found .and. hit%distance < 0.0_wp
   end function is_inside
 

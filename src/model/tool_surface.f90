@@ -4,7 +4,7 @@ module dd3_model_tool_surface
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
   use dd3_contact_bezier, only : patch_t, new_patch, normal_at, largest_degree
-  use dd3_contact_surface, only : surface_t, new_surface
+  use dd3_contact_surface, only : surface_t, join_patches
   use dd3_input_bezier_file, only : patch_spec_t, read_patches, push_file_errors
   implicit none
   private
@@ -26,29 +26,31 @@ contains
     call new_tool_surface(surface, patches, location, errors)
   end subroutine read_tool_surface
 
-  !> Build a surface from the patches of a file; valid only if no error was added.
+  !> Build a surface from the patches of a file; valid only if no error was added. Patches are built
+  !> in their place, and the points of the file are given up one by one, to save memory.
   subroutine new_tool_surface(surface, patches, location, errors)
     type(surface_t), intent(out) :: surface
-    type(patch_spec_t), intent(in) :: patches(:)
+    !> Left without points.
+    type(patch_spec_t), intent(inout) :: patches(:)
     !> Where the input names the file.
     type(location_t), intent(in) :: location
     type(error_list_t), intent(inout) :: errors
 
-    type(patch_t), allocatable :: patch(:)
     type(error_list_t) :: found
     integer :: i
 
     if (size(patches) == 0) return
-    allocate (patch(size(patches)))
+    allocate (surface%patch(size(patches)))
     do i = 1, size(patches)
-      call new_tool_patch(patch(i), patches(i))
-      if (is_degenerate(patch(i))) then
+      call new_tool_patch(surface%patch(i), patches(i))
+      deallocate (patches(i)%point)
+      if (is_degenerate(surface%patch(i))) then
         call found%push_input(patches(i)%at, "patch "//to_text(patches(i)%number)// &
             " has no area", "control points that span a surface")
       end if
     end do
     if (found%count == 0) then
-      call new_surface(surface, patch)
+      call join_patches(surface)
       call check_orientation(surface, patches, found)
     end if
     call push_file_errors(errors, found, location)

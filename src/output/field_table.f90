@@ -6,7 +6,9 @@ module dd3_output_field_table
   use dd3_model_internal_variables, only : global_components
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_model_thickness_columns, only : thickness_columns
+  use dd3_output_forming_fields, only : fill_contact_gap, fill_contact_pressure, fill_contact_tool, &
+      fill_draw_in, fill_major_lower, fill_major_middle, fill_major_upper, fill_minor_lower, &
+      fill_minor_middle, fill_minor_upper, fill_slip_path, fill_thickness, fill_thinning
   implicit none
   private
   public :: field_t, field_table, fill_internal_variable, at_nodes_and_cells, at_points
@@ -71,12 +73,51 @@ contains
           "equivalent stress of the material's yield criterion", fill_equivalent_stress, &
           positive=.true.), &
       row("thickness", at_nodes_and_cells, 1, "mm", &
-          "distance between the bottom and the top node through the thickness", fill_thickness)]
+          "distance between the bottom and the top node through the thickness", fill_thickness), &
+      forming_rows()]
     if (.not. allocated(model%internal_variable)) return
     do i = 1, size(model%internal_variable)
       table = [table, internal_variable_row(model, i)]
     end do
   end function field_table
+
+  !> Return the rows of the fields that describe the result of forming.
+  function forming_rows() result(table)
+    type(field_t), allocatable :: table(:)
+
+    table = [ &
+      row("thinning", at_nodes_and_cells, 1, "", &
+          "decrease of the thickness over the initial thickness", fill_thinning), &
+      strain_row("major_strain_lower", "major", "lower face", fill_major_lower), &
+      strain_row("minor_strain_lower", "minor", "lower face", fill_minor_lower), &
+      strain_row("major_strain_middle", "major", "middle", fill_major_middle), &
+      strain_row("minor_strain_middle", "minor", "middle", fill_minor_middle), &
+      strain_row("major_strain_upper", "major", "upper face", fill_major_upper), &
+      strain_row("minor_strain_upper", "minor", "upper face", fill_minor_upper), &
+      row("draw_in", at_nodes, 1, "mm", &
+          "displacement of the rim along its initial inward normal; 0 elsewhere", fill_draw_in), &
+      row("contact_pressure", at_nodes, 1, "MPa", &
+          "normal force of the tools over the tributary area of the node", &
+          fill_contact_pressure), &
+      row("contact_gap", at_nodes, 1, "mm", &
+          "distance from the nearest tool, at most the search distance", fill_contact_gap), &
+      row("slip_path", at_nodes, 1, "mm", &
+          "path of the node on the tools while it slips, since the start of the job", &
+          fill_slip_path), &
+      row("contact_tool", at_nodes, 1, "", &
+          "number of the tool in contact, in the order of the input; 0 for none", &
+          fill_contact_tool, whole=.true.)]
+  end function forming_rows
+
+  !> Make the row of a strain in the surface of the sheet.
+  function strain_row(name, which, place, fill) result(field)
+    character(len=*), intent(in) :: name, which, place
+    procedure(fill_interface) :: fill
+    type(field_t) :: field
+
+    field = row(name, at_nodes_and_cells, 1, "", which//" logarithmic strain in the surface at "// &
+        "the "//place//" of the sheet", fill)
+  end function strain_row
 
   !> Make the row of an internal variable.
   function internal_variable_row(model, i) result(row)
@@ -221,19 +262,5 @@ contains
       end do
     end do
   end subroutine fill_internal_variable
-
-  !> Evaluate the thickness.
-  subroutine fill_thickness(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-    integer, allocatable :: column(:, :)
-    integer :: i
-
-    call thickness_columns(model, column)
-    do i = 1, model%n_node
-      value(1, i) = norm2(state%x(:, column(2, i)) - state%x(:, column(1, i)))
-    end do
-  end subroutine fill_thickness
 
 end module dd3_output_field_table

@@ -8,8 +8,10 @@ module dd3_output_history
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
+  use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
+  use dd3_output_forming_columns, only : add_forming_heading, add_forming_values
   implicit none
   private
   public :: history_record_t
@@ -100,9 +102,14 @@ contains
           if (set%reaction) call add_vector(names, units, set%name//"_r", "N")
           if (set%position) call add_vector(names, units, set%name//"_", "mm")
           if (set%moment) call add_vector(names, units, set%name//"_m", "N.mm")
+          if (set%draw_in) then
+            names = names//","//set%name//"_draw_in"
+            units = units//",mm"
+          end if
         end associate
       end do
     end if
+    call add_forming_heading(model, names, units)
     text = "# units: "//units//newline//names//newline
   end function heading
 
@@ -166,7 +173,17 @@ contains
       call table%add_integer(count(state%contact_tool == i .and. state%status /= status_gap))
       call table%add_real(state%tool_depth(i))
     end do
-    if (.not. allocated(model%history)) return
+    if (allocated(model%history)) call add_set_values(table, model, state)
+    call add_forming_values(table, model, state)
+  end subroutine fill_row
+
+  !> Add the quantities of the node sets to a row.
+  subroutine add_set_values(table, model, state)
+    type(table_t), intent(inout) :: table
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer :: i
+
     do i = 1, size(model%history)
       if (model%history(i)%displacement) then
         call table%add_reals(mean(state%x, model%history(i)%node) &
@@ -177,8 +194,10 @@ contains
       end if
       if (model%history(i)%position) call table%add_reals(mean(state%x, model%history(i)%node))
       if (model%history(i)%moment) call table%add_reals(moment(model, state, model%history(i)%node))
+      if (model%history(i)%draw_in) &
+          call table%add_real(mean_draw_in(model, state%x, model%history(i)%node))
     end do
-  end subroutine fill_row
+  end subroutine add_set_values
 
   !> Return the mean of the vectors of some nodes.
   pure function mean(vector, node)

@@ -16,7 +16,8 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,held,released,damped"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,held,released,damped,"// &
+    "penalty_reduced"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -63,6 +64,8 @@ module dd3_output_status
     real(wp) :: force_size = 0.0_wp
     !> Remedies of the corrector: candidates held, releases of held ones, iterations damped.
     integer :: held = 0, released = 0, damped = 0
+    !> 1 if the penalty of the input is reduced to the automatic one.
+    integer :: penalty_reduced = 0
   end type status_row_t
 
   !> Status table of a run.
@@ -134,6 +137,7 @@ contains
       call table%add_integer(row%held)
       call table%add_integer(row%released)
       call table%add_integer(row%damped)
+      call table%add_integer(row%penalty_reduced)
       call table%end_row(error)
     end associate
   end subroutine status_add

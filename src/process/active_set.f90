@@ -9,12 +9,13 @@
 !> set); Alart and Curnier 1991.
 module dd3_process_active_set
   use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_retry, verdict_t
   use dd3_contact_operator, only : status_slip, status_stick
   use dd3_process_attempt, only : correction_t, status_memory
   use dd3_system_contact, only : contact_work_t, not_held
   implicit none
   private
-  public :: record_status, hold_cycling, release_violators
+  public :: record_status, update_active_set, keeps_changing, unsettled
 
   !> Number of changes of a node's status after which it is held, and the iterations before which
   !> changes do not count.
@@ -51,6 +52,48 @@ contains
     where (correction%reversed .or. correction%status(:, 1) /= correction%status(:, 2)) &
         correction%changes = correction%changes + 1
   end subroutine record_status
+
+  !> Hold candidates whose status cycles, or release them once the iterations have converged. Changes
+  !> of status count from the last minimum of the criterion on: while it decreases, none is held.
+  subroutine update_active_set(correction, contact, tolerance, verdict, changed)
+    type(correction_t), intent(inout) :: correction
+    type(contact_work_t), intent(inout) :: contact
+    !> Of the criterion of convergence.
+    real(wp), intent(in) :: tolerance
+    !> Of the convergence check; a retry if held candidates violate the contact law.
+    type(verdict_t), intent(inout) :: verdict
+    !> Whether the contact must be evaluated again.
+    logical, intent(out) :: changed
+
+    if (correction%held == 0 .and. minloc(correction%criterion, dim=1) == verdict%iterations) &
+        correction%changes = 0
+    if (verdict%norm < tolerance) then
+      call release_violators(correction, contact, changed)
+      if (changed) verdict%outcome = verdict_retry
+    else
+      call hold_cycling(correction, contact, changed)
+    end if
+  end subroutine update_active_set
+
+  !> Whether candidates changed their status in each of the last two iterations.
+  pure logical function keeps_changing(correction)
+    type(correction_t), intent(in) :: correction
+
+    associate (status => correction%status)
+      keeps_changing = any(status(:, 1) /= status(:, 2)) .and. any(status(:, 2) /= status(:, 3)) &
+          .and. all(status(:, 3) >= 0)
+    end associate
+  end function keeps_changing
+
+  !> Whether the status of each candidate changed in the last iterations.
+  pure function unsettled(correction) result(changing)
+    type(correction_t), intent(in) :: correction
+    logical :: changing(size(correction%status, 1))
+
+    associate (status => correction%status)
+      changing = any(status >= 0 .and. status /= spread(status(:, 1), 2, status_memory), dim=2)
+    end associate
+  end function unsettled
 
   !> Hold the candidates whose status cycles: in their present status, or sticking where the
   !> direction of slip reverses.

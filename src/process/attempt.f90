@@ -28,8 +28,8 @@ module dd3_process_attempt
     !> Contact status in the last iterations, the newest first, `(n_contact, status_memory)`; -1
     !> before the first one.
     integer, allocatable :: status(:, :)
-    !> Number of changes of the status of each candidate since the first iteration, and whether it
-    !> slips backwards in the last one, `(n_contact)`.
+    !> Number of changes of the status of each candidate since the criterion was last at its
+    !> minimum, and whether its slip reversed in the last iteration, `(n_contact)`.
     integer, allocatable :: changes(:)
     logical, allocatable :: reversed(:)
     !> Tangential contact forces in the last iteration, `(3, n_contact)`, N.
@@ -54,6 +54,8 @@ module dd3_process_attempt
   type :: attempt_t
     !> Number of the attempt at this increment, from 1.
     integer :: number = 1
+    !> Whether the penalty of the input is reduced to the automatic one.
+    logical :: penalty_reduced = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit
     !> Bound by the limiter of contact forces alone; its name is empty if it sets none.

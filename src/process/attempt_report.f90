@@ -65,6 +65,7 @@ contains
       row%held = correction%held
       row%released = correction%released
       row%damped = correction%damped
+      row%penalty_reduced = merge(1, 0, stepper%attempt%penalty_reduced)
       if (size(correction%criterion) > 0) &
           row%criterion = correction%criterion(size(correction%criterion))
       if (verdict%element > 0) then

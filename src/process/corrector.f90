@@ -6,18 +6,19 @@ module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t
+  use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_active_set, only : hold_cycling, record_status, release_violators
+  use dd3_process_active_set, only : keeps_changing, record_status, unsettled, &
+      update_active_set
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
   use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
   use dd3_system_enhanced, only : enhanced_square, subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_contact, only : contact_work_t, not_held
+  use dd3_system_contact, only : not_held
   use dd3_system_pressure, only : add_pressure_stiffness
   use dd3_system_release, only : add_release_stiffness
   use dd3_system_reduced, only : linear_problem_t
@@ -25,7 +26,7 @@ module dd3_process_corrector
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: correct
+  public :: correct, is_lost
 
   !> Fraction of the tolerance of the criterion below which all but the tool forces has converged.
   real(wp), parameter :: settled = 0.1_wp
@@ -34,7 +35,7 @@ module dd3_process_corrector
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Iterations with the criterion above a value after which an attempt is given up, unless it has
   !> fallen to a new minimum in the last ones.
-  integer, parameter :: lost_iterations = 12, without_progress = 6
+  integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
   !> Largest number of nodes listed in a message.
   integer, parameter :: most_listed = 4
@@ -142,31 +143,9 @@ contains
 
     j = size(criterion)
     is_lost = .false.
-    if (j > lost_iterations) is_lost = all(criterion(j - lost_iterations:) > lost_criterion) &
+    if (j >= lost_iterations) is_lost = all(criterion(j - lost_iterations + 1:) > lost_criterion) &
         .and. minloc(criterion, dim=1) <= j - without_progress
   end function is_lost
-
-  !> Hold candidates whose status cycles, or release them once the iterations have converged. Changes
-  !> of status count from the last minimum of the criterion on: while it decreases, none is held.
-  subroutine update_active_set(correction, contact, tolerance, verdict, changed)
-    type(correction_t), intent(inout) :: correction
-    type(contact_work_t), intent(inout) :: contact
-    !> Of the criterion of convergence.
-    real(wp), intent(in) :: tolerance
-    !> Converged before; a retry if held candidates violate the contact law.
-    type(verdict_t), intent(inout) :: verdict
-    !> Whether the contact must be evaluated again.
-    logical, intent(out) :: changed
-
-    if (minloc(correction%criterion, dim=1) == verdict%iterations .and. correction%held == 0) &
-        correction%changes = 0
-    if (verdict%norm < tolerance) then
-      call release_violators(correction, contact, changed)
-      if (changed) verdict%outcome = verdict_retry
-    else
-      call hold_cycling(correction, contact, changed)
-    end if
-  end subroutine update_active_set
 
   !> Set the reason why the last iteration did not converge: a pressed tool without contact, the
   !> force on a tool, or the residual of a node; empty if the contact status has not settled.
@@ -187,7 +166,7 @@ contains
         return
       end if
       verdict%node = correction%worst_node
-      if (any(unsettled(correction%status))) return
+      if (any(unsettled(correction))) return
       reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
           //to_text(correction%worst_node)
       if (verdict%norm < phase%newton%tolerance) then
@@ -251,7 +230,7 @@ contains
         tool_residual => system%problem%tool_residual)
       forces_met = .true.
       tool_force = balanced
-      if (keeps_changing(correction%status)) tool_force = max(balanced, phase%newton%tool_force)
+      if (keeps_changing(correction)) tool_force = phase%newton%tool_force
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (.not. any(contact%tool == tool .and. contact%status /= status_gap)) then
@@ -326,7 +305,7 @@ contains
     logical :: changing(model%n_contact)
 
     text = ""
-    changing = unsettled(correction%status)
+    changing = unsettled(correction)
     if (.not. any(changing)) return
     text = "contact status changes at "//to_text(count(changing))//" nodes: "
     if (count(changing) == 1) text = "contact status changes at 1 node: "
@@ -343,23 +322,5 @@ contains
       listed = listed + 1
     end do
   end function status_changes
-
-  !> Whether the status of some candidate changed in each of the last two iterations.
-  pure logical function keeps_changing(status)
-    !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
-    integer, intent(in) :: status(:, :)
-
-    keeps_changing = any(status(:, 1) /= status(:, 2)) .and. any(status(:, 2) /= status(:, 3)) &
-        .and. all(status(:, 3) >= 0)
-  end function keeps_changing
-
-  !> Whether the status of each candidate changed in the last iterations.
-  pure function unsettled(status) result(changing)
-    !> Status in the last iterations, `(n_contact, status_memory)`; -1 before the first one.
-    integer, intent(in) :: status(:, :)
-    logical :: changing(size(status, 1))
-
-    changing = any(status >= 0 .and. status /= spread(status(:, 1), 2, status_memory), dim=2)
-  end function unsettled
 
 end module dd3_process_corrector

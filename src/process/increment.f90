@@ -14,6 +14,7 @@ module dd3_process_increment
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
   use dd3_process_stepper, only : stepper_t
+  use dd3_process_work, only : add_work
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
@@ -35,6 +36,7 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     call new_attempt(stepper%attempt, model%n_contact)
+    stepper%attempt%penalty_reduced = committed%penalty_reduced
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
@@ -55,6 +57,7 @@ contains
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
+      trial%penalty_reduced = stepper%attempt%penalty_reduced
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
@@ -107,7 +110,7 @@ contains
 
   end subroutine set_target
 
-  !> Reduce r for another attempt, if one is allowed.
+  !> Reduce r for another attempt, if one is allowed, and the penalty.
   subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
@@ -121,6 +124,7 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
+      attempt%penalty_reduced = phase%newton%adapt_penalty
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate
@@ -131,12 +135,14 @@ contains
   !> repeats its attempts.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: trial
+    !> Gets work and slip of the increment.
+    type(state_t), intent(inout) :: trial
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
     real(wp) :: factor
 
+    call add_work(model, stepper%system%contact, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
     factor = r_cap_factor

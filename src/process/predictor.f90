@@ -127,7 +127,7 @@ contains
         factor => self%progress*phase%slope(committed%progress))
       call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
           model%contact_node, self%progress*unfaded_forces(model, committed), problem%residual)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%pressure_set, &
+      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + self%progress*start%reaction
       problem%contact_residual = 0.0_wp
@@ -136,8 +136,8 @@ contains
       problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
-            *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
-            phase%direction(:, tool))
+            *dot_product(phase%tool_load_rate(tool, committed%progress, &
+            start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial

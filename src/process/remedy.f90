@@ -81,7 +81,8 @@ contains
       else if (attempt%verdict%element > 0) then
         remedy = material_remedy
       else if (c > 0) then
-        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
+        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c, &
+            attempt%penalty_reduced), 3)// &
             " in *CONTACT"
       else
         remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)//" in *NEWTON"

@@ -8,7 +8,7 @@ module dd3_process_run
   use dd3_base_text, only : text_t, to_text
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_input_case, only : solver_spec_t
-  use dd3_linalg_solver, only : solver_options_t
+  use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
@@ -45,6 +45,8 @@ module dd3_process_run
     !> Settings of the linear solver.
     type(solver_spec_t) :: solver
     integer :: threads = 1
+    !> Whether the solver may not be chosen by the clock.
+    logical :: reproducible = .false.
     !> Folder of the results; it exists.
     character(len=:), allocatable :: directory
   end type run_start_t
@@ -85,7 +87,7 @@ contains
 
     began = wall_time()
     run%committed = start%state
-    call new_system(run%stepper%system, model, solver_options(start%solver), start%threads, error)
+    call new_system(run%stepper%system, model, solver_options(start), start%threads, error)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     call new_prediction(run%stepper%prediction, model)
@@ -106,14 +108,15 @@ contains
   end subroutine run_model
 
   !> Return the options of the linear solver.
-  pure type(solver_options_t) function solver_options(solver)
-    type(solver_spec_t), intent(in) :: solver
+  pure type(solver_options_t) function solver_options(start)
+    type(run_start_t), intent(in) :: start
 
-    solver_options%method = solver%method
-    solver_options%ilu_level = solver%ilu_level
-    solver_options%tolerance = solver%tolerance
-    solver_options%iterations = solver%iterations
-    solver_options%ordering = solver%ordering
+    solver_options%method = start%solver%method
+    solver_options%ilu_level = start%solver%ilu_level
+    solver_options%tolerance = start%solver%tolerance
+    solver_options%iterations = start%solver%iterations
+    solver_options%ordering = start%solver%ordering
+    solver_options%reproducible = start%reproducible
   end function solver_options
 
   !> Open the records, or continue those of a restart.
@@ -167,6 +170,7 @@ contains
         next_output = next_output_progress(model%output, phase, committed)
         done = committed%increment
         call run_increment(run, model, error)
+        call note_choice(run%stepper%system%solver, log)
         if (committed%increment > done) then
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
@@ -189,6 +193,15 @@ contains
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
+
+  !> Log what changed in the choice of the linear solver.
+  subroutine note_choice(solver, log)
+    class(linear_solver_t), intent(inout) :: solver
+    type(log_t), intent(inout) :: log
+
+    if (len_trim(solver%news) > 0) call log%note(trim(solver%news))
+    solver%news = ""
+  end subroutine note_choice
 
   !> Begin a phase, with notes and warnings.
   subroutine start_phase(model, number, committed, log, error)

@@ -73,8 +73,8 @@ contains
       if (size(phase%support, 2) == 0) return
       fading = 0.0_wp
       call nodal_forces(model%load_set, start%load_end, model%contact_node, fading, force)
-      if (size(start%pressure_end) > 0) call add_pressure_forces(model%pressure_set, &
-          start%pressure_end, state%x, force)
+      if (size(start%pressure_end) > 0) call add_pressure_forces(model%element, &
+          model%pressure_set, start%pressure_end, state%x, force)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
         text = "warning: the loads on the sheet are not in equilibrium in phase '"//phase%name// &

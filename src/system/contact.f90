@@ -91,8 +91,8 @@ contains
               + committed%tool_displacement(:, tool)
           self%distance(c) = hit%distance
           self%normal(:, c) = hit%normal
-          call evaluate_candidate(self, c, hit, slip, contact_penalty(model, phase, c), &
-              model%tool(tool)%friction)
+          call evaluate_candidate(self, c, hit, slip, &
+              contact_penalty(model, phase, c, trial%penalty_reduced), model%tool(tool)%friction)
         end if
         trial%status(c) = self%status(c)
       end do
@@ -144,7 +144,8 @@ contains
       touching = .false.
       do c = 1, model%n_contact
         if (committed%status(c) == status_gap) cycle
-        if (norm2(committed%lambda(:, c)) <= contact_penalty(model, phase, c)*round_off) cycle
+        if (norm2(committed%lambda(:, c)) &
+            <= round_off*contact_penalty(model, phase, c, committed%penalty_reduced)) cycle
         touching(committed%contact_tool(c)) = .true.
       end do
       do c = 1, model%n_contact
@@ -163,8 +164,8 @@ contains
         call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
             model%tolerance%touch)
         call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-            self%lambda(:, c), no_slip, contact_penalty(model, phase, c), friction, &
-            self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+            self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
+            friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
       end do
     end associate
   end subroutine predictor_contact

@@ -18,24 +18,35 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    real(wp) :: block(3, 3, 4, 4)
-    integer :: s, f, a, b, k
+    integer :: s, f
 
     do s = 1, size(state%pressure)
       if (.not. abs(state%pressure(s)) > 0.0_wp) cycle
-      do f = 1, size(model%pressure_set(s)%corner, 2)
-        associate (corner => model%pressure_set(s)%corner(:, f))
-          block = face_stiffness(state%x(:, corner))
-          do a = 1, 4
-            do b = 1, 4
-              k = position_of(system%stiffness, corner(a), corner(b))
-              system%stiffness%value(:, :, k) = system%stiffness%value(:, :, k) &
-                  - state%pressure(s)*block(:, :, a, b)
-            end do
-          end do
+      do f = 1, size(model%pressure_set(s)%node, 2)
+        associate (node => model%pressure_set(s)%node(:, f))
+          call subtract_block(system, node, &
+              state%pressure(s)*face_stiffness(model%element, state%x(:, node)))
         end associate
       end do
     end do
   end subroutine add_pressure_stiffness
+
+  !> Subtract the stiffness of a face.
+  subroutine subtract_block(system, node, stiffness)
+    type(system_t), intent(inout) :: system
+    !> Nodes of the face.
+    integer, intent(in) :: node(:)
+    !> As returned by `face_stiffness`.
+    real(wp), intent(in) :: stiffness(:, :, :, :)
+
+    integer :: a, b, k
+
+    do a = 1, size(node)
+      do b = 1, size(node)
+        k = position_of(system%stiffness, node(a), node(b))
+        system%stiffness%value(:, :, k) = system%stiffness%value(:, :, k) - stiffness(:, :, a, b)
+      end do
+    end do
+  end subroutine subtract_block
 
 end module dd3_system_pressure

@@ -24,7 +24,7 @@ from results import command, find_program, launch, read_table  # noqa: E402
 from scripts import Problem  # noqa: E402
 
 HEAD = ["deck", "earlier answer", "exit code", "answer"]
-LIMIT = 60.0
+LIMIT = 300.0
 # Relative difference of a value of history.csv from the one in the table.
 TOLERANCE = 1e-3
 BEND = "*PHASE bend"

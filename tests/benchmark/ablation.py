@@ -29,6 +29,7 @@ from scripts import Problem, run  # noqa: E402
 OFF = {"active_set": "active_set = off", "damping": "damping = off", "steering": "target_iterations = 0"}
 SETTINGS = {"all": ((), None), **{f"no {name}": ((key,), None) for name, key in OFF.items()},
             "none of these": (tuple(OFF.values()), None), **{f"p = {p:g}": ((), p) for p in (1e2, 1e3, 1e4, 1e5)},
+            "p = 100000; no adapt_penalty": (("adapt_penalty = off",), 1e5),
             "none of these; p = 10000": (tuple(OFF.values()), 1e4)}
 REPORT = ROOT / "docs" / "reports" / "ablation.md"
 HEAD = ("problem", "remedies", "end", "increments", "iterations", "wasted, %", "held", "released", "damped", "time, s",

@@ -9,7 +9,7 @@
 !> relative residual, and largest difference from the direct solution relative to its largest
 !> component.
 program benchmark_solvers
-  use dd3_base_clock, only : wall_time
+  use dd3_base_clock, only : processor_time
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
@@ -80,6 +80,8 @@ contains
     allocate (reference(size(b)))
     reference = 0.0_wp
     call measure(options, matrix, b, reference)
+    options%method = "block_lu"
+    call measure(options, matrix, b, reference)
     options%method = "auto"
     call measure(options, matrix, b, reference)
     options%method = "cgs"
@@ -111,20 +113,20 @@ contains
     allocate (x(size(b)))
     call new_linear_solver(solver, options, error)
     if (allocated(error)) error stop 1
-    began = wall_time()
+    began = processor_time()
     call solver%setup(matrix)
-    setup = wall_time() - began
+    setup = processor_time() - began
     factor = huge(factor)
     solve = huge(solve)
-    first = wall_time()
+    first = processor_time()
     do round = 1, 200
-      began = wall_time()
+      began = processor_time()
       call solver%factor(matrix, verdict)
-      factor = min(factor, wall_time() - began)
-      began = wall_time()
+      factor = min(factor, processor_time() - began)
+      began = processor_time()
       if (verdict%outcome == verdict_converged) call solver%solve(b, x, report)
-      solve = min(solve, wall_time() - began)
-      if (wall_time() - first > 0.5_wp) exit
+      solve = min(solve, processor_time() - began)
+      if (processor_time() - first > 0.5_wp) exit
     end do
     call solver%release()
     if (all(abs(reference) <= 0.0_wp)) reference = x

@@ -13,8 +13,28 @@ import time
 
 from runs import Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of, table
 
+# Phases before the last one, and the beginning of that.
+MOTIONS = """*PHASE turn
+  control = load
+  trial = 0.2
+  release = punch
+  release = die
+  release = blank_holder
+  rotate = x_max 175 17.5 0 0 1 0 0.3
+  pressure = z_max 0.002
+  table = 0 0 0.5 1 1 0.4
+
+*PHASE bow
+  control = load
+  trial = 0.2
+  bend = x_max 0 17.5 0.39 0 1 0 1
+  pressure = z_max 0
+  table = 0 0 0.3 0.6 1 1
+
+*PHASE springback
+  free = x_max x z"""
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only; fields by
-# increments; a linear solver that falls back.
+# increments; motions and pressures along curves of progress; a linear solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),
@@ -22,6 +42,7 @@ CASES = {
     "increments": ((("every 0.4 mm", "increments 2"),), ()),
     "fields": ((("every 0.4 mm", "increments 1"),), ("restart=1",)),
     "solid_shell": ((("element = hex8", "element = solid_shell"),), ("restart=1", "iterations=12")),
+    "motions": ((("*PHASE springback", MOTIONS),), ("restart=1", "iterations=12")),
     "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
 }
 MOST_TRIALS = 100

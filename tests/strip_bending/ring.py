@@ -23,15 +23,18 @@ def flow_stress(plastic):
     return value, SWIFT_N * value / (SWIFT_E0 + plastic)
 
 
-def update(stress, plastic, along, across):
-    """Return stress (along, across, width), plastic strain and tangent after strain increments along and across."""
+def update(stress, plastic, along, across, law=flow_stress):
+    """Return stress (along, across, width), plastic strain and tangent after strain increments along and across.
+
+    `law` gives the flow stress and its slope.
+    """
     volume, mean = along + across, sum(stress) / 3
     trial = [s - mean + 2 * SHEAR * (e - volume / 3) for s, e in zip(stress, (along, across, 0.0))]
     size = math.sqrt(1.5 * sum(s * s for s in trial))
     increment, slope = 0.0, 0.0
-    active = size > flow_stress(plastic)[0]
+    active = size > law(plastic)[0]
     while active:
-        flow, slope = flow_stress(plastic + increment)
+        flow, slope = law(plastic + increment)
         change = (size - 3 * SHEAR * increment - flow) / (3 * SHEAR + slope)
         increment += change
         if abs(change) < 1e-15:

@@ -1,0 +1,224 @@
+!> Tree of the bounding boxes of patches (bounding volume hierarchy). The boxes are halved at the
+!> median of their centres along the longest side of their common box until few are left; node i has
+!> the halves 2i and 2i + 1.
+module dd3_contact_box_tree
+  use dd3_base_kinds, only : wp
+  use dd3_base_sorting, only : ascending
+  implicit none
+  private
+  public :: box_tree_t, box_walk_t, new_box_tree, box_distance, start_walk, next_leaf, &
+      nearest_beyond, overlapping, leaf_size
+
+  !> Largest number of boxes in a leaf.
+  integer, parameter :: leaf_size = 4
+  !> Largest number of nodes on the stack of a walk: one for each level.
+  integer, parameter :: most_levels = 32
+
+  !> The tree.
+  type :: box_tree_t
+    !> Number of the box at each place.
+    integer, allocatable :: number(:)
+    !> Corners of the box at each place, `(3, n)`, mm.
+    real(wp), allocatable :: lower(:, :), upper(:, :)
+    !> Corners of the common box of each node, `(3, n_node)`, mm.
+    real(wp), allocatable :: node_lower(:, :), node_upper(:, :)
+  end type box_tree_t
+
+  !> A node with its places.
+  type :: range_t
+    integer :: node, first, last
+    !> Distance of its box from the point of the walk, mm.
+    real(wp) :: distance
+  end type range_t
+
+  !> Walk through the leaves near a point, the nearer half first.
+  type :: box_walk_t
+    real(wp) :: x(3)
+    integer :: depth
+    type(range_t) :: stack(most_levels)
+  end type box_walk_t
+
+contains
+
+  !> Build the tree of some boxes.
+  subroutine new_box_tree(self, lower, upper)
+    type(box_tree_t), intent(out) :: self
+    !> Corners, `(3, n)`, n > 0, mm.
+    real(wp), intent(in) :: lower(:, :), upper(:, :)
+
+    integer :: i, n, n_node
+
+    n = size(lower, 2)
+    n_node = 1
+    i = n
+    do while (i > leaf_size)
+      i = (i + 1)/2
+      n_node = 2*n_node + 1
+    end do
+    self%number = [(i, i=1, n)]
+    allocate (self%node_lower(3, n_node), self%node_upper(3, n_node))
+    call divide(self, lower, upper, 1, 1, n)
+    self%lower = lower(:, self%number)
+    self%upper = upper(:, self%number)
+  end subroutine new_box_tree
+
+  !> Set the box of a node, and divide its places.
+  recursive subroutine divide(self, lower, upper, node, first, last)
+    type(box_tree_t), intent(inout) :: self
+    real(wp), intent(in) :: lower(:, :), upper(:, :)
+    integer, intent(in) :: node, first, last
+
+    integer :: axis, middle
+
+    associate (number => self%number(first:last))
+      self%node_lower(:, node) = minval(lower(:, number), dim=2)
+      self%node_upper(:, node) = maxval(upper(:, number), dim=2)
+      if (last - first < leaf_size) return
+      axis = maxloc(self%node_upper(:, node) - self%node_lower(:, node), dim=1)
+      number = number(ascending(lower(axis, number) + upper(axis, number)))
+    end associate
+    middle = (first + last)/2
+    call divide(self, lower, upper, 2*node, first, middle)
+    call divide(self, lower, upper, 2*node + 1, middle + 1, last)
+  end subroutine divide
+
+  !> Return the distance of a point from a box, mm; not larger for a box that contains another one,
+  !> in floating-point numbers too.
+  pure real(wp) function box_distance(lower, upper, x)
+    !> Corners, and the point, mm.
+    real(wp), intent(in) :: lower(3), upper(3), x(3)
+
+    real(wp) :: outside(3)
+
+    outside = max(lower - x, x - upper, 0.0_wp)
+    box_distance = sqrt(dot_product(outside, outside))
+  end function box_distance
+
+  !> Return the distance of a point from the common box of a node, mm.
+  pure real(wp) function node_distance(tree, node, x)
+    type(box_tree_t), intent(in) :: tree
+    integer, intent(in) :: node
+    real(wp), intent(in) :: x(3)
+
+    node_distance = box_distance(tree%node_lower(:, node), tree%node_upper(:, node), x)
+  end function node_distance
+
+  !> Start a walk at the root.
+  pure subroutine start_walk(walk, tree, x)
+    type(box_walk_t), intent(out) :: walk
+    type(box_tree_t), intent(in) :: tree
+    !> mm.
+    real(wp), intent(in) :: x(3)
+
+    walk%x = x
+    walk%depth = 1
+    walk%stack(1) = range_t(1, 1, size(tree%number), node_distance(tree, 1, x))
+  end subroutine start_walk
+
+  !> Go to the next leaf whose box is within a distance, which may shrink during the walk.
+  pure subroutine next_leaf(walk, tree, limit, first, last)
+    type(box_walk_t), intent(inout) :: walk
+    type(box_tree_t), intent(in) :: tree
+    !> mm.
+    real(wp), intent(in) :: limit
+    !> Places of the leaf; last < first at the end.
+    integer, intent(out) :: first, last
+
+    type(range_t) :: now, half(2)
+    integer :: middle, nearer
+
+    first = 1
+    last = 0
+    do while (walk%depth > 0)
+      now = walk%stack(walk%depth)
+      walk%depth = walk%depth - 1
+      if (now%distance > limit) cycle
+      if (now%last - now%first < leaf_size) then
+        first = now%first
+        last = now%last
+        return
+      end if
+      middle = (now%first + now%last)/2
+      half(1) = range_t(2*now%node, now%first, middle, node_distance(tree, 2*now%node, walk%x))
+      half(2) = range_t(2*now%node + 1, middle + 1, now%last, &
+          node_distance(tree, 2*now%node + 1, walk%x))
+      nearer = merge(1, 2, half(1)%distance <= half(2)%distance)
+      walk%stack(walk%depth + 1) = half(3 - nearer)
+      walk%stack(walk%depth + 2) = half(nearer)
+      walk%depth = walk%depth + 2
+    end do
+  end subroutine next_leaf
+
+  !> Return a lower bound, at most a tenth too small, of the distance of a point from all boxes that
+  !> are farther than a limit, mm; a huge value if there is none. The exact distance takes ten times
+  !> as long where many boxes are at nearly the same one.
+  pure real(wp) function nearest_beyond(tree, x, limit) result(nearest)
+    type(box_tree_t), intent(in) :: tree
+    real(wp), intent(in) :: x(3), limit
+
+    real(wp), parameter :: slack = 0.9_wp
+    type(box_walk_t) :: walk
+    real(wp) :: distance
+    integer :: i, first, last
+
+    nearest = huge(1.0_wp)
+    call start_walk(walk, tree, x)
+    do
+      call next_leaf(walk, tree, slack*nearest, first, last)
+      if (last < first) exit
+      do i = first, last
+        distance = box_distance(tree%lower(:, i), tree%upper(:, i), x)
+        if (distance > limit) nearest = min(nearest, distance)
+      end do
+    end do
+    if (nearest < huge(1.0_wp)) nearest = max(limit, slack*nearest)
+  end function nearest_beyond
+
+  !> Return the numbers of the boxes that overlap a box, ascending.
+  pure function overlapping(tree, lower, upper) result(number)
+    type(box_tree_t), intent(in) :: tree
+    !> Corners, mm.
+    real(wp), intent(in) :: lower(3), upper(3)
+    integer, allocatable :: number(:)
+
+    integer :: stack(3, most_levels), found(64), depth, n, node, first, last, middle, i
+
+    allocate (number(0))
+    n = 0
+    depth = 1
+    stack(:, 1) = [1, 1, size(tree%number)]
+    do while (depth > 0)
+      node = stack(1, depth)
+      first = stack(2, depth)
+      last = stack(3, depth)
+      depth = depth - 1
+      if (is_apart(tree%node_lower(:, node), tree%node_upper(:, node))) cycle
+      if (last - first >= leaf_size) then
+        middle = (first + last)/2
+        stack(:, depth + 1) = [2*node, first, middle]
+        stack(:, depth + 2) = [2*node + 1, middle + 1, last]
+        depth = depth + 2
+        cycle
+      end if
+      do i = first, last
+        if (is_apart(tree%lower(:, i), tree%upper(:, i))) cycle
+        if (n == size(found)) number = [number, found]
+        if (n == size(found)) n = 0
+        n = n + 1
+        found(n) = tree%number(i)
+      end do
+    end do
+    number = [number, found(:n)]
+    number = number(ascending(real(number, wp)))
+
+  contains
+
+    pure logical function is_apart(box_lower, box_upper)
+      real(wp), intent(in) :: box_lower(3), box_upper(3)
+
+      is_apart = any(box_lower > upper .or. box_upper < lower)
+    end function is_apart
+
+  end function overlapping
+
+end module dd3_contact_box_tree

@@ -1,0 +1,229 @@
+!> Closest point of a whole surface to a node. A tree of bounding boxes gives the patches that are
+!> near enough; of equal points that of the first patch is kept.
+module dd3_contact_global_search
+  use dd3_base_kinds, only : wp
+  use dd3_contact_box_tree, only : box_distance, box_walk_t, leaf_size, nearest_beyond, next_leaf, &
+      start_walk
+  use dd3_contact_hit, only : hit_t, new_hit
+  use dd3_contact_project, only : project_globally
+  use dd3_contact_projection, only : projection_t
+  use dd3_contact_surface, only : surface_t
+  implicit none
+  private
+  public :: query_t, apply_limits, search_tree, search_all, edge_margin
+
+  !> Distance, relative to the surface's size, by which a point on an edge must be nearer than
+  !> another one to be preferred.
+  real(wp), parameter :: edge_margin = 1.0e-12_wp
+
+  !> Distances that differ by less, relative to the coordinates, may be equal but for round-off.
+  real(wp), parameter :: tie_margin = 1.0e-11_wp
+  !> Largest number of patches with equal distances in a search by the tree.
+  integer, parameter :: most_ties = 32
+
+  !> A query for the closest point.
+  type :: query_t
+    !> Position of the node in the surface's frame, mm.
+    real(wp) :: x(3)
+    !> Largest distances of a contact outside and inside the tool, mm.
+    real(wp) :: search_distance, depth
+    !> Outward normal of the sheet; zero if unknown.
+    real(wp) :: outward(3) = 0.0_wp
+  end type query_t
+
+  !> A patch with its distances from a node.
+  type :: tie_t
+    integer :: patch
+    !> Distances of its box and its closest point, and the latter with the margin of edges, mm.
+    real(wp) :: box, near, distance
+  end type tie_t
+
+  !> Patches at nearly the same distance from a node, ascending: `item(1:n)`.
+  type :: ties_t
+    integer :: n
+    type(tie_t) :: item(most_ties)
+  end type ties_t
+
+contains
+
+  !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
+  pure subroutine apply_limits(hit, query)
+    type(hit_t), intent(inout) :: hit
+    type(query_t), intent(in) :: query
+
+    hit%found = hit%found .and. hit%distance <= query%search_distance &
+        .and. hit%distance > -query%depth .and. dot_product(hit%normal, query%outward) <= 0.0_wp
+  end subroutine apply_limits
+
+  !> Search the patches whose boxes are near, nearest first. The result is that of `search_all`, bit
+  !> for bit: patches at nearly the same distance are compared in its order.
+  pure subroutine search_tree(surface, query, hit, best, clearance, ok)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    type(hit_t), intent(out) :: hit
+    !> Distance of the hit, or a huge value; lower bound of the distance of all patches, mm.
+    real(wp), intent(out) :: best, clearance
+    !> False if too many patches have the same distance.
+    logical, intent(out) :: ok
+
+    type(box_walk_t) :: walk
+    type(ties_t) :: ties
+    type(projection_t) :: projection
+    type(hit_t) :: candidate
+    real(wp) :: radius, margin, box(leaf_size), distance
+    integer :: i, first, last
+    logical :: accepted
+
+    radius = max(query%search_distance, query%depth)
+    margin = tie_margin*(surface%size + maxval(abs(query%x)))
+    best = huge(1.0_wp)
+    clearance = huge(1.0_wp)
+    ok = .true.
+    ties%n = 0
+    call start_walk(walk, surface%tree, query%x)
+    do
+      call next_leaf(walk, surface%tree, min(radius, best + margin), first, last)
+      if (last < first) exit
+      box(:last - first + 1) = [(box_distance(surface%tree%lower(:, i), &
+          surface%tree%upper(:, i), query%x), i=first, last)]
+      do
+        i = minloc(box(:last - first + 1), dim=1)
+        if (box(i) > min(radius, best + margin)) exit
+        associate (k => surface%tree%number(first + i - 1))
+          call examine(surface, query, k, min(radius, best + margin), projection, distance, &
+              candidate, accepted)
+          clearance = min(clearance, projection%distance)
+          if (accepted) call add_tie(ties, tie_t(k, box(i), projection%distance, distance), &
+              min(best, distance) + margin, ok)
+        end associate
+        box(i) = huge(1.0_wp)
+        if (.not. ok) return
+        if (.not. accepted .or. distance >= best) cycle
+        best = distance
+        hit = candidate
+      end do
+    end do
+    if (best < huge(1.0_wp)) then
+      call decide(surface, query, radius, ties, best, hit)
+    else
+      clearance = min(clearance, nearest_beyond(surface%tree, query%x, radius))
+    end if
+  end subroutine search_tree
+
+  !> Project on a patch.
+  pure subroutine examine(surface, query, k, limit, projection, distance, hit, accepted)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    !> Number of the patch.
+    integer, intent(in) :: k
+    !> Largest distance of interest, mm.
+    real(wp), intent(in) :: limit
+    type(projection_t), intent(out) :: projection
+    !> Distance that is compared, mm: points inside a patch are preferred.
+    real(wp), intent(out) :: distance
+    !> Only set if accepted.
+    type(hit_t), intent(inout) :: hit
+    !> False if the point is too far, or if the limits of the query exclude it.
+    logical, intent(out) :: accepted
+
+    call project_globally(surface%patch(k), query%x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], projection)
+    distance = projection%distance
+    if (any(projection%active /= 0)) distance = distance + edge_margin*surface%size
+    accepted = projection%distance <= limit
+    if (.not. accepted) return
+    call new_hit(hit, surface, k, query%x, projection)
+    if (.not. hit%found) return
+    call apply_limits(hit, query)
+    accepted = hit%found
+  end subroutine examine
+
+  !> Add a patch, and drop those that are farther than a limit.
+  pure subroutine add_tie(self, tie, limit, ok)
+    type(ties_t), intent(inout) :: self
+    type(tie_t), intent(in) :: tie
+    !> mm.
+    real(wp), intent(in) :: limit
+    !> False if there is no room.
+    logical, intent(out) :: ok
+
+    integer :: i, n
+
+    n = 0
+    do i = 1, self%n
+      if (self%item(i)%distance > limit) cycle
+      n = n + 1
+      self%item(n) = self%item(i)
+    end do
+    ok = n < most_ties
+    if (.not. ok) return
+    self%n = n + 1
+    do i = n, 1, -1
+      if (self%item(i)%patch < tie%patch) exit
+      self%item(i + 1) = self%item(i)
+    end do
+    self%item(i + 1) = tie
+  end subroutine add_tie
+
+  !> Decide between patches at nearly the same distance as `search_all` does.
+  pure subroutine decide(surface, query, radius, ties, best, hit)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    real(wp), intent(in) :: radius
+    type(ties_t), intent(in) :: ties
+    !> Distance of the hit, mm.
+    real(wp), intent(inout) :: best
+    type(hit_t), intent(inout) :: hit
+
+    type(projection_t) :: projection
+    real(wp) :: distance
+    integer :: i, chosen
+    logical :: accepted
+
+    if (ties%n < 2) return
+    best = huge(1.0_wp)
+    chosen = 0
+    do i = 1, ties%n
+      associate (tie => ties%item(i))
+        if (max(tie%box, tie%near) > min(radius, best)) cycle
+        if (tie%distance >= best) cycle
+        best = tie%distance
+        chosen = tie%patch
+      end associate
+    end do
+    if (chosen == hit%patch) return
+    call examine(surface, query, chosen, huge(1.0_wp), projection, distance, hit, accepted)
+  end subroutine decide
+
+  !> Search all patches in their order.
+  pure subroutine search_all(surface, query, hit, best, clearance)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    type(hit_t), intent(out) :: hit
+    !> Distance of the hit, or a huge value; lower bound of the distance of all patches, mm.
+    real(wp), intent(out) :: best, clearance
+
+    type(projection_t) :: projection
+    type(hit_t) :: candidate
+    real(wp) :: radius, near, distance
+    integer :: k
+    logical :: accepted
+
+    radius = max(query%search_distance, query%depth)
+    best = huge(1.0_wp)
+    clearance = huge(1.0_wp)
+    do k = 1, size(surface%patch)
+      near = box_distance(surface%patch(k)%lower, surface%patch(k)%upper, query%x)
+      accepted = near <= min(radius, best)
+      if (accepted) then
+        call examine(surface, query, k, min(radius, best), projection, distance, candidate, &
+            accepted)
+        near = projection%distance
+      end if
+      clearance = min(clearance, near)
+      if (.not. accepted .or. distance >= best) cycle
+      hit = candidate
+      best = distance
+    end do
+  end subroutine search_all
+
+end module dd3_contact_global_search

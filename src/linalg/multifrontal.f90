@@ -1,0 +1,322 @@
+!> Complete LU factorisation by the multifrontal method (Duff and Reid, ACM Trans. Math. Softw. 9,
+!> 1983), on dense fronts by BLAS and LAPACK. Rows are interchanged among the pivots of a front
+!> only, so that the pattern is fixed; a nearly singular block of pivots is shifted, and the
+!> iteration that uses the factors as preconditioner makes up for it.
+module dd3_linalg_multifrontal
+  use dd3_base_kinds, only : wp, i8
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_linalg_blas_threads, only : use_one_blas_thread
+  use dd3_linalg_dense, only : dgemv, dtrsv
+  use dd3_linalg_front_factor, only : add_border, factor_front, put_blocks
+  use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
+  use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_preconditioner, only : preconditioner_t
+  implicit none
+  private
+  public :: multifrontal_t
+
+  !> Factors P A11 = L11 U11 of the pivots of each front, A21 A11^-1, and A12.
+  type, extends(preconditioner_t) :: multifrontal_t
+    type(front_tree_t) :: tree
+    !> Number of block rows, and of block products of a factorisation.
+    integer :: n = 0
+    real(wp) :: products = 0.0_wp
+    !> Where the factors of a front begin in `left` and `upper`, `(n_front + 1)`.
+    integer(i8), allocatable :: left_start(:), upper_start(:)
+    !> Columns of the pivots, `(3 rows, 3 pivots)` for each front, and the rows of the border,
+    !> `(3 pivots, 3 border)`.
+    real(wp), allocatable :: left(:), upper(:)
+    !> Row interchanges of the pivots, `(3n)`.
+    integer, allocatable :: pivot(:)
+    !> Where the blocks of the two parts of each front begin in `block`, `(2*n_front + 1)`; the
+    !> block's number in the matrix and the place of its first entry in the part.
+    integer, allocatable :: block_start(:), block(:), entry(:)
+    !> Border of the present front, and stack of those that wait for their parents.
+    real(wp), allocatable :: rest(:), stack(:)
+    !> Fronts on the stack, and vectors of a solution.
+    integer, allocatable :: waiting(:)
+    real(wp), allocatable :: y(:), part(:)
+    !> Number of fronts shifted in the last factorisation.
+    integer :: shifted = 0
+  contains
+    procedure :: setup => multifrontal_setup
+    procedure :: build => multifrontal_build
+    procedure :: apply => multifrontal_apply
+    procedure :: bytes => multifrontal_bytes
+  end type multifrontal_t
+
+contains
+
+  !> Symbolic factorisation and allocation.
+  subroutine multifrontal_setup(self, matrix)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    call use_one_blas_thread()
+    self%description = "multifrontal LU"
+    self%n = matrix%n
+    if (allocated(self%left)) deallocate (self%left, self%upper, self%left_start, &
+        self%upper_start, self%pivot, self%rest, self%stack, self%waiting, self%y, self%part)
+    call new_front_tree(self%tree, matrix)
+    call find_sizes(self)
+    call place_blocks(self, matrix)
+  end subroutine multifrontal_setup
+
+  !> Find the sizes of the factors, the fronts and the stack, and allocate them.
+  subroutine find_sizes(self)
+    class(multifrontal_t), intent(inout) :: self
+
+    integer(i8) :: p, m, stacked, largest_stack
+    integer :: f, k, largest, n_waiting
+
+    associate (tree => self%tree)
+      allocate (self%left_start(tree%n_front + 1), self%upper_start(tree%n_front + 1))
+      allocate (self%waiting(tree%n_front))
+      self%left_start(1) = 1
+      self%upper_start(1) = 1
+      self%products = 0.0_wp
+      largest = 0
+      largest_stack = 0
+      stacked = 0
+      n_waiting = 0
+      do f = 1, tree%n_front
+        p = 3*int(tree%first(f + 1) - tree%first(f), i8)
+        m = 3*int(rows_of(tree, f), i8)
+        self%left_start(f + 1) = self%left_start(f) + m*p
+        self%upper_start(f + 1) = self%upper_start(f) + p*(m - p)
+        self%products = self%products + (real(p, wp)**3/3.0_wp + real(p, wp)**2*real(m - p, wp) &
+            + real(p, wp)*real(m - p, wp)**2)/27.0_wp
+        largest = max(largest, int(m - p))
+        do k = 1, tree%children(f)
+          stacked = stacked - border_size(tree, self%waiting(n_waiting))
+          n_waiting = n_waiting - 1
+        end do
+        if (tree%parent(f) == 0) cycle
+        n_waiting = n_waiting + 1
+        self%waiting(n_waiting) = f
+        stacked = stacked + (m - p)**2
+        largest_stack = max(largest_stack, stacked)
+      end do
+      allocate (self%left(self%left_start(tree%n_front + 1) - 1))
+      ! One more, so that the empty part of the last front has an address.
+      allocate (self%upper(self%upper_start(tree%n_front + 1)))
+    end associate
+    allocate (self%rest(int(largest, i8)**2), self%stack(largest_stack))
+    allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(largest))
+  end subroutine find_sizes
+
+  !> Return the number of entries of a front's square border.
+  pure integer(i8) function border_size(tree, f)
+    type(front_tree_t), intent(in) :: tree
+    integer, intent(in) :: f
+
+    border_size = (3*int(tree%border_start(f + 1) - tree%border_start(f), i8))**2
+  end function border_size
+
+  !> Assign the blocks of the matrix to the fronts, each to the front of its earlier pivot.
+  subroutine place_blocks(self, matrix)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    integer, allocatable :: new_number(:), place(:)
+    integer :: f, i, j, k, n, p, last, part
+
+    associate (tree => self%tree)
+      if (allocated(self%block)) deallocate (self%block, self%entry, self%block_start)
+      allocate (self%block(size(matrix%column)), self%entry(size(matrix%column)))
+      allocate (self%block_start(2*tree%n_front + 1), new_number(matrix%n), place(matrix%n))
+      new_number(tree%order) = [(i, i=1, matrix%n)]
+      n = 0
+      do f = 1, tree%n_front
+        last = tree%first(f + 1) - 1
+        p = last - tree%first(f) + 1
+        place(tree%first(f):last) = [(i, i=1, p)]
+        do k = tree%border_start(f), tree%border_start(f + 1) - 1
+          place(tree%border(k)) = p + k - tree%border_start(f) + 1
+        end do
+        do part = 1, 2
+          self%block_start(2*f - 2 + part) = n + 1
+          do i = tree%first(f), last
+            do k = matrix%row_start(tree%order(i)), matrix%row_start(tree%order(i) + 1) - 1
+              j = new_number(matrix%column(k))
+              if (j < tree%first(f)) cycle
+              if (part == 1 .and. j <= last) call add(k, place(i), place(j), rows_of(tree, f))
+              if (part == 1 .and. j > last) call add(position_of(matrix, tree%order(j), &
+                  tree%order(i)), place(j), place(i), rows_of(tree, f))
+              if (part == 2 .and. j > last) call add(k, place(i), place(j) - p, p)
+            end do
+          end do
+        end do
+      end do
+      self%block_start(2*tree%n_front + 1) = n + 1
+    end associate
+
+  contains
+
+    !> Add a block to the part.
+    subroutine add(block, row, column, rows)
+      integer, intent(in) :: block, row, column
+      !> Block rows of the part.
+      integer, intent(in) :: rows
+
+      n = n + 1
+      self%block(n) = block
+      self%entry(n) = 9*rows*(column - 1) + 3*row - 2
+    end subroutine add
+
+  end subroutine place_blocks
+
+  !> Numeric factorisation.
+  subroutine multifrontal_build(self, matrix, verdict)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    !> Retry if a block of pivots is not finite.
+    type(verdict_t), intent(out) :: verdict
+
+    integer(i8) :: top
+    integer :: f, n_waiting
+    logical :: good
+
+    verdict%outcome = verdict_converged
+    self%shifted = 0
+    top = 0
+    n_waiting = 0
+    do f = 1, self%tree%n_front
+      call build_front(self, matrix, f, top, n_waiting, good)
+      if (good) cycle
+      verdict%outcome = verdict_retry
+      verdict%reason = "the factorisation grows without bound in block row " &
+          //to_text(self%tree%order(self%tree%first(f)))
+      return
+    end do
+  end subroutine multifrontal_build
+
+  !> Assemble and factorise a front, and put its border on the stack.
+  subroutine build_front(self, matrix, f, top, n_waiting, good)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    integer, intent(in) :: f
+    !> Last entry of the stack in use, and number of fronts on it.
+    integer(i8), intent(inout) :: top
+    integer, intent(inout) :: n_waiting
+    !> Whether the pivots are finite.
+    logical, intent(out) :: good
+
+    integer :: p, u, k, child, n
+
+    associate (tree => self%tree, left => self%left_start(f), upper => self%upper_start(f))
+      p = 3*(tree%first(f + 1) - tree%first(f))
+      u = 3*rows_of(tree, f) - p
+      associate (from => self%block_start(2*f - 1), middle => self%block_start(2*f), &
+          after => self%block_start(2*f + 1))
+        call put_blocks(p + u, p, middle - from, self%block(from:), self%entry(from:), &
+            matrix%value, self%left(left))
+        call put_blocks(p, u, after - middle, self%block(middle:), self%entry(middle:), &
+            matrix%value, self%upper(upper))
+      end associate
+      self%rest(:u*u) = 0.0_wp
+      do k = 1, tree%children(f)
+        child = self%waiting(n_waiting)
+        n_waiting = n_waiting - 1
+        n = tree%border_start(child + 1) - tree%border_start(child)
+        top = top - border_size(tree, child)
+        call add_border(n, tree%place(tree%border_start(child):), self%stack(top + 1), p, u, &
+            self%left(left), self%upper(upper), self%rest)
+      end do
+      call factor_front(p, u, self%left(left), self%upper(upper), self%rest, &
+          self%pivot(3*tree%first(f) - 2), self%shifted, good)
+      if (tree%parent(f) == 0) return
+      n_waiting = n_waiting + 1
+      self%waiting(n_waiting) = f
+      self%stack(top + 1:top + int(u, i8)**2) = self%rest(:u*u)
+      top = top + border_size(tree, f)
+    end associate
+  end subroutine build_front
+
+  !> Solve L U z = r.
+  subroutine multifrontal_apply(self, r, z)
+    class(multifrontal_t), intent(inout) :: self
+    real(wp), intent(in) :: r(:)
+    real(wp), intent(out) :: z(:)
+
+    integer :: i, f
+
+    associate (tree => self%tree)
+      do i = 1, self%n
+        self%y(3*i - 2:3*i) = r(3*tree%order(i) - 2:3*tree%order(i))
+      end do
+      do f = 1, tree%n_front
+        call forward(self, f)
+      end do
+      do f = tree%n_front, 1, -1
+        call backward(self, f)
+      end do
+      do i = 1, self%n
+        z(3*tree%order(i) - 2:3*tree%order(i)) = self%y(3*i - 2:3*i)
+      end do
+    end associate
+  end subroutine multifrontal_apply
+
+  !> Eliminate the pivots of a front from the vector `y`.
+  subroutine forward(self, f)
+    class(multifrontal_t), intent(inout) :: self
+    integer, intent(in) :: f
+
+    integer :: i, k, p, m, at
+
+    associate (tree => self%tree, y => self%y, part => self%part)
+      at = 3*tree%first(f) - 2
+      p = 3*(tree%first(f + 1) - tree%first(f))
+      m = 3*rows_of(tree, f)
+      if (m == p) return
+      call dgemv("N", m - p, p, 1.0_wp, self%left(self%left_start(f) + int(p, i8)), m, y(at), 1, &
+          0.0_wp, part, 1)
+      do k = 1, (m - p)/3
+        i = 3*tree%border(tree%border_start(f) + k - 1)
+        y(i - 2:i) = y(i - 2:i) - part(3*k - 2:3*k)
+      end do
+    end associate
+  end subroutine forward
+
+  !> Find the pivots of a front from those of later fronts.
+  subroutine backward(self, f)
+    class(multifrontal_t), intent(inout) :: self
+    integer, intent(in) :: f
+
+    real(wp) :: held
+    integer :: i, k, p, m, at
+
+    associate (tree => self%tree, y => self%y, part => self%part, &
+        left => self%left(self%left_start(f):))
+      at = 3*tree%first(f) - 2
+      p = 3*(tree%first(f + 1) - tree%first(f))
+      m = 3*rows_of(tree, f)
+      if (m > p) then
+        do k = 1, (m - p)/3
+          i = 3*tree%border(tree%border_start(f) + k - 1)
+          part(3*k - 2:3*k) = y(i - 2:i)
+        end do
+        call dgemv("N", p, m - p, -1.0_wp, self%upper(self%upper_start(f)), p, part, 1, 1.0_wp, &
+            y(at), 1)
+      end if
+      do i = at, at + p - 1
+        k = at - 1 + self%pivot(i)
+        held = y(i)
+        y(i) = y(k)
+        y(k) = held
+      end do
+      call dtrsv("L", "N", "U", p, left, m, y(at), 1)
+      call dtrsv("U", "N", "N", p, left, m, y(at), 1)
+    end associate
+  end subroutine backward
+
+  !> Return the memory of the factors and the workspace, bytes.
+  pure real(wp) function multifrontal_bytes(self) result(bytes)
+    class(multifrontal_t), intent(in) :: self
+
+    bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp) &
+        + real(size(self%rest, kind=i8), wp) + real(size(self%stack, kind=i8), wp))
+  end function multifrontal_bytes
+
+end module dd3_linalg_multifrontal

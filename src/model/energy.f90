@@ -1,0 +1,84 @@
+!> Energies of the sheet from the stresses and internal variables at its points.
+module dd3_model_energy
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : determinant
+  use dd3_material_elasticity, only : elastic_strain
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: elastic_energy, plastic_work_increment
+
+contains
+
+  !> Return the elastic energy of the stresses, mJ.
+  pure real(wp) function elastic_energy(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    real(wp) :: volume(model%element%n_point)
+    integer :: e, p
+
+    elastic_energy = 0.0_wp
+    do e = 1, model%n_element
+      volume = point_volumes(model, state%x, e)
+      associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
+        do p = 1, size(volume)
+          elastic_energy = elastic_energy + 0.5_wp*volume(p)*dot_product(state%stress(:, p, e), &
+              elastic_strain(elasticity, state%stress(:, p, e)))
+        end do
+      end associate
+    end do
+  end function elastic_energy
+
+  !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
+  !> the equivalent plastic strain. What back-stresses store is not included.
+  pure real(wp) function plastic_work_increment(model, old, new) result(work)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: old, new
+
+    real(wp) :: volume(model%element%n_point), strain(model%element%n_point)
+    integer :: e, p
+
+    work = 0.0_wp
+    do e = 1, model%n_element
+      strain = new%internal_variables(1, :, e) - old%internal_variables(1, :, e)
+      if (all(strain <= 0.0_wp)) cycle
+      volume = point_volumes(model, new%x, e)
+      do p = 1, size(volume)
+        if (strain(p) <= 0.0_wp) cycle
+        work = work + 0.5_wp*volume(p)*strain(p)*(equivalent(old) + equivalent(new))
+      end do
+    end do
+
+  contains
+
+    !> Return the equivalent stress at the point, MPa.
+    pure real(wp) function equivalent(state)
+      type(state_t), intent(in) :: state
+
+      equivalent = model%material(model%material_of(e))%equivalent_stress( &
+          state%stress(:, p, e), state%internal_variables(:, p, e))
+    end function equivalent
+
+  end function plastic_work_increment
+
+  !> Return the volumes that the points of an element stand for, mm3.
+  pure function point_volumes(model, x, e) result(volume)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: e
+    real(wp) :: volume(model%element%n_point)
+
+    integer :: p
+
+    associate (element => model%element, node => model%connectivity(:, e))
+      do p = 1, element%n_point
+        volume(p) = element%weight(p)*determinant(matmul(x(:, node), &
+            transpose(element%dshape(:, :, p))))
+      end do
+    end associate
+  end function point_volumes
+
+end module dd3_model_energy

@@ -1,0 +1,68 @@
+!> Columns of history.csv that follow those of the tools and of the node sets: contact area and
+!> largest pressure of each tool, work and energies.
+module dd3_output_forming_columns
+  use dd3_base_kinds, only : wp
+  use dd3_model_contact_pressure, only : tool_contact_t, tool_contacts
+  use dd3_model_energy, only : elastic_energy
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_output_csv, only : table_t
+  implicit none
+  private
+  public :: add_forming_heading, add_forming_values
+
+  !> Names of the energies, in the order of `energies`.
+  character(len=*), parameter :: energy_name(7) = [character(len=15) :: "tool_work", &
+      "external_work", "internal_work", "elastic_energy", "plastic_work", "friction_work", &
+      "energy_error"]
+
+contains
+
+  !> Add names and units of the columns.
+  subroutine add_forming_heading(model, names, units)
+    type(model_t), intent(in) :: model
+    !> Separated by commas.
+    character(len=:), allocatable, intent(inout) :: names, units
+
+    integer :: i
+
+    do i = 1, model%n_tool
+      names = names//","//trim(model%tool(i)%name)//"_area,"//trim(model%tool(i)%name)//"_pressure"
+      units = units//",mm2,MPa"
+    end do
+    do i = 1, size(energy_name)
+      names = names//","//trim(energy_name(i))
+      units = units//",mJ"
+    end do
+  end subroutine add_forming_heading
+
+  !> Add the values of a state to a row.
+  subroutine add_forming_values(table, model, state)
+    type(table_t), intent(inout) :: table
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    type(tool_contact_t) :: contact(model%n_tool)
+    integer :: i
+
+    if (model%n_tool > 0) contact = tool_contacts(model, state)
+    do i = 1, model%n_tool
+      call table%add_real(contact(i)%area)
+      call table%add_real(contact(i)%pressure)
+    end do
+    call table%add_reals(energies(model, state))
+  end subroutine add_forming_values
+
+  !> Return work and energies, mJ. The error is the work on the sheet less internal and friction
+  !> work; it vanishes with the increments and the tolerance of equilibrium.
+  pure function energies(model, state) result(energy)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: energy(size(energy_name))
+
+    energy = [state%tool_work, state%external_work, state%internal_work, &
+        elastic_energy(model, state), state%plastic_work, state%friction_work, &
+        state%tool_work + state%external_work - state%internal_work - state%friction_work]
+  end function energies
+
+end module dd3_output_forming_columns

@@ -1,0 +1,186 @@
+!> Procedures of the fields that describe the result of forming: thinning, strains in the surface,
+!> draw-in and contact.
+module dd3_output_forming_fields
+  use dd3_base_kinds, only : wp
+  use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_gap, only : contact_gaps
+  use dd3_model_contact_pressure, only : contact_pressures
+  use dd3_model_model, only : model_t
+  use dd3_model_rim, only : draw_in
+  use dd3_model_state, only : state_t
+  use dd3_model_surface_strain, only : surface_strains
+  use dd3_model_thickness_columns, only : thickness_columns
+  implicit none
+  private
+  public :: fill_thickness, fill_thinning, fill_draw_in
+  public :: fill_major_lower, fill_minor_lower, fill_major_middle, fill_minor_middle
+  public :: fill_major_upper, fill_minor_upper
+  public :: fill_contact_pressure, fill_contact_gap, fill_slip_path, fill_contact_tool
+
+  !> Positions between the lower and the upper face.
+  real(wp), parameter :: lower = 0.0_wp, middle = 0.5_wp, upper = 1.0_wp
+  !> Components of the strain.
+  integer, parameter :: major = 1, minor = 2
+
+contains
+
+  !> Evaluate the thickness.
+  subroutine fill_thickness(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value(1, :) = thicknesses(model, state%x)
+  end subroutine fill_thickness
+
+  !> Evaluate the thinning; zero at a node that is in no column.
+  subroutine fill_thinning(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    real(wp) :: initial(model%n_node)
+
+    initial = thicknesses(model, model%x0)
+    value = 0.0_wp
+    where (initial > 0.0_wp) value(1, :) = 1.0_wp - thicknesses(model, state%x) &
+        /max(initial, tiny(1.0_wp))
+  end subroutine fill_thinning
+
+  !> Return the lengths of the columns at the nodes, mm.
+  pure function thicknesses(model, x) result(length)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: length(model%n_node)
+
+    integer, allocatable :: column(:, :)
+    integer :: i
+
+    call thickness_columns(model, column)
+    do i = 1, model%n_node
+      length(i) = norm2(x(:, column(2, i)) - x(:, column(1, i)))
+    end do
+  end function thicknesses
+
+  !> Evaluate the draw-in.
+  subroutine fill_draw_in(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value(1, :) = draw_in(model, state%x)
+  end subroutine fill_draw_in
+
+  !> Evaluate the major strain at the lower face.
+  subroutine fill_major_lower(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, lower, major, value)
+  end subroutine fill_major_lower
+
+  !> Evaluate the minor strain at the lower face.
+  subroutine fill_minor_lower(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, lower, minor, value)
+  end subroutine fill_minor_lower
+
+  !> Evaluate the major strain at the middle.
+  subroutine fill_major_middle(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, middle, major, value)
+  end subroutine fill_major_middle
+
+  !> Evaluate the minor strain at the middle.
+  subroutine fill_minor_middle(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, middle, minor, value)
+  end subroutine fill_minor_middle
+
+  !> Evaluate the major strain at the upper face.
+  subroutine fill_major_upper(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, upper, major, value)
+  end subroutine fill_major_upper
+
+  !> Evaluate the minor strain at the upper face.
+  subroutine fill_minor_upper(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    call fill_strain(model, state, upper, minor, value)
+  end subroutine fill_minor_upper
+
+  !> Evaluate a strain in the surface.
+  subroutine fill_strain(model, state, height, component, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> `lower`, `middle` or `upper`.
+    real(wp), intent(in) :: height
+    !> `major` or `minor`.
+    integer, intent(in) :: component
+    real(wp), intent(out) :: value(:, :)
+
+    real(wp) :: strain(2, model%n_node)
+
+    call surface_strains(model, state%x, height, strain)
+    value(1, :) = strain(component, :)
+  end subroutine fill_strain
+
+  !> Evaluate the contact pressure.
+  subroutine fill_contact_pressure(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value = 0.0_wp
+    if (model%n_contact > 0) value(1, model%contact_node) = contact_pressures(model, state)
+  end subroutine fill_contact_pressure
+
+  !> Evaluate the gap; the search distance at a node that is no candidate.
+  subroutine fill_contact_gap(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value = model%phase(state%phase)%search_distance
+    if (model%n_contact > 0) value(1, model%contact_node) = contact_gaps(model, state)
+  end subroutine fill_contact_gap
+
+  !> Evaluate the slip path.
+  subroutine fill_slip_path(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value = 0.0_wp
+    if (model%n_contact > 0) value(1, model%contact_node) = state%slip_path
+  end subroutine fill_slip_path
+
+  !> Evaluate the number of the tool in contact.
+  subroutine fill_contact_tool(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value = 0.0_wp
+    if (model%n_contact > 0) value(1, model%contact_node) = &
+        real(merge(state%contact_tool, 0, state%status /= status_gap), wp)
+  end subroutine fill_contact_tool
+
+end module dd3_output_forming_fields

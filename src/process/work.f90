@@ -1,0 +1,89 @@
+!> Work and slip of an accepted increment. Forces are the means of those before and after it, so
+!> that the sums approximate the integrals to second order in the increment.
+module dd3_process_work
+  use dd3_base_kinds, only : wp
+  use dd3_contact_operator, only : status_gap, status_slip
+  use dd3_model_energy, only : plastic_work_increment
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_process_external, only : evaluate_external
+  use dd3_system_contact, only : contact_work_t
+  implicit none
+  private
+  public :: add_work
+
+contains
+
+  !> Add work and slip of an increment to those of the new state.
+  subroutine add_work(model, contact, old, new)
+    type(model_t), intent(in) :: model
+    !> Contact of the new state.
+    type(contact_work_t), intent(in) :: contact
+    type(state_t), intent(in) :: old
+    type(state_t), intent(inout) :: new
+
+    real(wp) :: moved(3, model%n_node)
+
+    moved = new%x - old%x
+    new%internal_work = old%internal_work &
+        + 0.5_wp*sum((old%internal_force + new%internal_force)*moved)
+    new%plastic_work = old%plastic_work + plastic_work_increment(model, old, new)
+    call add_external_work(model, old, moved, new)
+    call add_contact_work(model, contact, old, moved, new)
+  end subroutine add_work
+
+  !> Add the work of loads and of supports that move. Forces that begin to fade at the start of the
+  !> phase are not in the external forces of the state before it.
+  subroutine add_external_work(model, old, moved, new)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: old
+    !> Displacements in the increment, `(3, n_node)`, mm.
+    real(wp), intent(in) :: moved(:, :)
+    type(state_t), intent(inout) :: new
+
+    type(state_t) :: start
+    real(wp) :: force(3, model%n_node), reaction(3, model%n_node)
+
+    force = old%external_force
+    if (old%progress <= 0.0_wp) then
+      start = old
+      call evaluate_external(model, start)
+      force = start%external_force
+    end if
+    force = force + new%external_force
+    reaction = old%internal_force + new%internal_force - force
+    reaction(:, model%contact_node) = reaction(:, model%contact_node) + old%lambda + new%lambda
+    where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
+    new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
+  end subroutine add_external_work
+
+  !> Add the work of the tools, the friction work and the slip.
+  pure subroutine add_contact_work(model, contact, old, moved, new)
+    type(model_t), intent(in) :: model
+    type(contact_work_t), intent(in) :: contact
+    type(state_t), intent(in) :: old
+    !> Displacements in the increment, `(3, n_node)`, mm.
+    real(wp), intent(in) :: moved(:, :)
+    type(state_t), intent(inout) :: new
+
+    real(wp) :: force(3), tool_motion(3), slip(3)
+    integer :: c, tool
+
+    new%tool_work = old%tool_work
+    new%friction_work = old%friction_work
+    new%slip_path = old%slip_path
+    do c = 1, model%n_contact
+      tool = contact%tool(c)
+      if (tool == 0) cycle
+      force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
+      tool_motion = new%tool_displacement(:, tool) - old%tool_displacement(:, tool)
+      slip = moved(:, model%contact_node(c)) - tool_motion
+      slip = slip - dot_product(contact%normal(:, c), slip)*contact%normal(:, c)
+      new%tool_work = new%tool_work - dot_product(force, tool_motion)
+      new%friction_work = new%friction_work + dot_product(force, slip)
+      if (new%status(c) == status_slip .and. old%status(c) /= status_gap) &
+          new%slip_path(c) = new%slip_path(c) + norm2(slip)
+    end do
+  end subroutine add_contact_work
+
+end module dd3_process_work

@@ -1,0 +1,99 @@
+"""Closed forms of the cases that gathered.py takes from tests/cases. None of them uses the program."""
+import math
+
+YOUNG, POISSON = 2.1e5, 0.3
+SWIFT = (565.0, 0.007117, 0.259)
+HILL = {"F": 0.284, "G": 0.358, "H": 0.642, "N": 1.289}
+FRICTION = 0.144
+
+
+def bisect(function, low, high):
+    """Return a zero of a function between two places."""
+    sign = function(low) > 0
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
+    return 0.5 * (low + high)
+
+
+def swift(plastic):
+    """Return the flow stress."""
+    factor, start, exponent = SWIFT
+    return factor * (start + plastic) ** exponent
+
+
+def tension_elastic(stretch, area):
+    """Return force and lateral stretch of a bar with Hencky's elasticity."""
+    strain = math.log(stretch)
+    lateral = math.exp(-POISSON * strain)
+    return YOUNG * strain * area * lateral**2, lateral
+
+
+def tension_plastic(stretch, area):
+    """Return force and lateral stretch of an isotropic bar with Swift's law."""
+    strain = math.log(stretch)
+    plastic = bisect(lambda p: swift(p) / YOUNG + p - strain, 0.0, strain)
+    lateral = math.exp(-POISSON * swift(plastic) / YOUNG - plastic / 2)
+    return swift(plastic) * area * lateral**2, lateral
+
+
+def hill_tension(angle):
+    """Return stress ratio and r-value of Hill's criterion of 1948 in tension at an angle to rolling, degrees."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    f, g, h, n = (HILL[name] for name in "FGHN")
+    square = f * s**4 + g * c**4 + h * (c * c - s * s) ** 2 + 2 * n * s * s * c * c
+    r = (h + (2 * n - f - g - 4 * h) * s * s * c * c) / (f * s * s + g * c * c)
+    return 1 / math.sqrt(square), r
+
+
+def hill_bar(angle, plastic, length=10.0, area=100.0):
+    """Return elongation, force and r-value of a bar at an axial plastic strain."""
+    ratio, r = hill_tension(angle)
+    stress = ratio * swift(ratio * plastic)
+    force = stress * area * math.exp(-plastic - 2 * POISSON * stress / YOUNG)
+    return length * math.expm1(plastic + stress / YOUNG), force, r
+
+
+def hill_ratios():
+    """Return stress over flow stress by Hill's criterion: equal biaxial, along rolling in plane strain, shear."""
+    f, g, h, n = (HILL[name] for name in "FGHN")
+    second = h / (f + h)  # ratio of the stresses without transverse strain
+    plane = 1 / math.sqrt(f * second**2 + g + h * (1 - second) ** 2)
+    return 1 / math.sqrt(f + g), plane, plane * second, 1 / math.sqrt(2 * n)
+
+
+def stretched_block(stretch, area):
+    """Return the axial force of a block of Swift's law that is stretched with its sides held."""
+    strain, shear = math.log(stretch), YOUNG / 2 / (1 + POISSON)
+    plastic = bisect(lambda p: 2 * shear * strain - 3 * shear * p - swift(p), 0.0, strain)
+    return area * (YOUNG / 3 / (1 - 2 * POISSON) * strain + 2 / 3 * swift(plastic))
+
+
+def dienes(shear):
+    """Return s11 and s12 over G of a hypoelastic material in simple shear, Jaumann rate (Dienes 1979)."""
+    return 1 - math.cos(shear), math.sin(shear)
+
+
+def armstrong_frederick(plastic, reversed_by):
+    """Return the stress after tension to a plastic strain, and after a reversed plastic strain, MPa."""
+    rate, limit = 50.0, 60.0
+    flow = [200 + 100 * (1 - math.exp(-10 * p)) for p in (plastic, plastic + reversed_by)]
+    first = limit * (1 - math.exp(-rate * plastic))
+    second = -limit + (limit + first) * math.exp(-rate * reversed_by)
+    return flow[0] + first, second - flow[1]
+
+
+def bending(ratio):
+    """Return M/M_e and the residual curvature over that of first yield, of a perfectly plastic rectangle."""
+    moment = 1.5 - 0.5 / ratio**2
+    return moment, ratio - moment
+
+
+def drag(place, load=2.0, friction=0.2, radius=10.0):
+    """Return the horizontal force on an edge that is drawn over the top of a cylinder to a place along x."""
+    return -load * math.tan(math.asin(place / radius) - math.atan(friction))
+
+
+def belt(angle=math.pi / 2):
+    """Return the ratio of the tensions of a belt (Euler, Eytelwein)."""
+    return math.exp(FRICTION * angle)

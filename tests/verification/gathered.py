@@ -1,0 +1,203 @@
+"""The sections of the manual that use cases of tests/cases, which are not repeated here."""
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import closed_forms as exact  # noqa: E402
+from frame import HERE, ROOT, Outcome, Section, Value  # noqa: E402
+
+CASES = ROOT / "tests" / "cases"
+
+
+def run(bench, name, **settings):
+    """Run a case of tests/cases."""
+    label = "_".join([name, *settings.values()])
+    return bench.run(label, CASES / name / "case.dat", settings)
+
+
+def patch_tests(bench):
+    values = []
+    for name, law, tolerance in (("patch_elastic", exact.tension_elastic, 1e-9),
+                                 ("patch_plastic", exact.tension_plastic, 1e-4)):
+        force, lateral = law(1.1, 36.0)
+        found = run(bench, name)
+        values += [Value(f"`hex8`, {name}: force, N", force, found.last("pulled_rx"), tolerance),
+                   Value(f"{name}: y of an inner node, mm", 2.25 * lateral, found.last("inner_y"), tolerance),
+                   Value(f"{name}: z of an inner node, mm", 1.6 * lateral, found.last("inner_z"), tolerance)]
+    force, lateral = exact.tension_elastic(1.1, 36.0)
+    for nodes in ("20", "27"):
+        found = run(bench, "patch_quadratic", nodes=nodes)
+        values += [Value(f"`hex{nodes}`: force, N", force, found.last("pulled_rx"), 1e-9),
+                   Value(f"`hex{nodes}`: x of an inner node, mm", 5.83, found.last("inner_x"), 1e-9),
+                   Value(f"`hex{nodes}`: y of an inner node, mm", 4.8 * lateral, found.last("inner_y"), 1e-9)]
+    return Outcome(values)
+
+
+def rigid_motion(bench):
+    found = run(bench, "rotate_rigidly")
+    force = exact.stretched_block(1.005, 4.0)
+    return Outcome([Value("force along x after the turn, N", force, found.last("top_rx"), 1e-6),
+                    Value("force along z after the turn, N", 0.0, found.last("top_rz"), 1e-6, absolute=True),
+                    Value("x of the top, mm", 1.01, found.last("top_x"), 1e-10)])
+
+
+def tension(bench):
+    values = []
+    for angle in (0, 45, 90):
+        found = run(bench, f"tension_{angle:02}")
+        elongation, force, r = exact.hill_bar(angle, 0.1)
+        progress = elongation / 2.3
+        values.append(Value(f"force at {angle} degrees, plastic strain 0.1, N", force, found.at("pulled_rx", progress),
+                            1e-3))
+        stress = exact.hill_tension(angle)[0] * exact.swift(exact.hill_tension(angle)[0] * 0.1)
+        elastic = -exact.POISSON * stress / exact.YOUNG
+        thin = math.log(found.at("top_z", progress) / 10) - elastic
+        values.append(Value(f"r-value at {angle} degrees", r, -(0.1 + thin) / thin, 5e-3))
+    return Outcome(values)
+
+
+def ratios(bench):
+    found = bench.run("points", HERE / "points.dat")
+    rows = {row["point"]: row for row in found.history}
+
+    def ratio(point, stress):
+        return float(rows[point][stress]) / float(rows[point]["flow_stress"])
+
+    biaxial, plane, second, shear = exact.hill_ratios()
+    return Outcome([Value("equal biaxial tension", biaxial, ratio("biaxial", "s11"), 1e-6),
+                    Value("plane strain along rolling, s11", plane, ratio("plane_strain", "s11"), 1e-5),
+                    Value("plane strain along rolling, s22", second, ratio("plane_strain", "s22"), 1e-3),
+                    Value("shear, s12", shear, ratio("shear", "s12"), 1e-6)])
+
+
+def elastic_shear(bench):
+    found = run(bench, "point_shear_elastic")
+    rows = {(row["point"], int(row["increment"])): row for row in found.history}
+    values = []
+    for step in (20, 40, 60, 80):
+        s11, s12 = exact.dienes(step / 20)
+        row = rows["fine", step]
+        values += [Value(f"s11/G at a shear of {step // 20}", s11, float(row["s11"]), 1e-3, absolute=True),
+                   Value(f"s12/G at a shear of {step // 20}", s12, float(row["s12"]), 1e-3, absolute=True)]
+    return Outcome(values)
+
+
+def kinematic_shear(bench):
+    found = run(bench, "point_shear_prager")
+    rows = {int(row["increment"]): row for row in found.history}
+    values = []
+    for shear in (2, 4, 6):
+        for name, factor in zip(("s11", "s12"), exact.dienes(shear)):
+            values.append(Value(f"{name}/c at a shear of {shear}", factor / 3, float(rows[100 * shear][name]) / 300,
+                                0.01 / 3, absolute=True))
+    return Outcome(values)
+
+
+def reversal(bench):
+    point = run(bench, "point_reversed")
+    rows = {int(row["increment"]): float(row["s11"]) for row in point.history}
+    first, second = exact.armstrong_frederick(0.05, 0.01)
+    element = run(bench, "reversed_tension")
+    area = 100.0 * math.exp(-0.05 - 0.6 * first / exact.YOUNG)
+    area_back = 100.0 * math.exp(-0.04 - 0.6 * second / exact.YOUNG)
+    return Outcome([Value("point: stress at a plastic strain of 0.05, MPa", first, rows[5], 1e-7),
+                    Value("point: stress after 0.01 in reverse, MPa", second, rows[7], 1e-7),
+                    Value("element: stress at 0.05, MPa", first, element.last("pulled_rx", "pull") / area, 1e-3),
+                    Value("element: stress after 0.01 in reverse, MPa", second,
+                          element.last("pulled_rx", "push") / area_back, 1e-3)])
+
+
+def block_on_table(bench):
+    values = []
+    for penalty in ("1e1", "1e3", "1e6"):
+        found = run(bench, "friction_slide", p=penalty)
+        values.append(Value(f"slides, penalty {penalty} N/mm: tangential force, N", 17.28, found.last("table_fx"),
+                            1e-8))
+    for penalty in ("1e1", "1e6"):
+        found = run(bench, "friction_stick", p=penalty)
+        values += [Value(f"16 N, penalty {penalty} N/mm: tangential force, N", 16.0, found.last("table_fx"), 1e-8),
+                   Value(f"16 N, penalty {penalty} N/mm: displacement of the foot, mm", 0.0, found.last("bottom_ux"),
+                         1e-8, absolute=True)]
+    return Outcome(values)
+
+
+def dragged_edge(bench):
+    found = run(bench, "cylinder_drag", p="1e3")
+    values = []
+    for progress in (0.2, 0.4, 0.6, 0.8, 1.0):
+        place = 0.01 + 4.99 * progress
+        values.append(Value(f"force at x = {place:.3f} mm, N", exact.drag(place),
+                            found.at("cylinder_fx", progress, "drag"), 1e-4, absolute=True))
+    return Outcome(values)
+
+
+def strip_on_cylinder(bench):
+    found = run(bench, "capstan")
+    return Outcome([Value("T1/T2", exact.belt(), -1 / found.last("left_rx"), 0.02)])
+
+
+def blank_holder(bench):
+    found = run(bench, "bending_5mm")
+    forces = found.column("blank_holder_fz", "draw")
+    return Outcome([Value("smallest force of the blank-holder in the draw, N", 22600.0, min(forces), 1e-6),
+                    Value("largest force, N", 22600.0, max(forces), 1e-6)])
+
+
+SECTIONS = [
+    Section("V1 Patch tests", """
+A distorted block is pulled along x by 10 %; all nodes must follow the linear displacement field. Elastic: σ = E ln λ,
+lateral stretch λ^-ν. Plastic: isotropic Swift law with the elastic strains, uniform flow; its tolerance is that of
+increments of 0.002. Cases `tests/cases/patch_elastic`, `patch_plastic`, `patch_quadratic`; of `solid_shell`, membrane
+and bending, in the unit test `test_element_solid_shell`.
+""", patch_tests),
+    Section("V2 Rigid rotation", """
+A block stretched by 0.5 % with its sides held is turned by 120 degrees about the diagonal of the axes: its reaction
+along z becomes one along x. Force: A (K ε + 2 Y/3) with the plastic strain from 2 G ε - 3 G p = Y(p). Case
+`tests/cases/rotate_rigidly`. Six zero eigenvalues of the element stiffness, and the tangent against differences (V3):
+unit tests `test_element_*`, `test_system_*`, `test_material_*`.
+""", rigid_motion),
+    Section("V4 Uniaxial tension by Hill's criterion", """
+One element, free lateral faces, Swift's law, at 0, 45 and 90 degrees to rolling. Stress s Y(s ε) at the plastic strain
+ε with the stress ratio s of Hill (1948); r = H/G, (2N - F - G)/(2 (F + G)), H/F; elastic strains included. Cases
+`tests/cases/tension_00`, `tension_45`, `tension_90`; at a point `point_tension`, within 1e-6.
+""", tension),
+    Section("V5 Biaxial tension, plane strain and shear by Hill's criterion", """
+Stress over the flow stress at a material point: 1/√(F + G); in plane strain along rolling with s22 = s11 H/(F + H)
+once the elastic strains no longer count (s22 takes longest; here at a strain of 0.3); 1/√(2N). Hill (1948). Deck
+`tests/verification/points.dat`; forces of an element on the whole path in the cases `equibiaxial` and `plane_strain`.
+""", ratios),
+    Section("V6 Hypoelastic simple shear", """
+Simple shear to 4 of an elastic material in 80 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ,
+s11 = G (1 - cos γ). The integration by the polar decomposition of each step is of second order: 20 steps give -0.7506,
+10 steps -0.7312 at γ = 4. Case `tests/cases/point_shear_elastic`.
+""", elastic_shear),
+    Section("V7 Simple shear with Prager's back-stress", """
+Almost rigid material without isotropic hardening, back-stress dX = 2/3 c D dt, to a shear of 6. Nagtegaal and de Jong
+(1982): the Jaumann rate makes the stress oscillate, s12 = c/3 sin γ, s11 = c/3 (1 - cos γ). Case
+`tests/cases/point_shear_prager`.
+""", kinematic_shear),
+    Section("V8 Tension and compression with a saturating back-stress", """
+Y = 200 + 100 (1 - exp(-10 p)), dX = 50 (60 n - X) dp (Armstrong and Frederick 1966), tension to p = 0.05, then 0.01 in
+reverse. X is integrated exactly along a constant flow direction: at a point in seven steps
+(`tests/cases/point_reversed`), with one element in increments of 0.0002 (`reversed_tension`).
+""", reversal),
+    Section("V18 Block on a table: stick and slip", """
+A block is pressed on a flat table by 120 N and dragged. Coulomb, µ = 0.144: it slips at 17.28 N, and below it does not
+move, for any penalty. Cases `tests/cases/friction_slide`, `friction_stick`; `friction_below` (17.2799 N, an
+equilibrium) and `friction_above` (17.2801 N, none).
+""", block_on_table),
+    Section("V19 Edge drawn over a cylinder", """
+An edge under a load N = 2 N is drawn over the top of a cylinder of radius 10 mm, µ = 0.2. Equilibrium on the slope α,
+sin α = x/R: force -N tan(α - atan µ). At most 7 iterations in an increment, which needs the curvature of the tool in
+the tangent. Case `tests/cases/cylinder_drag`.
+""", dragged_edge),
+    Section("V20 Strip over a cylinder", """
+A thin elastic strip slides over a quarter of a fixed cylinder, µ = 0.144. Euler, Eytelwein: T1/T2 = exp(µ π/2). Case
+`tests/cases/capstan`; other thicknesses and penalties in [capstan.md](reports/capstan.md).
+""", strip_on_cylinder),
+    Section("V23 Force of the blank-holder", """
+The [bending test](reports/bending_test.md) on its mesh (a), the first 5 mm of the draw: the force on the pressed tool
+is the prescribed one in every increment. Case `tests/cases/bending_5mm`.
+""", blank_holder),
+]

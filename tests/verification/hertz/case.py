@@ -1,0 +1,93 @@
+"""A rigid cylinder on an elastic half-space: half-width and largest pressure of the contact (Hertz)."""
+import math
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from frame import Mesh, Outcome, Section, Value, geometric  # noqa: E402
+
+RADIUS, LOAD, YOUNG, POISSON = 10.0, 500.0, 2.1e5, 0.3
+WIDTH = math.sqrt(4 * LOAD * RADIUS * (1 - POISSON**2) / (math.pi * YOUNG))
+PRESSURE = 2 * LOAD / (math.pi * WIDTH)
+FINE = 0.3  # the elements are equal up to here, mm
+
+
+def run(bench, element, n):
+    """Run with n elements up to FINE along x and z; return the run, and place and force of the nodes, per mm of y."""
+    step = FINE / n
+    outer = [FINE + place for place in geometric(n, 1.15 * step, 8.0 - FINE)]
+    places = [step * i for i in range(n)] + outer
+    words = [" ".join(f"{x / 8:.9g}" for x in places), " ".join(f"{1 - x / 8:.9g}" for x in reversed(places))]
+    found = bench.run(f"hertz_{element}_{n}", HERE / "case.dat",
+                      {"element": element, "nx": len(places) - 1, "nz": len(places) - 1, "x_lines": words[0],
+                       "z_lines": words[1]})
+    from fields import Fields  # needs h5py
+    fields = Fields(found.folder)
+    step = fields.count - 1
+    forces = {}
+    for (x, _, z), force in zip(fields.points(0), fields.values(step, "contact_force")[0]):
+        if abs(z) < 1e-6 and force[2]:
+            forces[round(float(x), 6)] = forces.get(round(float(x), 6), 0.0) - float(force[2])
+    return found, forces
+
+
+def measure(element, n, forces):
+    """Return half-width, from load and second moment of the nodal forces, and pressure in the middle."""
+    load = sum(forces.values())
+    width = 2 * math.sqrt(sum(force * x * x for x, force in forces.items()) / load)
+    return width, forces[0.0] / (FINE / n) * (6 if element == "hex27" else 2)
+
+
+def values(bench):
+    """Compare half-width and pressure."""
+    result = []
+    for element, n in (("hex8", 18), ("solid_shell", 9), ("hex27", 5)):
+        width, pressure = measure(element, n, run(bench, element, n)[1])
+        result += [Value(f"`{element}`, {n} elements to 0.3 mm: half-width of the contact, mm", WIDTH, width, 0.03),
+                   Value(f"`{element}`: pressure in the middle, MPa", PRESSURE, pressure, 0.03)]
+    return Outcome(result)
+
+
+def exact_pressure(x):
+    """Return the pressure at a place."""
+    return PRESSURE * math.sqrt(max(0.0, 1 - (x / WIDTH) ** 2))
+
+
+def study(bench):
+    """Refine: half-width of the contact."""
+    rows, points = [], []
+    for element, numbers in (("hex8", (5, 9, 18, 27)), ("solid_shell", (5, 9, 18)), ("hex27", (3, 5, 9))):
+        for n in numbers:
+            found, forces = run(bench, element, n)
+            rows.append(Mesh(element, f"{n} elements to 0.3 mm", 1 / n, found.unknowns(), found.seconds, WIDTH,
+                             measure(element, n, forces)[0]))
+            if element == "hex8" and n in (9, 27):
+                pairs = [(x, force * n / FINE * (2 if x == 0 else 1)) for x, force in sorted(forces.items())]
+                points.append((n, pairs))
+    return Outcome(study=rows, pictures=[("hertz.png", lambda axes: draw(axes, points))])
+
+
+def draw(axes, points):
+    """Draw the pressure over the place."""
+    places = [WIDTH * i / 200 for i in range(201)]
+    axes.plot(places, [exact_pressure(x) for x in places], color="0.3", linewidth=1.0, label="Hertz")
+    for n, pairs in points:
+        axes.plot(*zip(*pairs), "o", markersize=4, label=f"hex8, {n} elements to 0.3 mm")
+    axes.set_xlabel("x (mm)")
+    axes.set_ylabel("pressure (MPa)")
+    axes.legend(frameon=False)
+
+
+SECTIONS = [
+    Section("V16 Cylinder on a half-space (Hertz)", """
+A rigid cylinder of radius R = 10 mm is pressed by P = 500 N/mm on an elastic half-space in plane strain, without
+friction. Hertz: half-width a = √(4 P R/(π E*)), E* = E/(1 - ν²), largest pressure 2 P/(π a), distribution an ellipse.
+The half-space is a quarter of 8 x 8 mm, its elements equal up to 0.3 mm. The half-width is that of the ellipse with the
+second moment of the nodal forces; the pressure is the force of the middle node over its part of the face. Deck
+`tests/verification/hertz/case.dat`; `hex20` cannot be in contact.
+""", values, slow=True),
+    Section("V16 Cylinder on a half-space: refinement and elements", """
+Half-width of the contact.
+""", study, slow=True, picture="hertz_elements.png"),
+]

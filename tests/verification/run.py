@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Run the cases of the verification manual, docs/verification.md, and compare them with it.
+
+    run.py --program build/release/dd3imp --work build/verification              the quick sections
+    run.py --program build/release/dd3imp --work build/verification --slow       all sections
+    run.py --program build/release/dd3imp --work build/verification --slow --write
+
+Every value must be within its tolerance of the expected one, and the same on the page: the computed values of the table
+within a fifth of their tolerance, those of the studies of refinement within 1 %. --write puts the sections that were
+run, and their pictures, into the page. --only WORD runs the sections with this word in their heading.
+
+A section is an entry of SECTIONS in gathered.py, which gathers cases of tests/cases, or in the file case.py of a
+folder here, beside its deck.
+"""
+import argparse
+import pathlib
+import re
+import sys
+
+from frame import HERE, ROOT, STUDY_HEAD, VALUE_HEAD, Bench, Problem, load, study_rows
+
+PAGE = ROOT / "docs" / "verification.md"
+PICTURES = ROOT / "docs" / "images" / "verification"
+HEADING = re.compile(r"^## ", re.MULTILINE)
+ELEMENTS = ["hex8", "solid_shell", "hex20", "hex27"]
+ACCURATE = 0.02
+SUMMARY = ["section", "values", "largest error, of its tolerance", "quantity"]
+FIXED = ["Summary", "Elements side by side"]
+START = """# Verification manual
+
+Cases with a closed form, an independent computation or a published figure: what is expected, what the program gives,
+and the error. Where a deviation has another cause than the mesh, the section says which. Each case is a folder with its
+input file; expected values are computed by scripts that do not use the program.
+
+    tests/verification/run.py --program build/release/dd3imp --work build/verification --slow --write
+
+runs all cases and writes this page; without `--slow` the quick ones only, in less than a minute. The tests
+`verification` and `verification_slow` compare the page with the program: each error must be within the tolerance.
+
+Forming tests with measured values are in the reports, such as the [bending test](reports/bending_test.md).
+
+The times in the studies of refinement are those of one thread of a loaded machine: compare within a table. Unknowns are
+three for each node. The order is that of the error between a mesh and the coarser one above it.
+"""
+BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements below;
+none where the meshes tried do not reach it. No element is the best everywhere: bending of a sheet wants `solid_shell`,
+plastic flow of a thick body a mean dilatation, smooth elastic stress the quadratic elements.
+"""
+
+
+def sections():
+    """Return all sections in the order of the page."""
+    found = []
+    for file in [HERE / "gathered.py", *sorted(HERE.glob("*/case.py"))]:
+        found += load(file).SECTIONS
+    return sorted(found, key=lambda section: (int(re.match(r"V(\d+)", section.heading)[1]), section.slow))
+
+
+def table(head, rows):
+    """Return a table of the page."""
+    lines = ["| " + " | ".join(row) + " |" for row in [head, *rows]]
+    return "\n".join([lines[0], "|" + "---|" * len(head), *lines[1:]]) + "\n"
+
+
+def render(section, outcome):
+    """Return the text of a section."""
+    parts = [f"## {section.heading}\n", section.text.strip() + "\n"]
+    if outcome.values:
+        parts.append(table(VALUE_HEAD, [value.row() for value in outcome.values]))
+    if outcome.study:
+        parts.append(table(STUDY_HEAD, study_rows(outcome.study)))
+    pictures = [name for name, _ in outcome.pictures] + ([section.picture] if section.picture else [])
+    parts += [f"![{section.heading}](images/verification/{name})\n" for name in pictures]
+    if section.after:
+        parts.append(section.after.strip() + "\n")
+    return "\n".join(parts)
+
+
+def cells(text, head):
+    """Return the rows of the tables with a head in a part of the page, as lists of cells."""
+    rows, inside = [], False
+    for line in text.splitlines():
+        if line == "| " + " | ".join(head) + " |":
+            inside = True
+        elif not line.startswith("|"):
+            inside = False
+        elif inside and not line.startswith("|---"):
+            rows.append([cell.strip() for cell in line.strip("|").split("|")])
+    return rows
+
+
+def size(cell):
+    """Return a number of a table, per cent as a fraction."""
+    return float(cell.removesuffix(" %")) / (100 if cell.endswith("%") else 1)
+
+
+def summary(parts):
+    """Return the table of the sections with their largest errors."""
+    rows = []
+    for heading, text in parts.items():
+        values = cells(text, VALUE_HEAD)
+        anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        link = f"[{heading}](#{anchor})"
+        if values:
+            worst = max(values, key=lambda row: abs(size(row[3]) / size(row[4])))
+            rows.append([link, str(len(values)), f"{100 * abs(size(worst[3]) / size(worst[4])):.0f} %", worst[0]])
+        else:
+            rows.append([link, "", "", "study of refinement"])
+    return table(SUMMARY, rows)
+
+
+def comparison(parts):
+    """Return the table of the coarsest meshes that are accurate enough, by case and element."""
+    rows = []
+    for heading, text in parts.items():
+        study = [dict(zip(STUDY_HEAD, row)) for row in cells(text, STUDY_HEAD)]
+        cheapest = []
+        for element in ELEMENTS:
+            good = [row for row in study if row["element"] == f"`{element}`" and abs(size(row["error"])) <= ACCURATE]
+            cheapest.append(f"{good[0]['unknowns']}; {good[0]['seconds']} s" if good else "")
+        if study:
+            rows.append([heading.partition(":")[0], *cheapest])
+    return table(["case", *(f"`{element}`" for element in ELEMENTS)], rows)
+
+
+def old_parts():
+    """Return the sections of the page by heading."""
+    text = PAGE.read_text(encoding="utf-8") if PAGE.exists() else ""
+    return {part.split("\n", 1)[0]: "## " + part for part in HEADING.split(text)[1:]}
+
+
+def differences(section, outcome, page):
+    """Yield what is wrong with a section: errors beyond the tolerance, and other values on the page."""
+    for value in outcome.values:
+        if value.fails():
+            yield f"{value.quantity}: {value.found:.9g}, expected {value.expected:.9g}, tolerance {value.row()[4]}"
+    old = {row[0]: row for row in cells(page, VALUE_HEAD)}
+    if list(old) != [value.quantity for value in outcome.values]:
+        yield "the page has other quantities"
+    for value in outcome.values:
+        if value.quantity in old:
+            allowed = 0.2 * value.tolerance * (1 if value.absolute else abs(value.expected))
+            if abs(size(old[value.quantity][2]) - value.found) > allowed + 1e-5 * abs(value.found):
+                yield f"{value.quantity}: {value.found:.6g}, on the page {old[value.quantity][2]}"
+    old = cells(page, STUDY_HEAD)
+    for row, new in zip(old, study_rows(outcome.study)):
+        if row[:3] != new[:3] or abs(size(row[4]) - size(new[4])) > 0.01 * abs(size(new[4])):
+            yield f"{' '.join(new[:2])}: {new[4]}, on the page {' '.join(row[:2])}: {row[4]}"
+    if len(old) != len(outcome.study):
+        yield f"{len(outcome.study)} meshes, on the page {len(old)}"
+
+
+def figure(name, painters):
+    """Draw a picture of one or more axes side by side."""
+    import matplotlib  # only here: the tests need no picture
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    drawing, axes = plt.subplots(1, len(painters), figsize=[6.4 if len(painters) == 1 else 9.0, 3.8], sharey=True,
+                                 squeeze=False, layout="constrained")
+    for paint, own in zip(painters, axes[0]):
+        paint(own)
+        own.grid(True, color="0.88", linewidth=0.7)
+        own.spines[["top", "right"]].set_visible(False)
+    drawing.savefig(PICTURES / name, dpi=90)
+    plt.close(drawing)
+
+
+def draw_study(axes, rows, column):
+    """Draw the error of the rows of a study over the unknowns or seconds, by element."""
+    for element in dict.fromkeys(row[0] for row in rows):
+        own = [row for row in rows if row[0] == element]
+        axes.loglog([float(row[STUDY_HEAD.index(column)]) for row in own],
+                    [100 * max(abs(size(row[STUDY_HEAD.index("error")])), 1e-7) for row in own], "o-", linewidth=1.4,
+                    markersize=4, label=element.strip("`"))
+    axes.set_xlabel(column)
+    if column == "unknowns":
+        axes.set_ylabel("error (%)")
+        axes.legend(frameon=False)
+
+
+def draw(section, text, outcome=None):
+    """Draw the pictures of a section; its study from the table on the page."""
+    for name, paint in outcome.pictures if outcome else []:
+        figure(name, [paint])
+    rows = cells(text, STUDY_HEAD)
+    if section.picture and rows:
+        figure(section.picture, [lambda axes, column=column: draw_study(axes, rows, column)
+                                 for column in ("unknowns", "seconds")])
+
+
+def write(parts):
+    """Write the page."""
+    start = [START, f"## {FIXED[0]}\n", summary(parts), f"## {FIXED[1]}\n", BESIDE, comparison(parts)]
+    PAGE.write_text("\n".join([*start, *parts.values()]), encoding="utf-8")
+
+
+def main():
+    """Run the sections; exit code 1 if one is wrong."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser.add_argument("--slow", action="store_true", help="run all sections")
+    parser.add_argument("--write", action="store_true", help="write the page and the pictures")
+    parser.add_argument("--only", default="", help="a word of the headings of the sections to run")
+    options = parser.parse_args()
+    bench, old, parts, wrong = Bench(options.program, options.work), old_parts(), {}, []
+    for section in sections():
+        page = old.get(section.heading, "")
+        if options.only not in section.heading or section.slow and not options.slow:
+            parts[section.heading] = page.rstrip("\n") + "\n"
+            if options.write and options.slow:
+                draw(section, page)
+            continue
+        try:
+            outcome = section.produce(bench)
+        except Problem as problem:
+            sys.exit(f"{section.heading}: {problem}")
+        text = parts[section.heading] = render(section, outcome)
+        print(text, flush=True)
+        if options.write:
+            draw(section, text, outcome)
+            page = text
+        wrong += [f"{section.heading}: {line}" for line in differences(section, outcome, page)]
+    if options.write:
+        write({heading: text for heading, text in parts.items() if text.strip()})
+    elif not options.only and [heading for heading in old if heading not in FIXED] != list(parts):
+        wrong.append("the page has other sections")
+    sys.exit("\n".join(wrong) if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,239 @@
+#!/usr/bin/env python3
+"""Make a tool surface, a .bez file, from CAD, from a mesh or STL, or from a profile.
+
+    tool.py die.step die.bez --toward 0 0 1             STEP, IGES, BREP
+    tool.py die.stl die.bez --toward 0 0 1              STL, .msh, .inp, LS-DYNA .k, VTK
+    tool.py die.shape die.bez                           a profile of lines and arcs, a box with rounded corners
+    tool.py punch.step die.bez --toward 0 0 -1 --offset 1.1 --turn     a die from a punch
+
+CAD faces become quadrilateral patches whose nodes lie on the CAD, finer until the measured distance is below
+--tolerance. Facets become curved patches (Nagata) with normals estimated at their nodes; their distance is an
+estimate. Shapes are exact; docs/tools.md describes their file. The report tells what was found; a surface with folds,
+edges of more than two patches, free edges that nearly coincide, or a missed tolerance is refused: exit code 2.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+from scripts import Problem, Progress, need, run
+
+need("numpy", "scipy")
+import numpy as np  # noqa: E402
+from tools import moved, report, sides  # noqa: E402
+from tools.cad import SUFFIXES as CAD  # noqa: E402
+from tools.facet_files import SUFFIXES as FACETS  # noqa: E402
+from tools.joints import turn  # noqa: E402
+from tools.surface import turned, write  # noqa: E402
+
+# Largest distance of a surface from CAD, and estimated one of facets, mm.
+TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
+
+
+def from_shapes(options, _):
+    """Return the surface of a shape file, the number of its parts and the lines of the report."""
+    from tools.joints import find_joints
+    from tools.shapes import read_shapes
+    if options.part:
+        raise Problem(f"{options.source}: a shape file has no parts")
+    surface = read_shapes(options.source)
+    surface.net[..., :3] *= options.scale
+    sign, kept, found = face_sheet(surface, find_joints(surface.net), options)
+    if options.offset:
+        # A face of a shape file is a block, whose patches are turned together.
+        blocks = range(len(surface.names))
+        distances = [options.offset / options.scale * sign[np.argmax(surface.face == block)] for block in blocks]
+        surface = read_shapes(options.source, distances)
+        surface.net[..., :3] *= options.scale
+    surface = sides.apply(surface, sign, kept)
+    surface.notes += found
+    return surface, 0, [("distance", "0: exact")], []
+
+
+def from_cad(options, progress):
+    """Return the surface of a CAD file, the number of its parts and the lines of the report."""
+    need("gmsh")
+    from tools import cad
+    from tools.joints import find_joints
+    with cad.session() as gmsh:
+        model = cad.read_cad(gmsh, options.source, options, progress)
+        surface = cad.surface_of(model)
+        sign, kept, found = face_sheet(surface, find_joints(surface.net), options)
+        surface = sides.apply(surface, sign, kept)
+        surface.notes += found
+        distance = model.distance
+        if options.offset:
+            model.nodes, model.uv, model.labels = (part[kept] for part in (model.nodes, model.uv, model.labels))
+            model.face = surface.face
+            normals = cad.normals(gmsh, model)
+            # The normals of the CAD get the sides of the patches.
+            side = np.sign((cad.middle_normals(model) * normals[:, 1, 1]).sum(axis=1)) * sign[kept]
+            normals *= side[:, None, None, None]
+            shift = moved.shift_of(model.labels.ravel(), normals.reshape(-1, 3), options.offset)
+            surface.net = cad.surface_of(model, model.nodes + shift.reshape(model.nodes.shape)).net
+            surface.net = turn(surface.net, sign[kept])
+            distance = cad.measure(gmsh, model, surface.net, options.offset)
+    return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
+
+
+def from_facets(options, progress):
+    """Return the surface of a file of facets, the number of its parts and the lines of the report."""
+    from tools import facets
+    mesh = facets.load(options)
+    progress(0.3)
+    face_facets(mesh, options)
+    surface, distance, angle = facets.patches(mesh, options.offset)
+    lines, errors = judge_distance(surface, distance, options, "estimated")
+    lines.append(("facets", f"{len(mesh.facets)}, turned by {angle:.3g} degrees at most at smooth edges"))
+    return surface, len(np.unique(mesh.part)), lines, errors
+
+
+def face_facets(mesh, options):
+    """Turn the facets of a mesh to the sheet and leave out those that face away."""
+    from tools import facets
+    from tools.mend import turn_facets
+    area, centre, region, sign, body, is_open, twisted = facets.sides_of(mesh)
+    sign, kept, _, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
+    if not kept.any():
+        raise nothing_faces(options)
+    if len(twisted):
+        raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip, near x y z = "
+                      + report.where(centre[twisted[0]]))
+    turned_facets = facets.turned_number(sign, body)
+    if turned_facets:
+        notes.append(f"turned: {report.plural(turned_facets, 'facet')} against the others of their body")
+    if not kept.all():
+        notes.append(f"left out: {report.plural(int((~kept).sum()), 'facet')} that face away from --toward")
+    turn_facets(mesh, sign)
+    facets.keep(mesh, kept)
+    mesh.notes += notes
+
+
+def direction(options):
+    """Return the unit vector of --toward, or None."""
+    return None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
+
+
+def nothing_faces(options):
+    """Return the Problem of a --toward that no face has."""
+    return Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
+
+
+def judge_distance(surface, distance, options, how):
+    """Return the line of the report on the distance of each face, and an error if one misses the tolerance."""
+    used = np.unique(surface.face)
+    largest = distance[used].max()
+    lines = [("distance", f"{how}: {1e3 * largest:.2g} µm at most ({surface.names[used[distance[used].argmax()]]})")]
+    allowed = max(options.tolerance, options.sew or 0.0)
+    late = used[distance[used] > allowed]
+    if not len(late):
+        return lines, []
+    order = late[np.argsort(-distance[late])]
+    return lines, [f"{report.plural(len(late), 'face')} farther than {allowed:g} mm from the "
+                   f"{'CAD' if how == 'measured' else 'true surface, as the facets are too coarse'}, up to "
+                   f"{distance[order[0]]:.3g} mm: {report.named(surface, order)}; "
+                   f"--tolerance {report.up(distance[order[0]]):g} accepts it"]
+
+
+def face_sheet(surface, joints, options):
+    """Return the signs of the patches, which are kept, and lines for the report."""
+    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options))
+    if not kept.any():
+        raise nothing_faces(options)
+    if len(twisted):
+        patches = np.concatenate([joints.first[twisted], joints.second[twisted]]) // 4
+        raise Problem(f"{options.source}: the surface has one side only, like a Möbius strip: "
+                      + report.named(surface, surface.face[patches]))
+    if turned_faces:
+        notes.append(f"turned: {report.plural(len(turned_faces), 'face')} against the others of the body: "
+                     + report.named(surface, turned_faces))
+    away = len(np.unique(surface.face)) - len(np.unique(surface.face[kept]))
+    if away:
+        notes.append(f"left out: {report.plural(away, 'face')} that face away from --toward")
+    return sign, kept, notes
+
+
+def reader_of(path):
+    """Return the kind of a source by its ending."""
+    ending = path.suffix.lower()
+    if ending in CAD:
+        return "cad", from_cad
+    if ending == ".shape":
+        return "shape", from_shapes
+    if ending in FACETS:
+        return "facets", from_facets
+    raise Problem(f"{path}: unknown kind of file; expected one of {' '.join((*CAD, *FACETS))} .shape")
+
+
+def command_line():
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source", type=Path, help="CAD, mesh or shape file")
+    parser.add_argument("target", type=Path, nargs="?", help=".bez file to write; without it there is a report only")
+    parser.add_argument("--toward", type=float, nargs=3, metavar=("X", "Y", "Z"),
+                        help="direction from the tool to the sheet: chooses the side of its normals; faces that look "
+                             "the other way are left out")
+    parser.add_argument("--scale", type=float, default=1.0, help="factor on the coordinates, 1000 for metres")
+    parser.add_argument("--sew", type=float, metavar="mm", help="join free edges and nodes up to this far apart")
+    parser.add_argument("--tolerance", type=float, metavar="mm",
+                        help="largest distance from the CAD (0.002); of facets, an estimate (0.02)")
+    parser.add_argument("--offset", type=float, default=0.0, metavar="mm",
+                        help="move the surface along its normals, towards the sheet if positive")
+    parser.add_argument("--turn", action="store_true", help="turn the normals at the end: a die from a punch")
+    parser.add_argument("--part", action="append", metavar="NAME",
+                        help="name or number of a part to take; may be repeated (default: all)")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the patches with their normals")
+    return parser
+
+
+def arguments():
+    """Return the options after their checks."""
+    parser = command_line()
+    options = parser.parse_args()
+    if not options.source.exists():
+        raise Problem(f"{options.source}: no such file")
+    if not options.source.is_file():
+        raise Problem(f"{options.source}: not a file")
+    if not options.source.stat().st_size:
+        raise Problem(f"{options.source}: the file is empty")
+    if options.target and options.target.suffix != ".bez":
+        raise Problem(f"{options.target}: the name of a tool surface ends in .bez")
+    if options.toward and not np.any(options.toward):
+        parser.error("--toward takes a direction")
+    for name in ("scale", "sew", "tolerance"):
+        if getattr(options, name) is not None and not 0 < getattr(options, name) < np.inf:
+            parser.error(f"--{name} takes a positive number")
+    options.kind, options.reader = reader_of(options.source)
+    options.tolerance = options.tolerance or TOLERANCE[options.kind]
+    return options
+
+
+def main():
+    """Read, judge, write."""
+    options = arguments()
+    progress = Progress(options.source.name)
+    surface, parts, lines, errors = options.reader(options, progress)
+    progress.end()
+    if options.turn:
+        surface.net = turned(surface.net)
+    result, joints = report.judge(surface, options, parts)
+    print(f"{options.target or options.source}")
+    for title, text in [*lines, *(("", note) for note in surface.notes)]:
+        result.add(title, text)
+    result.errors += errors
+    print("\n".join(result.lines))
+    sys.stdout.flush()
+    if options.picture:
+        from tools.picture import draw
+        draw(surface, joints, options.picture)
+    for kind, texts in (("warning", result.warnings), ("error", result.errors)):
+        for text in texts:
+            print(f"{kind}: {options.source}: {text}", file=sys.stderr)
+    if result.errors:
+        sys.exit(2)
+    if options.target:
+        words = [str(word) for word in sys.argv[1:]]
+        write(options.target, surface, [f"{options.source.name}: tool.py {' '.join(words)}"])
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,355 @@
+"""CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package.
+
+The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each
+is one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
+regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
+below the tolerance.
+"""
+import os
+import sys
+from collections import defaultdict
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+from scripts import Problem
+from tools.closest import closest
+from tools.division import Division
+from tools.joints import find_joints, folded, kinks, to_chords
+from tools.report import REACH, up
+from tools.surface import Surface, areas_at, from_nodes, grid, points_at
+
+SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+# Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
+NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
+MOST_ROUNDS = 8
+# Kink inside a face above which it is divided further, degrees, in this many rounds.
+KINK, KINK_ROUNDS = 0.5, 2
+# Points of the distance: between the nodes.
+PLACES = grid(5)
+
+
+@dataclass
+class Model:
+    """What was meshed: patches' nodes (patch, v, u, 3), their parameters on the CAD's face (patch, v, u, 2; NaN where
+    unknown), node numbers and faces; per face its tag, its name and its largest distance from the CAD, mm."""
+
+    nodes: np.ndarray = None
+    uv: np.ndarray = None
+    labels: np.ndarray = None
+    face: np.ndarray = None
+    tags: list = field(default_factory=list)
+    names: list = field(default_factory=list)
+    distance: np.ndarray = None
+    parts: list = field(default_factory=list)
+    notes: list = field(default_factory=list)
+
+
+@contextmanager
+def silence():
+    """Discard what OpenCASCADE prints on the standard output."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with open(os.devnull, "wb") as null:
+        os.dup2(null.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+@contextmanager
+def session():
+    """Give Gmsh, without its messages."""
+    import gmsh
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def load(gmsh, path):
+    """Read the shapes of a file."""
+    gmsh.clear()
+    # Shapes are kept as they are; the lengths become mm by the unit that the file states.
+    try:
+        with silence():
+            gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+            gmsh.model.occ.synchronize()
+    except Exception as error:  # Gmsh raises nothing more specific
+        raise Problem(f"{path}: not a CAD file that OpenCASCADE reads: {error}") from None
+    if not gmsh.model.getEntities(2):
+        kind = "curves or points only" if gmsh.model.getEntities(0) else "no shapes"
+        raise Problem(f"{path}: no faces; the file holds {kind}")
+
+
+def free_edges(gmsh):
+    """Return the edges with one face, those without length and seams left out."""
+    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
+    return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
+
+
+def refuse_gaps(gmsh, path):
+    """Refuse free edges that run beside each other: the faces were not joined."""
+    single = free_edges(gmsh)
+    if not single:
+        return
+    fine = []
+    for tag in single:
+        low, high = gmsh.model.getParametrizationBounds(1, tag)
+        fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
+    worst, where, count = 0.0, None, 0
+    for i, (tag, points) in enumerate(zip(single, fine)):
+        limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
+        for j, other in enumerate(fine):
+            gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
+            if gap <= limit:
+                count += 1
+                if gap >= worst:
+                    worst, where = gap, (tag, single[j])
+    if count:
+        faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
+        raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
+                      f"{faces[0]} and {faces[1]}; --sew {up(worst):g} joins them")
+
+
+def is_seam(gmsh, edge):
+    """Tell whether the only face of an edge has it on both sides."""
+    up = gmsh.model.getAdjacencies(1, edge)[0]
+    both = [abs(tag) for _, tag in gmsh.model.getBoundary([(2, up[0])], combined=False, oriented=True)]
+    return both.count(edge) > 1
+
+
+def sew(gmsh, path, tolerance, wanted):
+    """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
+    before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
+    if not before:
+        return []
+    faces = len(gmsh.model.getEntities(2))
+    try:
+        with silence():
+            gmsh.model.occ.healShapes([], tolerance, False, False, False, True, True)
+            gmsh.model.occ.synchronize()
+        after = len(free_edges(gmsh))
+        lost = faces - len(gmsh.model.getEntities(2))
+    except Exception as error:
+        if wanted:
+            raise Problem(f"{path}: the faces cannot be sewn within {tolerance:g} mm: {error}") from None
+        after, lost = before, 0
+    if after >= before or lost > 0 and not wanted:
+        load(gmsh, path)
+        return []
+    return [f"sewn: {before - after} of {before} free edges of the CAD, within {tolerance:g} mm"]
+
+
+def part_names(gmsh):
+    """Return the parts of the model: the name and the faces of each solid, or of each set of connected faces."""
+    parts = []
+    for number, (_, tag) in enumerate(gmsh.model.getEntities(3), 1):
+        name = gmsh.model.getEntityName(3, tag).split("/")[-1] or f"solid {number}"
+        faces = {abs(face) for _, face in gmsh.model.getBoundary([(3, tag)], combined=False, oriented=False)}
+        parts.append((name, faces))
+    inside = set().union(*(faces for _, faces in parts))
+    loose = [tag for _, tag in gmsh.model.getEntities(2) if tag not in inside]
+    edges = defaultdict(list)
+    for tag in loose:
+        for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+            edges[abs(edge)].append(tag)
+    while loose:
+        group, waiting = set(), [loose[0]]
+        while waiting:
+            tag = waiting.pop()
+            if tag in group:
+                continue
+            group.add(tag)
+            for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+                waiting += edges[abs(edge)]
+        name = next((gmsh.model.getEntityName(2, tag).split("/")[-1] for tag in sorted(group)
+                     if gmsh.model.getEntityName(2, tag)), "")
+        parts.append((name or f"shell {len(parts) + 1}", group))
+        loose = [tag for tag in loose if tag not in group]
+    return parts
+
+
+def choose(path, parts, wanted):
+    """Return the tags of the faces of the parts wanted, by name or number; all by default."""
+    if not wanted:
+        return sorted(set().union(*(faces for _, faces in parts)))
+    chosen = set()
+    for word in wanted:
+        found = [faces for number, (name, faces) in enumerate(parts, 1)
+                 if word.lower() == name.lower() or word == str(number)]
+        if not found:
+            there = ", ".join(f"{number} '{name}'" for number, (name, _) in enumerate(parts, 1))
+            raise Problem(f"{path}: no part '{word}'; there are {there}")
+        chosen.update(*found)
+    return sorted(chosen)
+
+
+def doubled(gmsh, tags):
+    """Return the faces that lie on an earlier one: same area, centre and box."""
+    seen, result = {}, []
+    for tag in tags:
+        box = np.array(gmsh.model.getBoundingBox(2, tag))
+        size = np.linalg.norm(box[3:] - box[:3])
+        centre = np.array(gmsh.model.occ.getCenterOfMass(2, tag))
+        area = gmsh.model.occ.getMass(2, tag)
+        for other, (o_box, o_centre, o_area) in seen.items():
+            if max(np.abs(box - o_box).max(), np.abs(centre - o_centre).max()) <= 1e-5 * size \
+                    and abs(area - o_area) <= 1e-5 * area:
+                result.append((tag, other))
+                break
+        else:
+            seen[tag] = box, centre, area
+    return result
+
+
+def collect(gmsh, model):
+    """Take the quadrilaterals of the mesh."""
+    label, xyz, _ = gmsh.model.mesh.getNodes()
+    place = np.zeros(int(label.max()) + 1, int)
+    place[label.astype(int)] = np.arange(len(label))
+    xyz = np.reshape(xyz, (-1, 3))
+    labels, parameters, face = [], [], []
+    for index, tag in enumerate(model.tags):
+        types, _, members = gmsh.model.mesh.getElements(2, tag)
+        table = parameters_of(gmsh, tag, len(place))
+        for kind, member in zip(types, members):
+            if kind != 10:
+                raise Problem(f"{model.names[index]}: Gmsh left elements that are no quadrilaterals")
+            member = np.reshape(member, (-1, 9)).astype(int)[:, NINE]
+            labels.append(member)
+            uv = table[member]
+            uv[np.isnan(uv).any(axis=(1, 2, 3))] = np.nan
+            parameters.append(uv)
+            face.append(np.full(len(member), index))
+    if not labels:
+        raise Problem("Gmsh made no mesh of the faces")
+    model.labels, model.uv, model.face = (np.concatenate(part) for part in (labels, parameters, face))
+    model.nodes = xyz[place[model.labels]]
+
+
+def parameters_of(gmsh, tag, count):
+    """Return the parameters of the nodes on a face, by label; NaN for other nodes and for those on a seam."""
+    table = np.full((count, 2), np.nan)
+    bounds = [abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
+    for edge in (edge for edge in bounds if bounds.count(edge) == 1):
+        known, _, t = gmsh.model.mesh.getNodes(1, edge, includeBoundary=True, returnParametricCoord=True)
+        if len(known) == len(t):
+            table[known.astype(int)] = np.reshape(gmsh.model.reparametrizeOnSurface(1, edge, t, tag), (-1, 2))
+    known, _, uv = gmsh.model.mesh.getNodes(2, tag, includeBoundary=False, returnParametricCoord=True)
+    if 2 * len(known) == len(uv):
+        table[known.astype(int)] = np.reshape(uv, (-1, 2))
+    return table
+
+
+def measure(gmsh, model, net, shift=0.0):
+    """Return the largest distance of the patches from the CAD for each face, mm.
+
+    With a shift, the distance from the surface at that distance along the patches' normals.
+    """
+    distance = np.zeros(len(model.tags))
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        if not len(chosen):
+            continue
+        point = points_at(net[chosen], *PLACES)
+        foot = closest(gmsh, tag, point, model.uv[chosen])[0]
+        if shift:
+            normal = areas_at(net[chosen], *PLACES)
+            normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-300)
+            distance[index] = np.abs(((point - foot) * normal).sum(axis=2) - shift).max()
+        else:
+            distance[index] = np.linalg.norm(foot - point, axis=2).max()
+    return distance
+
+
+def normals(gmsh, model):
+    """Return the unit normals of the CAD at the nodes (patch, v, u, 3)."""
+    result = np.zeros_like(model.nodes)
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        if len(chosen):
+            points = model.nodes[chosen].reshape(-1, 9, 3)
+            uv = closest(gmsh, tag, points, model.uv[chosen], at_nodes=True)[1]
+            normal = np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3, 3, 3))
+            result[chosen] = normal
+    return result
+
+
+def middle_normals(model):
+    """Return normals in the middle of the patches, not of unit length."""
+    nodes = model.nodes
+    return np.cross(nodes[:, 1, 2] - nodes[:, 1, 0], nodes[:, 2, 1] - nodes[:, 0, 1])
+
+
+def worst_kinks(net, face, count):
+    """Return the largest kink inside each face, degrees."""
+    joints = find_joints(net)
+    angle = kinks(net, joints)
+    a, b = face[joints.first // 4], face[joints.second // 4]
+    result = np.zeros(count)
+    np.maximum.at(result, a[a == b], angle[a == b])
+    return result
+
+
+def mesh_within(gmsh, model, tolerance, progress):
+    """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
+    division = Division(gmsh, model.tags)
+    best = None
+    for rounds in range(MOST_ROUNDS):
+        failed = division.mesh(gmsh)
+        if failed:
+            if rounds == MOST_ROUNDS - 1:
+                raise Problem("Gmsh cannot mesh " + ", ".join(model.names[model.tags.index(tag)] for tag in failed))
+            continue
+        collect(gmsh, model)
+        net = from_nodes(model.nodes)
+        model.distance = measure(gmsh, model, net)
+        kink = worst_kinks(net, model.face, len(model.tags))
+        bent = set(model.face[folded(net)].tolist())
+        late = model.distance > tolerance
+        progress((rounds + 1) / MOST_ROUNDS)
+        if rounds >= KINK_ROUNDS:
+            kink[:] = 0.0
+        score = (len(bent), late.sum(), (kink > KINK).sum())
+        if best is None or score < best[0]:
+            best = score, model.nodes, model.uv, model.labels, model.face, model.distance
+        if not any(score):
+            break
+        if not division.refine(model.distance / tolerance, kink / KINK, bent):
+            break
+    _, model.nodes, model.uv, model.labels, model.face, model.distance = best
+
+
+def read_cad(gmsh, path, options, progress):
+    """Return the model of a CAD file, meshed within the tolerance."""
+    model = Model()
+    load(gmsh, path)
+    model.notes += sew(gmsh, path, options.sew or options.tolerance, options.sew is not None)
+    if options.scale != 1.0:
+        gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
+        gmsh.model.occ.synchronize()
+    refuse_gaps(gmsh, path)
+    model.parts = part_names(gmsh)
+    tags = choose(path, model.parts, options.part)
+    twins = doubled(gmsh, tags)
+    if twins:
+        model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
+    model.tags = [tag for tag in tags if tag not in {twin for twin, _ in twins}]
+    others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]
+    owner = {tag: name for name, faces in model.parts for tag in faces}
+    model.names = [f"face {tag} ({gmsh.model.getType(2, tag)}"
+                   + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
+    gmsh.model.removeEntities(gmsh.model.getEntities(3))
+    gmsh.model.removeEntities(others)
+    mesh_within(gmsh, model, max(options.tolerance, options.sew or 0.0), progress)
+    return model
+
+
+def surface_of(model, nodes=None):
+    """Return the surface of a model, or with its nodes moved."""
+    return Surface(from_nodes(model.nodes if nodes is None else nodes), model.face, model.names, list(model.notes))
