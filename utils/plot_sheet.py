@@ -7,15 +7,19 @@
 
     plot_sheet.py bending.out
     plot_sheet.py bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+    plot_sheet.py bending.dat --program build/release/dd3imp   # before a run
 
 The sheet is read from fields.vtkhdf, the tools' surfaces from the .bez files named in the job's input file
 (bending.dat in the folder of bending.out; otherwise --deck or --tool), their displacements from the results. Several
---at give several pictures below each other.
+--at give several pictures below each other. Of an input file the initial state is drawn, which the program writes after
+its checks, also if a tool lies in the sheet: do the tools lie where they should?
 """
 
 import argparse
+import contextlib
 import math
 import sys
+import tempfile
 from pathlib import Path
 
 import scripts
@@ -41,6 +45,8 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
 }
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
+POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
+MANY_PATCHES = 300  # number above which only the outer edges of a tool are drawn
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 
@@ -119,17 +125,30 @@ def bernstein(degree, t):
 
 
 def tool_surface(patches, shift):
-    """Return the tool's patches as surfaces, moved by `shift`."""
-    surface = pv.MultiBlock()
-    for points, weights in patches:
-        n, m = weights.shape[0] - 1, weights.shape[1] - 1
-        u, v = np.linspace(0, 1, 2 if m == 1 else 25), np.linspace(0, 1, 2 if n == 1 else 25)
-        bu, bv = bernstein(m, u), bernstein(n, v)
-        total = np.einsum("ji,ia,jb->ba", weights, bu, bv)
-        xyz = np.einsum("ji,jid,ia,jb->bad", weights, points, bu, bv) / total[..., None] + shift
-        x, y, z = (xyz[..., k][..., None] for k in range(3))
-        surface.append(pv.StructuredGrid(x, y, z))
-    return surface
+    """Return the surface of a tool moved by `shift`, and the edges of its patches; of many patches its outer edges."""
+    finest = max(2, min(24, round(math.sqrt(POINTS / len(patches)))))
+    points, faces, lines, first = [], [], [], 0
+    for shape in {weights.shape for _, weights in patches}:
+        alike = [patch for patch in patches if patch[1].shape == shape]
+        weights = np.array([weights for _, weights in alike])
+        counts = [1 if size == 2 else finest for size in shape]
+        bv, bu = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size, count in zip(shape, counts))
+        total = np.einsum("pji,jb,ia->pba", weights, bv, bu)
+        xyz = np.einsum("pji,pjid,jb,ia->pbad", weights, np.array([p for p, _ in alike]), bv, bu) / total[..., None]
+        points.append(xyz.reshape(-1, 3) + shift)
+        number = first + np.arange(total.size).reshape(total.shape)
+        corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
+        faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
+        for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
+            lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
+        first += total.size
+    points, faces, lines = map(np.concatenate, (points, faces, lines))
+    skin = pv.PolyData(points, np.insert(faces, 0, 4, axis=1))
+    if len(patches) <= MANY_PATCHES:
+        return skin, pv.PolyData(points, lines=np.insert(lines, 0, 2, axis=1))
+    joined = skin.clean(tolerance=1e-6)
+    return skin, joined.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
+                                              non_manifold_edges=False, feature_angle=30)
 
 
 def reflected(mesh, axes):
@@ -155,14 +174,12 @@ def draw(plotter, run, step, options, tools, limits, box):
     for number, (name, patches) in enumerate(tools.items()):
         if name not in displacement:
             continue
-        for block in tool_surface(patches, displacement[name]):
-            for part in reflected(block, options.mirror):
-                part = part.extract_surface(algorithm="dataset_surface").translate(behind)
-                plotter.add_mesh(part, color=TOOL_COLOURS[number % len(TOOL_COLOURS)], opacity=options.tool_opacity,
-                                 smooth_shading=False, ambient=0.2)
-                edges = part.extract_feature_edges(boundary_edges=True, feature_edges=False, manifold_edges=False,
-                                                   non_manifold_edges=False)
-                plotter.add_mesh(edges, color="#444444", line_width=1.5)
+        skin, edges = tool_surface(patches, displacement[name])
+        for part in reflected(skin, options.mirror):
+            plotter.add_mesh(part.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
+                             opacity=options.tool_opacity, smooth_shading=False, ambient=0.2)
+        for part in reflected(edges, options.mirror):
+            plotter.add_mesh(part.translate(behind), color="#444444", line_width=1.5)
     aim(plotter, box, options)
     text = plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
     text.prop.SetBackgroundColor(1, 1, 1)
@@ -182,9 +199,13 @@ def diagonal(box):
     return np.linalg.norm(box[1] - box[0])
 
 
-def box_of(run, steps, options):
-    """Return the corners of the box that holds the sheet at all steps drawn."""
+def box_of(run, steps, options, tools):
+    """Return the corners of the box that holds the sheet at all steps drawn; before a run, the tools as well."""
     points = np.concatenate([run.points(step) for step in steps])
+    if is_deck(options.run):
+        places = run.tool_displacement(0)
+        points = np.concatenate([points] + [patch.reshape(-1, 3) + places[name] for name in tools if name in places
+                                            for patch, _ in tools[name]])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in options.mirror:
         i = VECTOR.index(axis)
@@ -226,11 +247,15 @@ def direction(text):
 def command_line():
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
+    parser.add_argument("run", metavar="RUN", help="folder of results, its fields.vtkhdf, or an input file")
+    parser.add_argument("--program", type=Path, default=Path("dd3imp"),
+                        help="the program, for an input file (default: the one on the path)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        help="parameter of an input file")
     parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
                         help="travel in mm, the nearest step is drawn; may be repeated (default: the last step)")
-    parser.add_argument("--field", default="equivalent_plastic_strain",
-                        help="field, or field:component, such as stress:11 or displacement:z")
+    parser.add_argument("--field", help="field, or field:component, such as stress:11 or displacement:z "
+                        "(equivalent_plastic_strain; of an input file thickness)")
     parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
     parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
     parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
@@ -266,6 +291,8 @@ def arguments(words=None):
         parser.error("--size and --zoom take positive numbers")
     if any("=" not in item for item in options.tool):
         parser.error("--tool takes NAME=FILE")
+    if any("=" not in item for item in options.set):
+        parser.error("--set takes NAME=VALUE")
     return options
 
 
@@ -291,6 +318,31 @@ def find_tools(run, options):
     if unknown:
         raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
     return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
+
+
+def is_deck(run):
+    return Path(run).is_file() and Path(run).suffix != ".vtkhdf"
+
+
+@contextlib.contextmanager
+def opened(options):
+    """Yield the run; of an input file, the initial state, written by the program into a folder removed afterwards."""
+    if not is_deck(options.run):
+        options.field = options.field or "equivalent_plastic_strain"
+        yield Run(options.run)
+        return
+    options.field = options.field or "thickness"
+    options.deck = options.deck or Path(options.run)
+    settings = dict(item.split("=", 1) for item in options.set)
+    with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
+        words = results.command(results.find_program(options.program), options.run, None,
+                                ["--check", "--quiet", "--initial", folder], settings)
+        done = results.launch(words)
+        if done.code != 0:
+            if not (Path(folder) / "fields.vtkhdf").exists():
+                raise Problem(done.errors.strip())
+            print(done.errors.strip(), file=sys.stderr)
+        yield Run(folder)
 
 
 def limits_of(run, steps, options):
@@ -321,7 +373,7 @@ def make_picture(run, options):
     """Draw the steps of the options and write the picture."""
     tools = find_tools(run, options)
     steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
-    limits, box = limits_of(run, steps, options), box_of(run, steps, options)
+    limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
     plotter = new_plotter(options, len(steps))
     for row, step in enumerate(steps):
         plotter.subplot(row, 0)
@@ -338,14 +390,14 @@ def make_picture(run, options):
 
 def main():
     options = arguments()
-    run = Run(options.run)
-    if options.list:
-        print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
-        print("at nodes: " + ", ".join(run.grid["PointData"]))
-        print("at cells: " + ", ".join(run.grid["CellData"]))
-        return
-    make_picture(run, options)
-    print(options.output)
+    with opened(options) as run:
+        if options.list:
+            print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
+            print("at nodes: " + ", ".join(run.grid["PointData"]))
+            print("at cells: " + ", ".join(run.grid["CellData"]))
+            return
+        make_picture(run, options)
+        print(options.output)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ module dd3_app_command_line
   public :: options_t, read_command_line, parse_arguments, usage_text
 
   !> Known options.
-  character(len=14), parameter :: known(9) = [character(len=14) :: "--check", "--set", "--output", &
-      "--restart", "--threads", "--reproducible", "--quiet", "--version", "--help"]
+  character(len=14), parameter :: known(10) = [character(len=14) :: "--check", "--initial", "--set", &
+      "--output", "--restart", "--threads", "--reproducible", "--quiet", "--version", "--help"]
 
   !> Options of a call.
   type :: options_t
@@ -18,6 +18,8 @@ module dd3_app_command_line
     type(text_t), allocatable :: overrides(:)
     !> Folder of the results; empty if not given.
     character(len=:), allocatable :: output
+    !> Folder in which a check writes the initial state; empty for none.
+    character(len=:), allocatable :: initial
     !> Restart file to continue from; empty for none.
     character(len=:), allocatable :: restart
     integer :: threads = 1
@@ -63,6 +65,7 @@ contains
 
     options%file = ""
     options%output = ""
+    options%initial = ""
     options%restart = ""
     options%topic = ""
     allocate (options%overrides(0))
@@ -86,6 +89,8 @@ contains
     if (allocated(error)) return
     if (options%file == "" .and. .not. (options%help .or. options%version)) then
       call fatal_error(error, "an input file is missing")
+    else if (options%initial /= "" .and. .not. options%check) then
+      call fatal_error(error, "--initial is an option of --check")
     end if
   end subroutine parse_arguments
 
@@ -109,7 +114,7 @@ contains
       if (name == "--reproducible") options%reproducible = .true.
       if (name == "--quiet") options%quiet = .true.
       if (name == "--version") options%version = .true.
-    case ("--set", "--output", "--threads", "--restart")
+    case ("--set", "--output", "--initial", "--threads", "--restart")
       if (len(value) == 0 .and. i < size(argument)) then
         i = i + 1
         value = argument(i)%s
@@ -121,6 +126,7 @@ contains
       if (name == "--output" .and. options%output /= "") call fatal_error(error, &
           "--output is given twice")
       if (name == "--output") options%output = value
+      if (name == "--initial") options%initial = value
       if (name == "--threads") call read_threads(options%threads, value, error)
       if (name == "--restart" .and. options%restart /= "") call fatal_error(error, &
           "--restart is given twice")
@@ -180,6 +186,8 @@ contains
 
     text = "usage: dd3imp [options] job.dat"//newline// &
         "  --check              read the input, check it, show all values, stop"//newline// &
+        "  --initial DIR        with --check: write the initial state into the folder DIR"// &
+        newline// &
         "  --set name=value     gives a *PARAMETER of the input another value; repeatable"// &
         newline// &
         "  --output DIR         folder of the results (default: job.out)"//newline// &

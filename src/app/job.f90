@@ -23,6 +23,7 @@ module dd3_app_job
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
   use dd3_model_tool_report, only : tool_report
+  use dd3_output_fields, only : field_record_t
   use dd3_output_restart, only : read_restart
   use dd3_point_run, only : run_points
   use dd3_process_run, only : run_model, run_start_t, run_summary_t
@@ -57,6 +58,10 @@ contains
     if (errors%count > 0) then
       call report_errors(errors, options%file)
       exit_code = exit_input
+      ! The picture shows what is wrong about the place of a tool.
+      if (options%initial == "" .or. .not. allocated(model%history)) return
+      call set_start(start, options, case, model, error)
+      if (.not. allocated(error)) call write_initial(options%initial, case, model, start, error)
       return
     end if
     call set_start(start, options, case, model, error)
@@ -65,7 +70,9 @@ contains
       exit_code = exit_input
     else if (options%check) then
       if (.not. options%quiet) call show_checked(case, model)
-      exit_code = exit_end
+      if (options%initial /= "") call write_initial(options%initial, case, model, start, error)
+      exit_code = merge(exit_stopped, exit_end, allocated(error))
+      if (allocated(error)) call write_line("dd3imp: "//error%message)
     else
       call run_checked(options, start, case, model, exit_code)
     end if
@@ -111,6 +118,36 @@ contains
     end do
     write (output_unit, '(a)') "checked: "//case%file
   end subroutine show_checked
+
+  !> Write the state from which a run would start, for a picture of the sheet and the tools.
+  subroutine write_initial(directory, case, model, start, error)
+    !> Made if it does not exist; it must hold no results.
+    character(len=*), intent(in) :: directory
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(run_start_t), intent(in) :: start
+    !> Set if the file cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(field_record_t) :: fields
+    logical :: there
+    integer :: i
+
+    if (size(case%point) > 0) then
+      call fatal_error(error, "material points (*POINT) have no fields")
+      return
+    end if
+    call make_directory(directory, error)
+    do i = 1, size(result_file)
+      if (allocated(error)) return
+      inquire (file=directory//"/"//trim(result_file(i)), exist=there)
+      if (there) call fatal_error(error, "'"//directory//"' holds results of a run; --initial "// &
+          "needs a folder without")
+    end do
+    if (.not. allocated(error)) call fields%open(model, directory, error)
+    if (.not. allocated(error)) call fields%write(model, start%state, error)
+    if (.not. allocated(error)) call fields%close(error)
+  end subroutine write_initial
 
   !> Run a job whose input has no errors.
   subroutine run_checked(options, start, case, model, exit_code)

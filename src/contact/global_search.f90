@@ -220,7 +220,8 @@ contains
         near = projection%distance
       end if
       clearance = min(clearance, near)
-      if (.not. accepted .or. distance >= best) cycle
+      if (.not. accepted) cycle
+      if (distance >= best) cycle
       hit = candidate
       best = distance
     end do

@@ -175,7 +175,7 @@ contains
     integer :: i, n, first, last
 
     ok = .false.
-    if (self%n_read == size(self%current%point, 2)) return
+    if (self%n_read >= size(self%current%point, 2)) return
     n = merge(4, 3, self%current%rational)
     last = 0
     do i = 1, n

@@ -1,5 +1,9 @@
-"""Draw both pictures of a small made-up run and check them. Skipped (77) without the packages."""
+"""Draw both pictures of a small made-up run, and inputs before a run. Skipped (77) without the packages.
 
+    pictures.py --program build/release/dd3imp
+"""
+
+import argparse
 import importlib.util
 import struct
 import subprocess
@@ -88,7 +92,23 @@ def check_refusals(run, folder):
     assert pathless.returncode == 2 and pathless.stderr.startswith("error: no package"), pathless.stderr
 
 
+def check_inputs(program, folder):
+    """Check pictures of the initial state: of a job, and of one with a tool in its sheet."""
+    options = ("--program", program, "--size", 300, 200, "--output", folder / "initial.png")
+    for job, said in (("input_files/bending/bending.dat", ""),
+                      ("tests/bad_input/tool_inside_sheet.dat", "starts inside")):
+        message = call("plot_sheet.py", UTILS.parent / job, *options)
+        assert said in message, message
+        assert size_of(folder / "initial.png") == (300, 200)
+        (folder / "initial.png").unlink()
+    assert "'no'" in call("plot_sheet.py", folder / "job.dat", "--set", "no=1", *options, expect=2)
+    assert "no such program" in call("plot_sheet.py", folder / "job.dat", "--program", folder / "none", expect=2)
+
+
 def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=Path, required=True, help="the program dd3imp")
+    program = parser.parse_args().program
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         run = make_run(folder)
@@ -105,6 +125,7 @@ def main():
         assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=2)
         assert "No such file" in call("plot_force.py", folder / "none.out", expect=2)
         check_refusals(run, folder)
+        check_inputs(program, folder)
     print("pictures drawn")
 
 

@@ -89,7 +89,7 @@ def small_disk(program, directory):
 def full_disk(program, directory):
     """Test a disk that fills up: both tables contain every accepted increment."""
     inner = 'mount -t tmpfs -o size="$1" none "$2" && shift 2 && "$@"'
-    for size in ("1050k", "1100k"):
+    for size in ("1400k", "1450k"):
         disk, copy = directory / size, directory / f"{size}.copy"
         disk.mkdir(parents=True)
         mounted = ["unshare", "--mount", "--map-root-user", "sh", "-c", inner, "sh", size, disk]
