@@ -330,6 +330,8 @@ module dd3_input_case
     type(pressure_spec_t), allocatable :: pressure(:)
     !> Progress and factor on displacements and loads, in pairs; size 0 if not given.
     real(wp), allocatable :: table(:)
+    !> Progress and factor on the forces of `press`, in pairs; size 0 if not given.
+    real(wp), allocatable :: press_table(:)
     type(until_spec_t) :: until
     !> Settings in this phase, with those inherited from the phases before.
     type(limits_spec_t) :: limits

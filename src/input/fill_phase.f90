@@ -47,6 +47,7 @@ contains
     call fill_motions(phase%motion, block)
     call fill_pressures(phase%pressure, block)
     phase%table = block%numbers("table")
+    phase%press_table = block%numbers("press_table")
     call fill_until(phase%until, case, block)
     case%phase(i) = phase
   end subroutine fill_phase

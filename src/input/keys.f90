@@ -176,8 +176,8 @@ contains
           "cycles, then release the nodes that violate it"), &
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
           "it after a failed attempt"), &
-      row("damping", kind_logical, "", "on", "on: shorten an iteration with large displacement "// &
-          "gradients or that inverts an element")]
+      row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
+          "displacement gradients, and any that inverts an element")]
   end function newton_keys
 
   function solver_keys() result(key)
@@ -240,6 +240,8 @@ contains
           form="set number number number number number number number"), &
       row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
           "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
+          "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
           "are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &

@@ -38,6 +38,7 @@ contains
       call check_bends(case, i, errors)
       call check_loads(case%phase(i), errors)
       call check_table(case%phase(i), errors)
+      call check_press_table(case%phase(i), errors)
     end do
   end subroutine check_phases
 
@@ -292,6 +293,38 @@ contains
       end do
     end associate
   end subroutine check_table
+
+  !> Check that the progress of the table of forces increases to 1, that no factor is negative, and
+  !> that a tool is pressed.
+  subroutine check_press_table(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=*), parameter :: form = "press_table = s1 f1 ... 1 fn, with the progress s "// &
+        "increasing to 1 and factors f >= 0"
+    integer :: n, i
+
+    n = size(phase%press_table)
+    if (n == 0) return
+    associate (x => phase%press_table, &
+        value => phase%source%entry(phase%source%find("press_table"))%value)
+      if (mod(n, 2) == 1) then
+        call errors%push_input(value(1)%at, "expected pairs of progress and factor, got "// &
+            to_text(n)//" numbers", form)
+        return
+      end if
+      if (size(phase%press) == 0) call errors%push_input(value(1)%at, &
+          "the table has no effect in this phase", "a phase with press")
+      if (abs(x(n - 1) - 1.0_wp) > 0.0_wp) call errors%push_input(value(n - 1)%at, &
+          "the table does not end at a progress of 1", form)
+      do i = 1, n - 1, 2
+        if (x(i) - merge(0.0_wp, x(max(1, i - 2)), i == 1) < 1.0e-6_wp) &
+            call errors%push_input(value(i)%at, "the progress does not increase here", form)
+        if (x(i + 1) < 0.0_wp) call errors%push_input(value(i + 1)%at, &
+            "the factor is negative", form)
+      end do
+    end associate
+  end subroutine check_press_table
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

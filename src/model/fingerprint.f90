@@ -180,6 +180,8 @@ contains
         end associate
       end do
       if (allocated(phase%table)) call digest%add(reshape(phase%table, [size(phase%table)]))
+      if (allocated(phase%press_table)) &
+          call digest%add(reshape(phase%press_table, [size(phase%press_table)]))
     end associate
     phase_digest = digest%value()
   end function phase_digest

@@ -55,6 +55,9 @@ module dd3_model_phase
     !> Progress and the factor on displacements, motions, loads and pressures there, `(2, n)`; not
     !> allocated if the factor is the progress.
     real(wp), allocatable :: table(:, :)
+    !> Progress, and the factors on the forces of the start and of `press` there, for the tools that
+    !> this phase presses, `(3, n)`; not allocated if the forces vary linearly.
+    real(wp), allocatable :: press_table(:, :)
     !> Early end.
     type(until_spec_t) :: until
     type(limits_spec_t) :: limits
@@ -66,6 +69,8 @@ module dd3_model_phase
   contains
     procedure :: factor
     procedure :: slope
+    procedure :: tool_load
+    procedure :: tool_load_rate
     procedure :: next_kink
   end type phase_t
 
@@ -99,7 +104,49 @@ contains
     slope = (self%table(2, i + 1) - self%table(2, i))/(self%table(1, i + 1) - self%table(1, i))
   end function slope
 
-  !> Return the next place of the table behind a progress; 1 without a table.
+  !> Return the force pressed on a tool at a progress, N.
+  pure function tool_load(self, tool, progress, start, end) result(load)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: progress
+    !> Forces at the start of the phase and of `press`, N.
+    real(wp), intent(in) :: start(3), end(3)
+    real(wp) :: load(3)
+
+    real(wp) :: factor(2)
+    integer :: i
+
+    if (.not. allocated(self%press_table) .or. self%keeps_tool_load(tool)) then
+      load = start + progress*(end - start)
+      return
+    end if
+    i = interval(self%press_table(1, :), progress)
+    associate (from => self%press_table(:, i), to => self%press_table(:, i + 1))
+      factor = from(2:) + (to(2:) - from(2:))*((progress - from(1))/(to(1) - from(1)))
+    end associate
+    load = factor(1)*start + factor(2)*end
+  end function tool_load
+
+  !> Return the derivative of the force pressed on a tool behind a progress, N.
+  pure function tool_load_rate(self, tool, progress, start, end) result(rate)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: progress
+    !> As for `tool_load`.
+    real(wp), intent(in) :: start(3), end(3)
+    real(wp) :: rate(3)
+
+    integer :: i
+
+    rate = end - start
+    if (.not. allocated(self%press_table) .or. self%keeps_tool_load(tool)) return
+    i = interval(self%press_table(1, :), progress + step)
+    associate (from => self%press_table(:, i), to => self%press_table(:, i + 1))
+      rate = ((to(2) - from(2))*start + (to(3) - from(3))*end)/(to(1) - from(1))
+    end associate
+  end function tool_load_rate
+
+  !> Return the next place of the tables behind a progress; 1 without a table.
   pure real(wp) function next_kink(self, progress)
     class(phase_t), intent(in) :: self
     real(wp), intent(in) :: progress
@@ -107,6 +154,8 @@ contains
     next_kink = 1.0_wp
     if (allocated(self%table)) next_kink = self%table(1, &
         interval(self%table(1, :), progress + step) + 1)
+    if (allocated(self%press_table)) next_kink = min(next_kink, self%press_table(1, &
+        interval(self%press_table(1, :), progress + step) + 1))
   end function next_kink
 
   !> Return the number of the interval that holds a value.

@@ -85,7 +85,23 @@ contains
     phase%keeps_pressure = .true.
     phase%motion = phase%motion(:0)
     if (allocated(phase%table)) deallocate (phase%table)
+    if (allocated(phase%press_table)) deallocate (phase%press_table)
   end subroutine new_phase_after
+
+  !> Set the table of the forces on pressed tools; the force of the start is its first point.
+  pure subroutine set_press_table(pairs, phase)
+    !> Progress and factor on the force of `press`, in pairs.
+    real(wp), intent(in) :: pairs(:)
+    type(phase_t), intent(inout) :: phase
+
+    integer :: n
+
+    n = size(pairs)/2
+    allocate (phase%press_table(3, n + 1), source=0.0_wp)
+    phase%press_table(2, 1) = 1.0_wp
+    phase%press_table(1, 2:) = pairs(1::2)
+    phase%press_table(3, 2:) = pairs(2::2)
+  end subroutine set_press_table
 
   !> Set name, control, limits and end.
   subroutine set_settings(model, spec, phase)
@@ -99,6 +115,7 @@ contains
     phase%newton = spec%newton
     phase%until = spec%until
     if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
+    if (size(spec%press_table) > 0) call set_press_table(spec%press_table, phase)
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance

@@ -18,12 +18,16 @@ contains
     type(state_t), intent(inout) :: trial
 
     real(wp) :: factor
+    integer :: tool
 
     factor = model%phase(trial%phase)%factor(trial%progress)
     associate (start => trial%start)
       trial%load = start%load + factor*(start%load_end - start%load)
       trial%pressure = start%pressure + factor*(start%pressure_end - start%pressure)
-      trial%tool_load = start%tool_load + trial%progress*(start%tool_load_end - start%tool_load)
+      do tool = 1, model%n_tool
+        trial%tool_load(:, tool) = model%phase(trial%phase)%tool_load(tool, trial%progress, &
+            start%tool_load(:, tool), start%tool_load_end(:, tool))
+      end do
     end associate
   end subroutine set_loads
 

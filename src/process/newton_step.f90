@@ -1,5 +1,5 @@
-!> Step of the corrector: the solution of the linear system, added to the trial state. If the
-!> iterations are damped, a step with large displacement gradients is shortened, as is one that
+!> Step of the corrector: the solution of the linear system, added to the trial state. With damping, a
+!> step with large displacement gradients in the first iterations is shortened, as is any step that
 !> inverts an element.
 module dd3_process_newton_step
   use dd3_base_kinds, only : wp
@@ -17,10 +17,11 @@ module dd3_process_newton_step
 
   !> Largest displacement in an iteration, divided by the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Largest difference of the displacements of two nodes of an element over their distance in a
-  !> damped iteration: a strain or rotation, beyond which a wrong contact status would carry the
-  !> sheet far from the solution.
-  real(wp), parameter :: largest_gradient = 0.01_wp
+  !> Number of iterations that are damped, in which the contact status of the prediction is wrong, and
+  !> the largest difference of the displacements of two nodes of an element over their distance in
+  !> them: a strain or rotation, beyond which the status would carry the sheet far from the solution.
+  integer, parameter :: damped_iterations = 2
+  real(wp), parameter :: largest_gradient = 0.005_wp
   !> Factor on a step that inverts an element, and the largest number of such reductions.
   real(wp), parameter :: reduction = 0.5_wp
   integer, parameter :: most_reductions = 4
@@ -43,7 +44,7 @@ contains
           system%problem, correction%lambda_increment)
       correction%enhanced_increment = enhanced_response(system%enhanced, model, &
           system%problem%solution) - system%enhanced%offset
-      if (phase%newton%damping) then
+      if (phase%newton%damping .and. attempt%verdict%iterations <= damped_iterations) then
         gradient = displacement_gradient(model, trial, system%problem%solution)
         if (gradient > largest_gradient) then
           system%problem%solution = largest_gradient/gradient*system%problem%solution

@@ -136,8 +136,8 @@ contains
       problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = self%progress &
-            *dot_product(start%tool_load_end(:, tool) - start%tool_load(:, tool), &
-            phase%direction(:, tool))
+            *dot_product(phase%tool_load_rate(tool, committed%progress, &
+            start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
       end do
     end associate
   end subroutine impose_trial

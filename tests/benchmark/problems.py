@@ -106,7 +106,8 @@ def bending(skew):
 def of_file(path):
     """Return the problem of an input file."""
     def deck(_):
-        return with_paths(path.read_text(encoding="utf-8"), path.parent)
+        return re.sub(r'(patches = )"([^"]*)"', lambda found: f'{found[1]}"{(path.parent / found[2]).resolve()}"',
+                      path.read_text(encoding="utf-8"))
     return deck
 
 

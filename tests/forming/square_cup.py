@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""The square cup of NUMISHEET'93 with several meshes and elements: draw-in, and thickness along the diagonal.
+
+    square_cup.py --program build/release/dd3imp --work build/square_cup            make the runs that are missing
+    square_cup.py --program build/release/dd3imp --work build/square_cup --write    and put them into docs/reports
+
+The runs take hours; `--only` selects some. An interrupted run is continued.
+"""
+import math
+import sys
+
+import numpy as np
+import studies
+from fields import Fields
+from scripts import run
+
+DECK = studies.ROOT / "input_files" / "square_cup" / "square_cup.dat"
+REPORT = studies.ROOT / "docs" / "reports" / "square_cup.md"
+PICTURE = studies.ROOT / "docs" / "images" / "square_cup.png"
+SIZE = 75.0  # of the quarter, mm
+TRAVELS = (15.0, 40.0)
+# Name of the run, elements along a side, through the thickness, element, points.
+RUNS = [("solid_shell 15 x 15", 15, 1, "solid_shell", 5), ("solid_shell 20 x 20", 20, 1, "solid_shell", 5),
+        ("solid_shell 30 x 30", 30, 1, "solid_shell", 5), ("solid_shell 45 x 45", 45, 1, "solid_shell", 5),
+        ("hex8 30 x 30 x 2", 30, 2, "hex8", 0), ("hex8 30 x 30 x 3", 30, 3, "hex8", 0)]
+PLACES = (20.0, 40.0, 50.0, 60.0, 70.0, 80.0, 100.0)  # along the diagonal of the blank, mm from the centre
+
+
+class Cup:
+    """Results of a run."""
+
+    def __init__(self, folder, across, layers):
+        self.fields, self.shape = Fields(folder), (across + 1, across + 1, layers + 1)
+        diagonal = np.arange(across + 1)
+        self.diagonal = (diagonal, diagonal)
+        self.place = np.linspace(0, math.sqrt(2)*SIZE, across + 1)
+
+    def draw_in(self, travel):
+        """Return DX, DY and DD, mm."""
+        middle = self.fields.points(self.fields.nearest_step(travel)).reshape(*self.shape, 3).mean(axis=2)
+        return [SIZE - middle[-1, 0, 0], SIZE - middle[0, -1, 1], math.sqrt(2)*SIZE - math.hypot(*middle[-1, -1, :2])]
+
+    def thickness(self, travel):
+        """Return the thickness at the nodes of the diagonal, mm."""
+        values, _ = self.fields.values(self.fields.nearest_step(travel), "thickness")
+        return values.reshape(self.shape).mean(axis=2)[self.diagonal]
+
+
+def draw(cups):
+    """Draw the thickness along the diagonal at the end."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    for name, cup in cups.items():
+        axes.plot(cup.place, cup.thickness(TRAVELS[-1]), label=name, linewidth=1.2,
+                  linestyle="--" if name.startswith("hex8") else "-")
+    axes.set(xlabel="initial distance from the centre along the diagonal, mm", ylabel="thickness, mm")
+    axes.legend(frameon=False)
+    figure.savefig(PICTURE, dpi=110)
+
+
+def main():
+    """Make the runs and the tables."""
+    options = studies.arguments(__doc__)
+    cups, efforts = {}, {}
+    for name, across, layers, element, points in RUNS:
+        settings = {"divisions": f"{across} {across} {layers}", "element": element}
+        if points:
+            settings["points"] = points
+        deck = DECK if points else options.work / "square_cup_hex8.dat"
+        if not points:
+            text = DECK.read_text(encoding="utf-8").replace("  thickness_points = ${points}\n", "")
+            for path in ("../", *(f"{tool}.bez" for tool in ("punch", "die", "holder"))):
+                text = text.replace(path, str((DECK.parent / path).resolve()) + "/"*path.endswith("/"))
+            deck.write_text(text, encoding="utf-8")
+        folder = studies.make(options, name.replace(" ", "_"), deck, settings)
+        if folder:
+            cups[name], efforts[name] = Cup(folder, across, layers), studies.effort(folder)
+    draw_in = studies.table(
+        ["mesh"] + [f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX", "DY", "DD")]
+        + ["increments", "iterations", "seconds"],
+        [[name] + [f"{value:.2f}" for travel in TRAVELS for value in cup.draw_in(travel)] + efforts[name]
+         for name, cup in cups.items()])
+    thickness = studies.table(
+        ["mesh"] + [f"{place:g}" for place in PLACES] + ["smallest", "largest"],
+        [[name] + [f"{value:.3f}" for value in
+                   [*np.interp(PLACES, cup.place, cup.thickness(TRAVELS[-1])), cup.thickness(TRAVELS[-1]).min(),
+                    cup.thickness(TRAVELS[-1]).max()]] for name, cup in cups.items()])
+    print(draw_in, thickness, sep="\n\n")
+    if options.write:
+        studies.put(REPORT, "draw-in", draw_in)
+        studies.put(REPORT, "thickness", thickness)
+        draw(cups)
+    sys.exit(0 if len(cups) == len(RUNS) else 1)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,70 @@
+"""What the studies of this folder share: runs that are kept, and tables in reports. Needs the Python environment."""
+import argparse
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "utils"))
+import scripts  # noqa: E402
+
+scripts.need("h5py", "matplotlib", "numpy")
+from results import command, find_program, launch, read_table, read_text, totals  # noqa: E402
+
+
+def arguments(description):
+    """Return the options of a study."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=find_program)
+    parser.add_argument("--work", required=True, type=pathlib.Path, help="folder of the runs; finished ones are kept")
+    parser.add_argument("--only", nargs="+", help="names of the runs to make; the others only if they are there")
+    parser.add_argument("--write", action="store_true", help="put tables and pictures into the report")
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def is_finished(folder):
+    """Check whether a run has reached its end."""
+    log = folder / "job.log"
+    return log.is_file() and "reached the end" in read_text(log)
+
+
+def make(options, name, deck, settings):
+    """Make a run unless it is there; return its folder, None if it is not wanted or has stopped.
+
+    A run that was interrupted is continued.
+    """
+    folder = options.work / name
+    if is_finished(folder):
+        return folder
+    if options.only and name not in options.only:
+        return None
+    restart = ["--restart", folder / "restart.h5"] if (folder / "restart.h5").is_file() else []
+    print(name, flush=True)
+    done = launch(command(options.program, deck, folder, ["--quiet", *restart], settings))
+    if done.code != 0:
+        print(f"{name}: exit code {done.code}: {done.errors}", flush=True)
+    return folder if done.code == 0 else None
+
+
+def effort(folder):
+    """Return increments, iterations and seconds of a run as texts."""
+    status = read_table(folder / "status.csv")
+    total = totals(status)
+    return [str(total.increments), str(total.iterations), f"{sum(float(row['seconds']) for row in status):.0f}"]
+
+
+def table(head, rows):
+    """Return the lines of a table."""
+    return "\n".join("| " + " | ".join(row) + " |" for row in (head, ["---"]*len(head), *rows))
+
+
+def put(report, name, text):
+    """Replace what is between the marks of a table in a report."""
+    old = report.read_text(encoding="utf-8")
+    new, count = re.subn(rf"(<!-- table: {name} -->\n).*?(<!-- end of table -->)",
+                         lambda found: f"{found[1]}\n{text}\n\n{found[2]}", old, flags=re.DOTALL)
+    if count != 1:
+        sys.exit(f"{report}: no table '{name}'")
+    report.write_text(new, encoding="utf-8")
