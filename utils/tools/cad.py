@@ -67,6 +67,10 @@ def session():
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield gmsh
+    except Exception as error:
+        if type(error) is Exception:  # Gmsh raises nothing more specific
+            raise Problem(f"Gmsh: {error}") from None
+        raise
     finally:
         gmsh.finalize()
 

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from tools.mend import edge_table, pairs_of
 from tools.surface import from_triangles, homogeneous, quarters
 
-# Ratio of the areas of two flat regions below which the smaller one does not count at their common nodes.
+# Ratio of the areas and widths of two flat regions below which the smaller one does not count at their common nodes.
 SMALL_REGION = 1 / 3.5
 # Angles between facets, degrees: above the first there is an edge of the tool; below the second they are one plane.
 CREASE, FLAT = 40.0, 0.05
@@ -91,8 +91,13 @@ def estimate_normals(mesh):
     fan = groups(4 * len(facets), np.concatenate([start[one], end[one]]), np.concatenate([end[two], start[two]]))
     corners = np.unique(fan * len(facets) + np.repeat(flat, 4), return_inverse=True)[1].ravel()
     dropped = np.zeros(corners.max() + 1, bool)
-    for these, own, other in ((one, first, second), (two, second, first)):
-        small = (region_area[own] < SMALL_REGION * region_area[other])[smooth]
+    near = neighbours(len(facets), first[angle <= FLAT], second[angle <= FLAT])
+    for these, own, other in ((one, first[smooth], second[smooth]), (two, second[smooth], first[smooth])):
+        small = region_area[own] < SMALL_REGION * region_area[other]
+        for k in np.flatnonzero(small):
+            ends = nodes[here[these[k]]], nodes[to[these[k]]]
+            width = region_area[own[k]] / max(np.linalg.norm(ends[1] - ends[0]), 1e-300)
+            small[k] = reaches(nodes, facets, near, other[k], ends, width / SMALL_REGION)
         dropped[corners[start[these[small]]]] = dropped[corners[end[these[small]]]] = True
     inner = pairs[angle <= FLAT]
     vector = corner_vectors(nodes, facets, corners, np.concatenate([start[inner[:, 0]], end[inner[:, 0]]]),
@@ -102,6 +107,37 @@ def estimate_normals(mesh):
     np.add.at(total, fan, vector)
     region = groups(len(facets), first[smooth], second[smooth])
     return Net(facets, unit(total)[fan].reshape(-1, 4, 3), region, angle[smooth])
+
+
+def neighbours(count, first, second):
+    """Return the facets joined with each one."""
+    result = [[] for _ in range(count)]
+    for a, b in zip(first.tolist(), second.tolist()):
+        result[a].append(b)
+        result[b].append(a)
+    return result
+
+
+def reaches(nodes, facets, near, facet, ends, distance):
+    """Tell whether a flat region extends this far from an edge of one of its facets, in a band of twice its length.
+
+    A ring around an axis does not, however large its area is.
+    """
+    middle, along = (ends[0] + ends[1]) / 2, ends[1] - ends[0]
+    length = max(np.linalg.norm(along), 1e-300)
+    seen, waiting = {facet}, [facet]
+    while waiting:
+        item = waiting.pop()
+        offset = nodes[facets[item][facets[item] >= 0]] - middle
+        place = offset @ along / length
+        across = np.linalg.norm(offset - place[:, None] * along / length, axis=1)
+        if place.min() > length or place.max() < -length:
+            continue
+        if across.max() >= distance:
+            return True
+        waiting += [other for other in near[item] if other not in seen]
+        seen.update(near[item])
+    return False
 
 
 def corner_vectors(nodes, facets, group, inner, length):

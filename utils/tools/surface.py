@@ -58,17 +58,23 @@ def bernstein_slope(t):
     return np.stack([2 * t - 2, 2 - 4 * t, 2 * t], axis=-1)
 
 
+def combined(in_v, in_u, net):
+    """Return the sums (patch, k, 4) of the control points with the products of two sets of factors (k, 3)."""
+    factors = (in_v[:, :, None] * in_u[:, None, :]).reshape(len(in_v), 9)
+    return factors @ np.ascontiguousarray(net).reshape(len(net), 9, 4)
+
+
 def points_at(net, u, v):
     """Return the points (patch, len(u), 3) of the patches at the parameters u and v, arrays of equal length."""
-    values = np.einsum("ki,kj,nijc->nkc", bernstein(v), bernstein(u), net)
+    values = combined(bernstein(v), bernstein(u), net)
     return values[..., :3] / values[..., 3:]
 
 
 def areas_at(net, u, v):
     """Return S_u x S_v (patch, len(u), 3), the normal not divided by its length."""
-    value = np.einsum("ki,kj,nijc->nkc", bernstein(v), bernstein(u), net)
-    along_u = np.einsum("ki,kj,nijc->nkc", bernstein(v), bernstein_slope(u), net)
-    along_v = np.einsum("ki,kj,nijc->nkc", bernstein_slope(v), bernstein(u), net)
+    value = combined(bernstein(v), bernstein(u), net)
+    along_u = combined(bernstein(v), bernstein_slope(u), net)
+    along_v = combined(bernstein_slope(v), bernstein(u), net)
     point, weight = value[..., :3] / value[..., 3:], value[..., 3:]
     slope_u = (along_u[..., :3] - along_u[..., 3:] * point) / weight
     slope_v = (along_v[..., :3] - along_v[..., 3:] * point) / weight
