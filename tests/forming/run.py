@@ -22,7 +22,7 @@ from results import command, find_program, launch, read_table  # noqa: E402
 K, E0, N, YOUNG, POISSON = 565.0, 0.007117, 0.259, 2.1e5, 0.3
 MATERIAL = f"*MATERIAL steel\n  young = {YOUNG}\n  poisson = {POISSON}\n  yield = von_mises\n" \
            f"  hardening = swift K={K} e0={E0} n={N}\n"
-FINE = "*NEWTON\n  tolerance = 1e-9\n*LIMITS\n  strain = 0.001\n  rotation = off\n"
+FINE = "*NEWTON\n  tolerance = 1e-9\n*LIMITS\n  strain = 0.002\n  rotation = off\n"
 STRETCH = """*BLANK sheet
   size = 10 4 1
   divisions = 5 2 1
