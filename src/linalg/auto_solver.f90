@@ -2,8 +2,8 @@
 !>
 !> The set-up counts operations. If a complete factorisation on blocks costs no more than an
 !> incomplete one with a few iterations, as on all sheets of some thousand elements, it is taken.
-!> Otherwise CGS and the complete factorisation are tried in turn and the one that takes less time is
-!> kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
+!> Otherwise CGS and the complete factorisation are tried in turn and the one that takes less time
+!> is kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
 !> factorisations when it was slower or failed several times in a row, tried again, and skipped for
 !> twice that number if that repeats. UMFPACK, which interchanges rows freely, is the last resort.
 module dd3_linalg_auto_solver

@@ -1,5 +1,5 @@
-!> Direct solver: complete LU factorisation on 3x3 blocks, by rows where the numbering gives a narrow
-!> band and by the multifrontal method elsewhere, refined by conjugate gradients squared.
+!> Direct solver: complete LU factorisation on 3x3 blocks, by rows where the numbering gives a
+!> narrow band and by the multifrontal method elsewhere, refined by conjugate gradients squared.
 module dd3_linalg_block_lu_solver
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
@@ -65,6 +65,7 @@ contains
     real(wp) :: by_rows
     integer :: i, n_block
 
+    self%fronts%threads = self%options%threads
     call self%fronts%setup(matrix)
     self%products = front_product*self%fronts%products &
         + front_overhead*real(self%fronts%tree%n_front, wp)

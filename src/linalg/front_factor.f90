@@ -43,46 +43,74 @@ contains
     integer, intent(in) :: p, u
     real(wp), intent(inout) :: left(p + u, p), upper(p, u), rest(u, u)
 
-    integer :: j, c, n_pivot
+    integer :: run(3, n), j, c, n_pivot, n_run, in_pivots
 
     n_pivot = count(place <= p/3)
+    call find_runs(n, place, n_pivot, run, n_run, in_pivots)
     do j = 1, n_pivot
       do c = 1, 3
-        call add_column(n, place, border(:, 3*j - 3 + c), 0, left(:, 3*place(j) - 3 + c))
+        call add_column(n_run, run, border(:, 3*j - 3 + c), 0, left(:, 3*place(j) - 3 + c))
       end do
     end do
     do j = n_pivot + 1, n
       do c = 1, 3
         associate (column => 3*place(j) - 3 + c - p, from => 3*j - 3 + c)
-          call add_column(n_pivot, place, border(:3*n_pivot, from), 0, upper(:, column))
-          call add_column(n - n_pivot, place(n_pivot + 1:), border(3*n_pivot + 1:, from), p, &
+          call add_column(in_pivots, run, border(:, from), 0, upper(:, column))
+          call add_column(n_run - in_pivots, run(:, in_pivots + 1:n_run), border(:, from), p, &
               rest(:, column))
         end associate
       end do
     end do
   end subroutine add_border
 
+  !> Find the runs of rows that are neighbours in a front too; none extends beyond the pivots.
+  pure subroutine find_runs(n, place, n_pivot, run, n_run, in_pivots)
+    integer, intent(in) :: n, place(n), n_pivot
+    !> First scalar row in the border less one, first in the front less one, number of scalar rows.
+    integer, intent(out) :: run(3, n)
+    !> Number of runs, and of those among the pivots.
+    integer, intent(out) :: n_run, in_pivots
+
+    logical :: begins
+    integer :: i
+
+    n_run = 0
+    in_pivots = 0
+    do i = 1, n
+      begins = i == 1 .or. i == n_pivot + 1
+      if (.not. begins) begins = place(i) /= place(i - 1) + 1
+      if (begins) then
+        n_run = n_run + 1
+        run(:, n_run) = [3*i - 3, 3*place(i) - 3, 0]
+      end if
+      run(3, n_run) = run(3, n_run) + 3
+      if (i == n_pivot) in_pivots = n_run
+    end do
+  end subroutine find_runs
+
   !> Add a column of a border to one of a front.
-  pure subroutine add_column(n, place, from, before, to)
-    integer, intent(in) :: n, place(n)
-    real(wp), intent(in) :: from(3*n)
+  pure subroutine add_column(n_run, run, from, before, to)
+    integer, intent(in) :: n_run, run(3, n_run)
+    real(wp), intent(in) :: from(*)
     !> Rows of the front before the part.
     integer, intent(in) :: before
     real(wp), intent(inout) :: to(*)
 
-    integer :: i, at
+    integer :: k, i, shift
 
-    do i = 1, n
-      at = 3*place(i) - 2 - before
-      to(at) = to(at) + from(3*i - 2)
-      to(at + 1) = to(at + 1) + from(3*i - 1)
-      to(at + 2) = to(at + 2) + from(3*i)
+    do k = 1, n_run
+      shift = run(2, k) - run(1, k) - before
+      do i = run(1, k) + 1, run(1, k) + run(3, k)
+        to(i + shift) = to(i + shift) + from(i)
+      end do
     end do
   end subroutine add_column
 
   !> Eliminate the pivots of a front; see `multifrontal_t` for the factors.
-  subroutine factor_front(p, u, left, upper, rest, pivot, shifted, good)
+  subroutine factor_front(p, u, is_leaf, left, upper, rest, pivot, shifted, good)
     integer, intent(in) :: p, u
+    !> Whether nothing has been added to `rest`, which is undefined then.
+    logical, intent(in) :: is_leaf
     real(wp), intent(inout) :: left(p + u, p), rest(u, u)
     real(wp), intent(in) :: upper(p, u)
     !> Row interchanges.
@@ -106,7 +134,8 @@ contains
       left(p + 1:, j) = left(p + 1:, pivot(j))
       left(p + 1:, pivot(j)) = held
     end do
-    call dgemm("N", "N", u, u, p, -1.0_wp, left(p + 1, 1), m, upper, p, 1.0_wp, rest, u)
+    call dgemm("N", "N", u, u, p, -1.0_wp, left(p + 1, 1), m, upper, p, &
+        merge(0.0_wp, 1.0_wp, is_leaf), rest, u)
   end subroutine factor_front
 
   !> Factorise the square of the pivots with row interchanges; its diagonal is shifted if a pivot

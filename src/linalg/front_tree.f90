@@ -2,9 +2,9 @@
 !> factorisation with a symmetric pattern.
 !>
 !> The rows are numbered by METIS or by approximate minimum degree, whichever costs less, and the
-!> elimination tree in postorder; neighbouring rows with the same pattern, or nearly so, are the pivots of one front (Liu, SIAM J.
-!> Matrix Anal. Appl. 11, 1990; relaxed amalgamation: Ashcraft and Grimes, ACM Trans. Math. Softw.
-!> 15, 1989).
+!> elimination tree in postorder; neighbouring rows with the same pattern, or nearly so, are the
+!> pivots of one front (Liu, SIAM J. Matrix Anal. Appl. 11, 1990; relaxed amalgamation: Ashcraft and
+!> Grimes, ACM Trans. Math. Softw. 15, 1989).
 module dd3_linalg_front_tree
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp

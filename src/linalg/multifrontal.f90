@@ -8,6 +8,7 @@ module dd3_linalg_multifrontal
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dtrsv
+  use dd3_linalg_front_branches, only : border_size, find_branches, front_products, front_work_t
   use dd3_linalg_front_factor, only : add_border, factor_front, put_blocks
   use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
   use dd3_linalg_matrix, only : block_matrix_t, position_of
@@ -19,6 +20,8 @@ module dd3_linalg_multifrontal
   !> Factors P A11 = L11 U11 of the pivots of each front, A21 A11^-1, and A12.
   type, extends(preconditioner_t) :: multifrontal_t
     type(front_tree_t) :: tree
+    !> Number of threads; the results do not depend on it.
+    integer :: threads = 1
     !> Number of block rows, and of block products of a factorisation.
     integer :: n = 0
     real(wp) :: products = 0.0_wp
@@ -32,10 +35,10 @@ module dd3_linalg_multifrontal
     !> Where the blocks of the two parts of each front begin in `block`, `(2*n_front + 1)`; the
     !> block's number in the matrix and the place of its first entry in the part.
     integer, allocatable :: block_start(:), block(:), entry(:)
-    !> Border of the present front, and stack of those that wait for their parents.
-    real(wp), allocatable :: rest(:), stack(:)
-    !> Fronts on the stack, and vectors of a solution.
-    integer, allocatable :: waiting(:)
+    !> Branch of each front, `(n_front)`, and workspaces of the trunk, 0, and of the branches.
+    integer, allocatable :: branch_of(:)
+    type(front_work_t), allocatable :: work(:)
+    !> Vectors of a solution.
     real(wp), allocatable :: y(:), part(:)
     !> Number of fronts shifted in the last factorisation.
     integer :: shifted = 0
@@ -57,62 +60,40 @@ contains
     self%description = "multifrontal LU"
     self%n = matrix%n
     if (allocated(self%left)) deallocate (self%left, self%upper, self%left_start, &
-        self%upper_start, self%pivot, self%rest, self%stack, self%waiting, self%y, self%part)
+        self%upper_start, self%pivot, self%y, self%part)
     call new_front_tree(self%tree, matrix)
     call find_sizes(self)
+    call find_branches(self%tree, self%threads, self%branch_of, self%work)
     call place_blocks(self, matrix)
   end subroutine multifrontal_setup
 
-  !> Find the sizes of the factors, the fronts and the stack, and allocate them.
+  !> Find the sizes of the factors and allocate them.
   subroutine find_sizes(self)
     class(multifrontal_t), intent(inout) :: self
 
-    integer(i8) :: p, m, stacked, largest_stack
-    integer :: f, k, largest, n_waiting
+    integer(i8) :: p, m
+    integer :: f, largest
 
     associate (tree => self%tree)
       allocate (self%left_start(tree%n_front + 1), self%upper_start(tree%n_front + 1))
-      allocate (self%waiting(tree%n_front))
       self%left_start(1) = 1
       self%upper_start(1) = 1
       self%products = 0.0_wp
       largest = 0
-      largest_stack = 0
-      stacked = 0
-      n_waiting = 0
       do f = 1, tree%n_front
         p = 3*int(tree%first(f + 1) - tree%first(f), i8)
         m = 3*int(rows_of(tree, f), i8)
         self%left_start(f + 1) = self%left_start(f) + m*p
         self%upper_start(f + 1) = self%upper_start(f) + p*(m - p)
-        self%products = self%products + (real(p, wp)**3/3.0_wp + real(p, wp)**2*real(m - p, wp) &
-            + real(p, wp)*real(m - p, wp)**2)/27.0_wp
+        self%products = self%products + front_products(tree, f)
         largest = max(largest, int(m - p))
-        do k = 1, tree%children(f)
-          stacked = stacked - border_size(tree, self%waiting(n_waiting))
-          n_waiting = n_waiting - 1
-        end do
-        if (tree%parent(f) == 0) cycle
-        n_waiting = n_waiting + 1
-        self%waiting(n_waiting) = f
-        stacked = stacked + (m - p)**2
-        largest_stack = max(largest_stack, stacked)
       end do
       allocate (self%left(self%left_start(tree%n_front + 1) - 1))
       ! One more, so that the empty part of the last front has an address.
       allocate (self%upper(self%upper_start(tree%n_front + 1)))
     end associate
-    allocate (self%rest(int(largest, i8)**2), self%stack(largest_stack))
     allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(largest))
   end subroutine find_sizes
-
-  !> Return the number of entries of a front's square border.
-  pure integer(i8) function border_size(tree, f)
-    type(front_tree_t), intent(in) :: tree
-    integer, intent(in) :: f
-
-    border_size = (3*int(tree%border_start(f + 1) - tree%border_start(f), i8))**2
-  end function border_size
 
   !> Assign the blocks of the matrix to the fronts, each to the front of its earlier pivot.
   subroutine place_blocks(self, matrix)
@@ -174,36 +155,65 @@ contains
     !> Retry if a block of pivots is not finite.
     type(verdict_t), intent(out) :: verdict
 
-    integer(i8) :: top
-    integer :: f, n_waiting
-    logical :: good
+    integer :: b
 
+    !$omp parallel do if (size(self%work) > 1) num_threads(self%threads) schedule(dynamic)
+    do b = 1, size(self%work) - 1
+      call build_branch(self, matrix, b, self%work(b))
+    end do
+    !$omp end parallel do
     verdict%outcome = verdict_converged
-    self%shifted = 0
-    top = 0
-    n_waiting = 0
-    do f = 1, self%tree%n_front
-      call build_front(self, matrix, f, top, n_waiting, good)
-      if (good) cycle
+    if (all(self%work(1:)%failed == 0)) call build_branch(self, matrix, 0, self%work(0))
+    self%shifted = sum(self%work%shifted)
+    if (all(self%work%failed == 0)) return
+    associate (front => maxval(self%work%failed))
       verdict%outcome = verdict_retry
       verdict%reason = "the factorisation grows without bound in block row " &
-          //to_text(self%tree%order(self%tree%first(f)))
-      return
-    end do
+          //to_text(self%tree%order(self%tree%first(front)))
+    end associate
   end subroutine multifrontal_build
 
+  !> Factorise the fronts of a branch, or those of the trunk when all branches are finished.
+  subroutine build_branch(self, matrix, branch, work)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    integer, intent(in) :: branch
+    type(front_work_t), intent(inout) :: work
+
+    integer :: f
+    logical :: good
+
+    work%top = 0
+    work%n_waiting = 0
+    work%shifted = 0
+    work%failed = 0
+    do f = work%first, work%last
+      if (self%branch_of(f) == branch) then
+        call build_front(self, matrix, f, work, good)
+        if (.not. good) then
+          work%failed = f
+          return
+        end if
+      else if (self%branch_of(self%tree%parent(f)) /= branch) then
+        cycle
+      end if
+      if (self%tree%parent(f) == 0) cycle
+      work%n_waiting = work%n_waiting + 1
+      work%waiting(work%n_waiting) = f
+    end do
+  end subroutine build_branch
+
   !> Assemble and factorise a front, and put its border on the stack.
-  subroutine build_front(self, matrix, f, top, n_waiting, good)
+  subroutine build_front(self, matrix, f, work, good)
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
     integer, intent(in) :: f
-    !> Last entry of the stack in use, and number of fronts on it.
-    integer(i8), intent(inout) :: top
-    integer, intent(inout) :: n_waiting
+    !> That of the front's branch.
+    type(front_work_t), intent(inout) :: work
     !> Whether the pivots are finite.
     logical, intent(out) :: good
 
-    integer :: p, u, k, child, n
+    integer :: p, u, k
 
     associate (tree => self%tree, left => self%left_start(f), upper => self%upper_start(f))
       p = 3*(tree%first(f + 1) - tree%first(f))
@@ -215,24 +225,45 @@ contains
         call put_blocks(p, u, after - middle, self%block(middle:), self%entry(middle:), &
             matrix%value, self%upper(upper))
       end associate
-      self%rest(:u*u) = 0.0_wp
+      if (tree%children(f) > 0) work%rest(:border_size(tree, f)) = 0.0_wp
       do k = 1, tree%children(f)
-        child = self%waiting(n_waiting)
-        n_waiting = n_waiting - 1
-        n = tree%border_start(child + 1) - tree%border_start(child)
-        top = top - border_size(tree, child)
-        call add_border(n, tree%place(tree%border_start(child):), self%stack(top + 1), p, u, &
-            self%left(left), self%upper(upper), self%rest)
+        call add_child(self, f, work)
       end do
-      call factor_front(p, u, self%left(left), self%upper(upper), self%rest, &
-          self%pivot(3*tree%first(f) - 2), self%shifted, good)
+      call factor_front(p, u, tree%children(f) == 0, self%left(left), self%upper(upper), &
+          work%rest, self%pivot(3*tree%first(f) - 2), work%shifted, good)
       if (tree%parent(f) == 0) return
-      n_waiting = n_waiting + 1
-      self%waiting(n_waiting) = f
-      self%stack(top + 1:top + int(u, i8)**2) = self%rest(:u*u)
-      top = top + border_size(tree, f)
+      work%stack(work%top + 1:work%top + border_size(tree, f)) = work%rest(:border_size(tree, f))
+      work%top = work%top + border_size(tree, f)
     end associate
   end subroutine build_front
+
+  !> Add the border of the last front that waits to its parent. If that front ends a branch of its
+  !> own, its border is alone on the branch's stack.
+  subroutine add_child(self, f, work)
+    class(multifrontal_t), intent(inout) :: self
+    !> The parent.
+    integer, intent(in) :: f
+    type(front_work_t), intent(inout) :: work
+
+    integer :: child, branch, n, p, u
+
+    child = work%waiting(work%n_waiting)
+    work%n_waiting = work%n_waiting - 1
+    branch = self%branch_of(child)
+    associate (tree => self%tree, left => self%left_start(f), upper => self%upper_start(f))
+      p = 3*(tree%first(f + 1) - tree%first(f))
+      u = 3*rows_of(tree, f) - p
+      n = tree%border_start(child + 1) - tree%border_start(child)
+      if (branch /= self%branch_of(f)) then
+        call add_border(n, tree%place(tree%border_start(child):), self%work(branch)%stack, p, u, &
+            self%left(left), self%upper(upper), work%rest)
+      else
+        work%top = work%top - border_size(tree, child)
+        call add_border(n, tree%place(tree%border_start(child):), work%stack(work%top + 1), p, u, &
+            self%left(left), self%upper(upper), work%rest)
+      end if
+    end associate
+  end subroutine add_child
 
   !> Solve L U z = r.
   subroutine multifrontal_apply(self, r, z)
@@ -315,8 +346,13 @@ contains
   pure real(wp) function multifrontal_bytes(self) result(bytes)
     class(multifrontal_t), intent(in) :: self
 
-    bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp) &
-        + real(size(self%rest, kind=i8), wp) + real(size(self%stack, kind=i8), wp))
+    integer :: b
+
+    bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp))
+    do b = 0, size(self%work) - 1
+      bytes = bytes + 8.0_wp*(real(size(self%work(b)%rest, kind=i8), wp) &
+          + real(size(self%work(b)%stack, kind=i8), wp))
+    end do
   end function multifrontal_bytes
 
 end module dd3_linalg_multifrontal

@@ -32,6 +32,8 @@ module dd3_linalg_solver
     character(len=24) :: ordering = ""
     !> Whether a choice among solvers must not depend on the clock.
     logical :: reproducible = .false.
+    !> Number of threads; the results do not depend on it.
+    integer :: threads = 1
   end type solver_options_t
 
   !> Outcome of one solution.
@@ -64,6 +66,8 @@ module dd3_linalg_solver
     integer, allocatable :: memory(:)
     !> Renumbered and scaled copy of the system.
     type(scaled_system_t), private :: system
+    !> Right-hand side and solution in its numbering, `(3n)`.
+    real(wp), allocatable, private :: scaled_b(:), scaled_x(:)
   contains
     procedure, non_overridable :: setup
     procedure, non_overridable :: factor
@@ -122,7 +126,8 @@ contains
     call find_ordering(trim(self%options%ordering), matrix, order, error)
     if (allocated(error)) call find_ordering("none", matrix, order, error)
     call self%system%setup(matrix, order)
-    if (allocated(self%memory)) deallocate (self%memory)
+    if (allocated(self%memory)) deallocate (self%memory, self%scaled_b, self%scaled_x)
+    allocate (self%scaled_b(3*matrix%n), self%scaled_x(3*matrix%n))
     call self%setup_scaled(self%system%matrix)
     if (.not. allocated(self%memory)) allocate (self%memory(0))
   end subroutine setup
@@ -148,14 +153,12 @@ contains
     real(wp), intent(out) :: x(:)
     type(solver_report_t), intent(out) :: report
 
-    real(wp), allocatable :: scaled_b(:), scaled_x(:)
     real(wp) :: length
 
     x = 0.0_wp
     report%method = self%method
-    allocate (scaled_b(size(b)), scaled_x(size(x)))
-    call self%system%scale_rhs(b, scaled_b)
-    length = sqrt(dot(scaled_b, scaled_b))
+    call self%system%scale_rhs(b, self%scaled_b)
+    length = sqrt(dot(self%scaled_b, self%scaled_b))
     if (.not. ieee_is_finite(length)) then
       report%reason = "the right-hand side is not finite"
       return
@@ -165,12 +168,12 @@ contains
       report%residual = 0.0_wp
       return
     end if
-    scaled_b = scaled_b/length
-    scaled_x = 0.0_wp
+    self%scaled_b = self%scaled_b/length
+    self%scaled_x = 0.0_wp
     report%residual = 1.0_wp
-    call self%solve_scaled(self%system%matrix, scaled_b, scaled_x, report)
-    scaled_x = length*scaled_x
-    call self%system%restore_order(scaled_x, x)
+    call self%solve_scaled(self%system%matrix, self%scaled_b, self%scaled_x, report)
+    self%scaled_x = length*self%scaled_x
+    call self%system%restore_order(self%scaled_x, x)
   end subroutine solve
 
   !> Release the factors held outside Fortran; the solver can be set up again.

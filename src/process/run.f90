@@ -117,6 +117,7 @@ contains
     solver_options%iterations = start%solver%iterations
     solver_options%ordering = start%solver%ordering
     solver_options%reproducible = start%reproducible
+    solver_options%threads = start%threads
   end function solver_options
 
   !> Open the records, or continue those of a restart.
