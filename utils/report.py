@@ -255,7 +255,7 @@ def zone_map(report, zone):
         skin = part.extract_surface(algorithm="dataset_surface")
         plotter.add_mesh(skin, scalars="zone", cmap=list(forming_limit.COLOURS), show_edges=True, edge_color="#444444",
                          clim=[-0.5, len(forming_limit.ZONES) - 0.5], show_scalar_bar=False, ambient=0.3)
-    plot_sheet.aim(plotter, plot_sheet.box_of(run, [report.last], options), options)
+    plot_sheet.aim(plotter, plot_sheet.box_of(run, [report.last], options, {}), options)
     plotter.screenshot(str(report.pictures / "zones.png"))
     plotter.close()
     keys = " ".join(f'<span class="key" style="background:{colour}"></span>{name}&emsp;'

@@ -16,7 +16,7 @@ module dd3_process_tool_crossing
   real(wp), parameter :: notable_depth = 0.01_wp
   !> Distance behind a surface within which points are looked for, in thicknesses and in sizes of
   !> their patch, the larger of the two.
-  real(wp), parameter :: reach_thicknesses = 2.0_wp, reach_patches = 0.5_wp
+  real(wp), parameter :: depth_in_thicknesses = 2.0_wp, depth_in_patches = 0.5_wp
   !> Number of patches from which on every fourth line of samples is used.
   integer, parameter :: many_patches = 100
 
@@ -60,20 +60,20 @@ contains
     !> Displacement of the second, mm.
     real(wp), intent(in) :: origin(3)
 
-    real(wp) :: x(3), depth, reach
+    real(wp) :: x(3), depth, search_depth
     integer :: k, i, j, step
 
     associate (patch => model%tool(a)%surface%patch, surface => model%tool(b)%surface)
       step = merge(4, 1, size(patch) > many_patches)
       do k = 1, size(patch)
-        reach = min(norm2(moved), max(reach_thicknesses*model%thickness, &
-            reach_patches*patch(k)%size))
-        if (any(patch(k)%lower + offset > surface%upper + reach .or. &
-            patch(k)%upper + offset < surface%lower - reach)) cycle
+        search_depth = min(norm2(moved), max(depth_in_thicknesses*model%thickness, &
+            depth_in_patches*patch(k)%size))
+        if (any(patch(k)%lower + offset > surface%upper + search_depth .or. &
+            patch(k)%upper + offset < surface%lower - search_depth)) cycle
         do j = 0, n_sample, step
           do i = 0, n_sample, step
             x = position_at(patch(k), real(i, wp)/n_sample, real(j, wp)/n_sample) + offset
-            depth = depth_behind(surface, x, moved, reach)
+            depth = depth_behind(surface, x, moved, search_depth)
             if (depth <= max(self%depth, notable_depth*model%thickness)) cycle
             self%depth = depth
             self%x = x + origin
@@ -85,23 +85,23 @@ contains
 
   !> Return the depth of a point behind a surface if it was in front of it before it moved, mm; 0
   !> otherwise.
-  pure real(wp) function depth_behind(surface, x, moved, reach) result(depth)
+  pure real(wp) function depth_behind(surface, x, moved, search_depth) result(depth)
     type(surface_t), intent(in) :: surface
     !> Point and its displacement relative to the surface, mm.
     real(wp), intent(in) :: x(3), moved(3)
     !> Largest depth, mm.
-    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: search_depth
 
     type(hint_t) :: hint
     type(hit_t) :: hit
 
     depth = 0.0_wp
-    if (any(x > surface%upper + reach .or. x < surface%lower - reach)) return
-    call find_contact(surface, x, hint, reach, reach, hit)
+    if (any(x > surface%upper + search_depth .or. x < surface%lower - search_depth)) return
+    call find_contact(surface, x, hint, search_depth, search_depth, hit)
     if (.not. hit%found .or. hit%distance >= 0.0_wp) return
     depth = -hit%distance
     hint = hint_t()
-    call find_contact(surface, x - moved, hint, reach + norm2(moved), reach, hit)
+    call find_contact(surface, x - moved, hint, search_depth + norm2(moved), search_depth, hit)
     if (.not. hit%found .or. hit%distance < 0.0_wp) depth = 0.0_wp
   end function depth_behind
 
