@@ -5,6 +5,7 @@
 
 import argparse
 import importlib.util
+import shutil
 import struct
 import subprocess
 import sys
@@ -63,8 +64,8 @@ def size_of(picture):
     return struct.unpack(">II", data[16:24])
 
 
-def call(script, *arguments, expect=0):
-    done = subprocess.run([sys.executable, UTILS / script, *map(str, arguments)], capture_output=True, text=True)
+def call(script, *arguments, expect=0, python=(sys.executable,)):
+    done = subprocess.run([*python, UTILS / script, *map(str, arguments)], capture_output=True, text=True)
     assert done.returncode == expect, f"{script} {arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout + done.stderr
 
@@ -87,7 +88,17 @@ def check_refusals(run, folder):
     listed = subprocess.run(f"'{sys.executable}' '{UTILS / 'plot_sheet.py'}' '{run}' --list | :", shell=True,
                             capture_output=True, text=True, check=False)
     assert not listed.stderr, listed.stderr
-    pathless = subprocess.run([sys.executable, "-S", "-s", UTILS / "plot_force.py", run], capture_output=True,
+    check_packages(run, folder)
+
+
+def check_packages(run, folder):
+    """Check that a script without its packages continues in the project's .venv, or says that they are missing."""
+    call("plot_force.py", run, "--output", folder / "force.png", python=(sys.executable, "-S", "-s"))
+    elsewhere = folder / "elsewhere"
+    elsewhere.mkdir()
+    for script in UTILS.glob("*.py"):
+        shutil.copy(script, elsewhere)
+    pathless = subprocess.run([sys.executable, "-S", "-s", elsewhere / "plot_force.py", run], capture_output=True,
                               text=True, check=False)
     assert pathless.returncode == 2 and pathless.stderr.startswith("error: no package"), pathless.stderr
 
