@@ -228,10 +228,6 @@ contains
             "one sheet, by *BLANK or by *MESH")
       end do
     end if
-    if (has_block(deck, "tool") .and. .not. has_block(deck, "contact")) then
-      call errors%push_input(whole_file, "the block *CONTACT is missing", &
-          "*CONTACT, as there are tools")
-    end if
   end subroutine check_presence
 
   pure logical function has_block(deck, keyword)

@@ -143,24 +143,28 @@ contains
           " thicknesses), at the face of element "// &
           to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "// &
           to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "// &
-          suitable_mesh(state%deepest_radius(tool), model%thickness)
+          suitable_mesh(state%deepest_radius(tool), length**2/(8.0_wp*state%largest_depth(tool)), &
+          model%thickness)
     end associate
   end function depth_warning
 
   !> Return the mesh with which a radius of a tool gives no warning: the depth l**2/(8R) of elements
-  !> of length l is slight, or notable neither for the thickness nor for the length.
-  function suitable_mesh(radius, thickness) result(text)
-    !> Radius of curvature, mm; huge for an edge without radius.
-    real(wp), intent(in) :: radius
+  !> of length l is slight, or notable neither for the thickness nor for the length. Where the tool is
+  !> curved in two directions, or along the diagonal of a face, the depth is that of a smaller radius.
+  function suitable_mesh(radius, radius_of_depth, thickness) result(text)
+    !> Radius of curvature, mm; huge for an edge without radius. Radius of a cylinder that enters the
+    !> elements as deep, mm.
+    real(wp), intent(in) :: radius, radius_of_depth
     real(wp), intent(in) :: thickness
     character(len=:), allocatable :: text
 
-    real(wp) :: length
+    real(wp) :: length, smaller
 
     text = "a line of nodes along the edge of the tool, or a radius there"
     if (radius >= huge(1.0_wp)) return
-    length = max(sqrt(8.0_wp*radius*slight_depth*thickness), &
-        min(sqrt(8.0_wp*radius*notable_depth*thickness), 8.0_wp*radius*notable_slope))
+    smaller = min(radius, radius_of_depth)
+    length = max(sqrt(8.0_wp*smaller*slight_depth*thickness), &
+        min(sqrt(8.0_wp*smaller*notable_depth*thickness), 8.0_wp*smaller*notable_slope))
     text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
         to_text(radius, 3)//" mm"
   end function suitable_mesh
