@@ -1,5 +1,5 @@
-!> Compare the linear solvers on the matrices of a run: CGS with ILU(k), k = 0 ... 3, for every
-!> ordering, the automatic choice, and UMFPACK.
+!> Compare the linear solvers on the matrices of a run: UMFPACK, the automatic choice, the complete
+!> factorisation on blocks, and CGS with ILU(k), k = 0 ... 3, for every ordering.
 !>
 !>     benchmark_run_matrices <input file> [name=value ...]
 !>
@@ -26,13 +26,14 @@ program benchmark_run_matrices
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_model_build, only : new_model
-  use dd3_model_initial, only : new_initial_state
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
-  use dd3_model_state, only : state_t
-  use dd3_process_increment, only : accept_increment, new_stepper, prepare_increment, &
-      shrink_increment, stepper_t, try_increment
-  use dd3_process_stage, only : begin_phase, next_output_progress, phase_is_over
+  use dd3_model_state, only : new_state, state_t
+  use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
+      try_increment
+  use dd3_process_phase_end, only : phase_is_over
+  use dd3_process_phase_start, only : begin_phase
+  use dd3_process_predictor, only : new_prediction
+  use dd3_process_stepper, only : stepper_t
   use dd3_system_system, only : new_system
   implicit none
 
@@ -120,25 +121,24 @@ contains
 
     type(stepper_t) :: stepper
     type(state_t) :: committed, trial
-    type(phase_t) :: phase
     type(error_t), allocatable :: error
     real(wp) :: step, next
     logical :: chosen
     integer :: number
 
-    call new_initial_state(committed, model)
-    call new_initial_state(trial, model)
+    call new_state(committed, model)
+    call new_state(trial, model)
     call new_system(stepper%system, model, usual_options("auto"), 1, error)
     if (allocated(error)) error stop 1
-    call new_stepper(stepper, model)
+    call new_prediction(stepper%prediction, model)
     do number = 1, size(model%phase)
-      call begin_phase(model, number, phase, committed)
+      call begin_phase(model, number, committed)
       step = 1.0_wp
       if (number == size(model%phase)) step = 1.0_wp/real(places, wp)
       next = 0.5_wp*step
-      do while (.not. phase_is_over(phase, committed))
+      do while (.not. phase_is_over(model, committed))
         chosen = committed%progress >= next
-        call run_increment(model, phase, stepper, committed, trial, chosen, sample)
+        call run_increment(model, stepper, committed, trial, chosen, sample)
         if (committed%increment /= trial%increment) return
         if (chosen) next = next + step
       end do
@@ -146,40 +146,37 @@ contains
   end subroutine collect
 
   !> Run one increment; `trial%increment` is -1 on return if it fails.
-  subroutine run_increment(model, phase, stepper, committed, trial, chosen, sample)
+  subroutine run_increment(model, stepper, committed, trial, chosen, sample)
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
     type(state_t), intent(inout) :: committed, trial
     !> Whether to add the systems of the increment to `sample`.
     logical, intent(in) :: chosen
     type(sample_t), allocatable, intent(inout) :: sample(:)
 
-    type(verdict_t) :: verdict
     logical :: again
 
     trial%increment = -1
-    call prepare_increment(stepper, model, phase, committed, &
-        next_output_progress(model, phase, committed), verdict)
-    if (verdict%outcome /= verdict_converged) return
-    if (chosen) call keep("predictor", phase, committed, stepper, sample)
+    call prepare_increment(model, committed, stepper)
+    if (stepper%attempt%verdict%outcome /= verdict_converged) return
+    if (chosen) call keep("predictor", model, committed, stepper, sample)
     do
-      call try_increment(stepper, model, phase, committed, trial, verdict)
-      if (verdict%outcome == verdict_converged) exit
-      call shrink_increment(stepper, phase, again)
+      call try_increment(model, committed, trial, stepper)
+      if (stepper%attempt%verdict%outcome == verdict_converged) exit
+      call shrink_increment(model%phase(committed%phase), stepper, again)
       if (again) cycle
       trial%increment = -1
       return
     end do
-    if (chosen) call keep("corrector", phase, trial, stepper, sample)
-    call accept_increment(stepper, trial, committed)
+    if (chosen) call keep("corrector", model, trial, stepper, sample)
+    call accept_increment(model, trial, stepper, committed)
   end subroutine run_increment
 
   !> Append the present linear system to the samples.
-  subroutine keep(part, phase, state, stepper, sample)
+  subroutine keep(part, model, state, stepper, sample)
     !> Predictor or corrector.
     character(len=*), intent(in) :: part
-    type(phase_t), intent(in) :: phase
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(stepper_t), intent(in) :: stepper
     type(sample_t), allocatable, intent(inout) :: sample(:)
@@ -195,7 +192,7 @@ contains
       this%matrix = stepper%system%reduced
       this%b = stepper%system%problem%rhs
       write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') &
-          n + 1, phase%name, state%travel, state%increment, part, count(state%plastic), &
+          n + 1, model%phase(state%phase)%name, state%travel, state%increment, part, count(state%plastic), &
           count(status == status_gap), count(status == status_stick), count(status == status_slip)
     end associate
   end subroutine keep
@@ -228,6 +225,7 @@ contains
     print '(a)', "|---|---|---|---|---|---|---|---|---|---|---|---|"
     call measure(usual_options("umfpack"), "UMFPACK", sample)
     call measure(usual_options("auto"), "auto", sample)
+    call measure(usual_options("block_lu"), "block LU", sample)
     options = usual_options("cgs")
     do i = 1, size(ordering_names)
       options%ordering = ordering_names(i)

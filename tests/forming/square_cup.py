@@ -66,14 +66,14 @@ def main():
     cups, efforts = {}, {}
     for name, across, layers, element, points in RUNS:
         settings = {"divisions": f"{across} {across} {layers}", "element": element}
+        deck = DECK
         if points:
             settings["points"] = points
-        deck = DECK if points else options.work / "square_cup_hex8.dat"
-        if not points:
+        else:
+            deck = options.work / "square_cup_hex8.dat"
+            settings["tools"] = DECK.parent
             text = DECK.read_text(encoding="utf-8").replace("  thickness_points = ${points}\n", "")
-            for path in ("../", *(f"{tool}.bez" for tool in ("punch", "die", "holder"))):
-                text = text.replace(path, str((DECK.parent / path).resolve()) + "/"*path.endswith("/"))
-            deck.write_text(text, encoding="utf-8")
+            deck.write_text(text.replace("../", f"{DECK.parents[1]}/"), encoding="utf-8")
         folder = studies.make(options, name.replace(" ", "_"), deck, settings)
         if folder:
             cups[name], efforts[name] = Cup(folder, across, layers), studies.effort(folder)
