@@ -26,6 +26,7 @@ module dd3_contact_closest
   integer, parameter :: most_patches = 4
   !> Largest difference of equal distances, relative to the surface's size.
   real(wp), parameter :: equal_distance = 1.0e-9_wp
+
   !> What is kept of a node's last query.
   type :: hint_t
     !> Patch of the closest point; 0 if none was found.

@@ -8,9 +8,10 @@ module dd3_element_kinematics
   use dd3_element_projection, only : project_dilatations, project_gradients
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
+  use dd3_linalg_tensor, only : determinant
   implicit none
   private
-  public :: element_kinematics, element_gradients
+  public :: element_kinematics, element_gradients, point_volumes
 
 contains
 
@@ -86,6 +87,30 @@ contains
     verdict%outcome = verdict_converged
     if (bad_point > 0) call record_failure(verdict, bad_point)
   end subroutine element_gradients
+
+  !> Evaluate the volumes that the points stand for in one configuration.
+  pure subroutine point_volumes(element, x, volume)
+    type(element_t), intent(in) :: element
+    !> Positions of the nodes, mm.
+    real(wp), intent(in) :: x(3, element%n_node)
+    !> mm3.
+    real(wp), intent(out) :: volume(element%n_point)
+
+    real(wp) :: jacobian(3, element%n_point, 3), matrix(3, 3)
+    integer :: p
+
+    associate (n => element%n_node, m => element%n_point)
+      if (n == 8 .and. m == 8) then
+        call jacobians(24, 8, element%slope, x, jacobian)
+      else
+        call jacobians(3*m, n, element%slope, x, jacobian)
+      end if
+      do p = 1, m
+        matrix = transpose(jacobian(:, p, :))
+        volume(p) = element%weight(p)*determinant(matrix)
+      end do
+    end associate
+  end subroutine point_volumes
 
   !> Record the point whose Jacobian determinant is not positive.
   subroutine record_failure(verdict, point)

@@ -157,9 +157,12 @@ contains
       if (self%memory(memory_failures) > 0) self%reason = "CGS skipped after "// &
           to_text(self%memory(memory_failures))//" failures in a row"
     end if
-    if (self%ready == by_none) call factor_completely(self, matrix, verdict)
-    self%method = name_of(self%ready)
+    if (self%ready == by_none) then
+      began = processor_time()
+      call factor_completely(self, matrix, verdict)
+    end if
     self%seconds = processor_time() - began
+    self%method = name_of(self%ready)
   end subroutine auto_solver_factor
 
   !> Return the name of a solver in the registry.
@@ -242,8 +245,9 @@ contains
         return
       end if
       call record_failure(self, trim(report%reason))
-      call factor_completely(self, matrix, verdict)
+      began = processor_time()
       self%seconds = 0.0_wp
+      call factor_completely(self, matrix, verdict)
     end if
     if (self%ready == by_block) then
       call self%block%solve_scaled(matrix, b, x, report)

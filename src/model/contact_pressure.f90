@@ -1,19 +1,18 @@
 !> Contact pressure at the candidates: normal force over tributary area. The tributary area of a node
-!> is its fraction of the present area of the contact faces around it.
+!> is its fraction of the area of the contact faces around it.
 module dd3_model_contact_pressure
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
+  use dd3_model_sheet_faces, only : face_area
   use dd3_model_state, only : state_t
   implicit none
   private
   public :: tributary_areas, contact_pressures, tool_contact_t, tool_contacts
 
-  !> Contact of a tool: nodes, area, mm2, and largest pressure, MPa.
+  !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
-    integer :: nodes = 0
     real(wp) :: area = 0.0_wp, pressure = 0.0_wp
   end type tool_contact_t
 
@@ -27,7 +26,6 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: area(:)
 
-    real(wp) :: whole
     integer :: f
 
     allocate (area(model%n_contact), source=0.0_wp)
@@ -35,9 +33,7 @@ contains
     do f = 1, size(model%contact_face)
       associate (corner => model%face%corner(:, model%contact_face(f)), &
           c => model%candidate_of(model%face%node(:, model%contact_face(f))))
-        whole = 0.5_wp*norm2(cross(x(:, corner(3)) - x(:, corner(1)), &
-            x(:, corner(4)) - x(:, corner(2))))
-        area(c) = area(c) + whole*model%element%face_weight
+        area(c) = area(c) + face_area(x(:, corner))*model%element%face_weight
       end associate
     end do
   end function tributary_areas
@@ -48,18 +44,28 @@ contains
     type(state_t), intent(in) :: state
     real(wp), allocatable :: pressure(:)
 
-    real(wp) :: area(model%n_contact), normal(3, model%n_contact)
+    pressure = pressures_on_areas(model, state, tributary_areas(model, state%x))
+  end function contact_pressures
+
+  !> Return the pressures at the candidates, MPa; zero without an area.
+  pure function pressures_on_areas(model, state, area) result(pressure)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tributary areas, `(n_contact)`, mm2.
+    real(wp), intent(in) :: area(:)
+    real(wp) :: pressure(size(area))
+
+    real(wp) :: normal(3, size(area))
     integer :: c
 
-    allocate (pressure(model%n_contact), source=0.0_wp)
+    pressure = 0.0_wp
     if (.not. allocated(model%contact_face)) return
-    area = tributary_areas(model, state%x)
     normal = outward_normals(model, state%x)
-    do c = 1, model%n_contact
+    do c = 1, size(area)
       if (area(c) <= 0.0_wp) cycle
       pressure(c) = dot_product(normal(:, c), state%lambda(:, c))/area(c)
     end do
-  end function contact_pressures
+  end function pressures_on_areas
 
   !> Return the contact of each tool, `(n_tool)`.
   pure function tool_contacts(model, state) result(contact)
@@ -72,11 +78,10 @@ contains
 
     allocate (contact(model%n_tool))
     area = tributary_areas(model, state%x)
-    pressure = contact_pressures(model, state)
+    pressure = pressures_on_areas(model, state, area)
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
       associate (tool => contact(state%contact_tool(c)))
-        tool%nodes = tool%nodes + 1
         tool%area = tool%area + area(c)
         tool%pressure = max(tool%pressure, pressure(c))
       end associate

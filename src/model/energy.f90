@@ -1,7 +1,7 @@
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : determinant
+  use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -21,7 +21,7 @@ contains
 
     elastic_energy = 0.0_wp
     do e = 1, model%n_element
-      volume = point_volumes(model, state%x, e)
+      call point_volumes(model%element, state%x(:, model%connectivity(:, e)), volume)
       associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
         do p = 1, size(volume)
           elastic_energy = elastic_energy + 0.5_wp*volume(p)*dot_product(state%stress(:, p, e), &
@@ -44,7 +44,7 @@ contains
     do e = 1, model%n_element
       strain = new%internal_variables(1, :, e) - old%internal_variables(1, :, e)
       if (all(strain <= 0.0_wp)) cycle
-      volume = point_volumes(model, new%x, e)
+      call point_volumes(model%element, new%x(:, model%connectivity(:, e)), volume)
       do p = 1, size(volume)
         if (strain(p) <= 0.0_wp) cycle
         work = work + 0.5_wp*volume(p)*strain(p)*(equivalent(old) + equivalent(new))
@@ -62,23 +62,5 @@ contains
     end function equivalent
 
   end function plastic_work_increment
-
-  !> Return the volumes that the points of an element stand for, mm3.
-  pure function point_volumes(model, x, e) result(volume)
-    type(model_t), intent(in) :: model
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    integer, intent(in) :: e
-    real(wp) :: volume(model%element%n_point)
-
-    integer :: p
-
-    associate (element => model%element, node => model%connectivity(:, e))
-      do p = 1, element%n_point
-        volume(p) = element%weight(p)*determinant(matmul(x(:, node), &
-            transpose(element%dshape(:, :, p))))
-      end do
-    end associate
-  end function point_volumes
 
 end module dd3_model_energy

@@ -3,7 +3,7 @@
 module dd3_model_loads
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
-  use dd3_linalg_tensor, only : cross
+  use dd3_model_sheet_faces, only : face_area
   implicit none
   private
   public :: load_set_t, face_load_weights, nodal_forces, spring_stiffness
@@ -59,14 +59,6 @@ contains
     end do
     if (all(on_face(node))) weight = force(node)/sum(force(node))
   end subroutine face_load_weights
-
-  !> Return the area of a face from its diagonals, exact for plane faces with straight edges.
-  pure real(wp) function face_area(corner)
-    !> `(3, 4)`, mm.
-    real(wp), intent(in) :: corner(:, :)
-
-    face_area = 0.5_wp*norm2(cross(corner(:, 3) - corner(:, 1), corner(:, 4) - corner(:, 2)))
-  end function face_area
 
   !> Return the stiffness of the spring that replaces the contact of a released node, N/mm. A contact
   !> force that only faded would be a dead load: two opposing ones deflect the sheet between them

@@ -2,7 +2,7 @@
 !> and slip against forces where the contact status is decided.
 module dd3_model_penalty
   use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : cross
+  use dd3_model_contact_pressure, only : tributary_areas
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   implicit none
@@ -43,16 +43,12 @@ contains
     real(wp) :: area(model%n_contact), young(model%n_contact), mean
     integer :: f, c
 
-    area = 0.0_wp
+    area = tributary_areas(model, model%x0)
     young = model%material(model%material_of(1))%young
     do f = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(f)), x => model%x0)
-        associate (candidate => model%candidate_of(model%face%node(:, model%contact_face(f))))
-          area(candidate) = area(candidate) + model%element%face_weight*(0.5_wp*norm2(cross( &
-              x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2)))))
-          young(candidate) = model%material(model%material_of(model%face%element( &
-              model%contact_face(f))))%young
-        end associate
+      associate (face => model%contact_face(f))
+        young(model%candidate_of(model%face%node(:, face))) = &
+            model%material(model%material_of(model%face%element(face)))%young
       end associate
     end do
     mean = model%thickness**2

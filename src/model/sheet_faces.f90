@@ -6,7 +6,7 @@ module dd3_model_sheet_faces
   use dd3_mesh_hexahedra, only : same_nodes
   implicit none
   private
-  public :: sheet_faces_t, new_sheet_faces, face_normal
+  public :: sheet_faces_t, new_sheet_faces, face_area, face_normal
 
   !> Faces that belong to one element only.
   type :: sheet_faces_t
@@ -61,6 +61,14 @@ contains
       self%node(:, k) = connectivity(element%face(:, f), self%element(k))
     end do
   end subroutine new_sheet_faces
+
+  !> Return the area of a face from its diagonals, exact for plane faces with straight edges, mm2.
+  pure real(wp) function face_area(x)
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
+
+    face_area = 0.5_wp*norm2(cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2)))
+  end function face_area
 
   !> Return the outward unit normal at the centre of a face; zero if the face has no area.
   pure function face_normal(x) result(normal)
