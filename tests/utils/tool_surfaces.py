@@ -357,6 +357,26 @@ def check_cad(folder, program):
         convert(folder / name, bez, expect=2)
 
 
+def check_example(folder, program):
+    """Check the tools of the square cup made from its STEP files, which have the places of the input file."""
+    cup = ROOT / "input_files" / "square_cup"
+    done = subprocess.run([cup / "step_files.py", folder], capture_output=True, text=True, check=True)
+    assert not done.stdout + done.stderr, done
+    for kind, toward, half, corner, radius, face in (("punch", -1, 35, 10, 8, 0.78), ("holder", -1, 37, 12, 0, 0.78),
+                                                     ("die", 1, 37, 12, 5, 0)):
+        convert(folder / f"{kind}.step", folder / f"{kind}.bez", "--toward", 0, 0, toward)
+        point = points_of(read(folder / f"{kind}.bez"), 5)[0] - (0, 0, face)
+        if kind == "holder":  # a die upside down
+            point[..., 2] *= -1
+        near = (np.abs(point[..., 2]) < 15) & (np.abs(point[..., :2]).max(axis=2) < 105)
+        shape = "punch" if kind == "punch" else "die"
+        distance = np.abs(box_distance(point, (half, half), corner, radius, shape))[near].max()
+        assert distance < 0.002, (kind, distance)
+    done = subprocess.run([program, "--check", "--set", f"tools={folder}", cup / "square_cup.dat"], capture_output=True,
+                          text=True, check=False)
+    assert done.returncode == 0 and done.stdout.count(" 0 near misses, 0 T-junctions") == 3, done.stdout + done.stderr
+
+
 def check_messages(folder):
     """Check what is said of files that are no sources."""
     (folder / "empty.step").write_text("")
@@ -378,6 +398,7 @@ def main():
             check(Path(name), program)
         if importlib.util.find_spec("gmsh"):
             check_cad(Path(name), program)
+            check_example(Path(name), program)
         check_messages(Path(name))
     print("tool surfaces are right")
 
