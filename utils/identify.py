@@ -1,8 +1,4 @@
-#!/usr/bin/env -S uv run --script
-# /// script
-# requires-python = ">=3.11"
-# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6", "scipy==1.17.1"]
-# ///
+#!/usr/bin/env python3
 """Find the parameters of a yield criterion and of a hardening law from measured values.
 
 Weighted least squares from several starts. Every trial set is evaluated by dd3imp itself, at single points (*POINT), so

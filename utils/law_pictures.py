@@ -1,8 +1,4 @@
-#!/usr/bin/env -S uv run --script
-# /// script
-# requires-python = ">=3.11"
-# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
-# ///
+#!/usr/bin/env python3
 """Draw the pictures of docs/laws: one for each yield criterion, hardening law and back-stress law.
 
     law_pictures.py --program build/release/dd3imp

@@ -1,8 +1,4 @@
-#!/usr/bin/env -S uv run --script
-# /// script
-# requires-python = ">=3.11"
-# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
-# ///
+#!/usr/bin/env python3
 """Draw tool force against tool displacement, for one or several runs.
 
     plot_force.py bending.out

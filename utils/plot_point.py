@@ -1,8 +1,4 @@
-#!/usr/bin/env -S uv run --script
-# /// script
-# requires-python = ">=3.11"
-# dependencies = ["matplotlib==3.11.2", "numpy==2.4.6"]
-# ///
+#!/usr/bin/env python3
 """Draw the response of materials at a point: tension curves, r-values and yield stresses by angle, yield surfaces.
 
     plot_point.py steel.dat aluminium.dat --program build/release/dd3imp --output materials.png

@@ -1,8 +1,4 @@
-#!/usr/bin/env -S uv run --script
-# /// script
-# requires-python = ">=3.11"
-# dependencies = ["h5py==3.16.0", "numpy==2.4.6", "pyvista==0.49.1", "vtk==9.7.2"]
-# ///
+#!/usr/bin/env python3
 """Draw the deformed sheet between its tools, coloured by a field. No display is needed.
 
     plot_sheet.py bending.out
