@@ -215,7 +215,7 @@ module dd3_input_case
     integer :: target_iterations = 0
     !> Whether the status of candidates that cycle is held, and whether iterations are damped.
     logical :: active_set = .false., damping = .false.
-    !> Whether a penalty above the automatic one is reduced to it after a failed attempt.
+    !> Whether a penalty above the automatic one is reduced to it where iterations fail to converge.
     logical :: adapt_penalty = .false.
   end type newton_spec_t
 

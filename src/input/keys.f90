@@ -174,8 +174,8 @@ contains
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
       row("active_set", kind_logical, "", "on", "on: hold the contact status of nodes where it "// &
           "cycles, then release the nodes that violate it"), &
-      row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic one to "// &
-          "it after a failed attempt"), &
+      row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic "// &
+          "one to it after ten iterations or a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
           "displacement gradients, and any that inverts an element")]
   end function newton_keys

@@ -37,6 +37,8 @@ module dd3_process_corrector
   !> fallen to a new minimum in the last ones.
   integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
+  !> Iteration after which the penalty of the input is reduced to the automatic one.
+  integer, parameter :: reducing_iteration = 10
   !> Largest number of nodes listed in a message.
   integer, parameter :: most_listed = 4
 
@@ -104,6 +106,8 @@ contains
           return
         end if
         if (phase%newton%damping .and. is_lost(correction%criterion)) exit
+        if (j == reducing_iteration) trial%penalty_reduced = trial%penalty_reduced .or. &
+            (phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp)
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
         call subtract_condensed(system%enhanced, system%problem%residual)

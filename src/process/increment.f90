@@ -124,7 +124,7 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
-      attempt%penalty_reduced = phase%newton%adapt_penalty
+      attempt%penalty_reduced = phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate
