@@ -3,6 +3,7 @@
 Needs Python alone. Whatever cannot be used raises a Problem.
 """
 
+import argparse
 import csv
 import os
 import re
@@ -199,6 +200,21 @@ def find_program(path):
     if not found:
         raise Problem(f"{path}: no such program; give --program FILE")
     return Path(found).resolve()
+
+
+def made_folder(path):
+    """Return the path of a folder, which is made if it is not there."""
+    path = Path(path)
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def parser_of_runs(description):
+    """Return the parser of a script that makes runs: `program`, looked up, and `work`, the folder of the runs."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=find_program, help="the program dd3imp")
+    parser.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
+    return parser
 
 
 def command(program, deck, folder=None, options=(), settings=None):
