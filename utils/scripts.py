@@ -35,6 +35,12 @@ def end(message):
     sys.exit(2)
 
 
+def check(condition, message):
+    """End the script with exit code 1 and a message unless a condition holds."""
+    if not condition:
+        sys.exit(message)
+
+
 class Progress:
     """A bar on stderr for work of more than a second; on a terminal only. Call it with the fraction that is done."""
 

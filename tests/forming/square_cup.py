@@ -3,8 +3,6 @@
 
     square_cup.py --program build/release/dd3imp --work build/square_cup            make the runs that are missing
     square_cup.py --program build/release/dd3imp --work build/square_cup --write    and put them into docs/reports
-
-The runs take hours; `--only` selects some. An interrupted run is continued.
 """
 import math
 import sys
@@ -14,9 +12,7 @@ import studies
 from fields import Fields
 from scripts import run
 
-DECK = studies.ROOT / "input_files" / "square_cup" / "square_cup.dat"
-REPORT = studies.ROOT / "docs" / "reports" / "square_cup.md"
-PICTURE = studies.ROOT / "docs" / "images" / "square_cup.png"
+DECK, REPORT, PICTURE = studies.paths("square_cup")
 SIZE = 75.0  # of the quarter, mm
 TRAVELS = (15.0, 40.0)
 # Name of the run, elements along a side, through the thickness, element, points.
@@ -48,10 +44,7 @@ class Cup:
 
 def draw(cups):
     """Draw the thickness along the diagonal at the end."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    figure, axes = studies.new_figure(7, 4)
     for name, cup in cups.items():
         axes.plot(cup.place, cup.thickness(TRAVELS[-1]), label=name, linewidth=1.2,
                   linestyle="--" if name.startswith("hex8") else "-")
