@@ -52,7 +52,8 @@ def check_utilities(prefix, folder):
         call([prefix / "bin" / "dd3imp-section", "cup.out", "--plane", "y=0", "--field", "thickness", "--table",
               "section.csv"], folder)
         assert (folder / "section.csv").stat().st_size > 100
-    assert "install_needed" in call(["bash", prefix / "share" / "dd3imp" / "utils" / "install_needed.sh", "--help"], folder)
+    script = prefix / "share" / "dd3imp" / "utils" / "install_needed.sh"
+    assert "install_needed" in call(["bash", script, "--help"], folder)
 
 
 def main():
