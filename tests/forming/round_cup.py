@@ -22,7 +22,7 @@ BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall
 ANGLES = np.arange(0, 91, 15)  # of the table, degrees from rolling
 LEAST = 0.05  # rise above both neighbouring valleys that makes an ear, mm
 MATERIALS = {"Yld2004-18p": "aa2090_t3_yld2004", "Hill 1948": "aa2090_t3_hill48"}
-RUNS = [(f"{name} {core} x {ring}", material, f"{core} {ring} 1") for core, ring in ((6, 12), (12, 24))
+RUNS = [(f"{name} {core} x {ring}", material, f"{core} {ring} 1") for core, ring in ((6, 12), (8, 16), (12, 24))
         for name, material in MATERIALS.items()]
 
 
@@ -91,8 +91,9 @@ def draw(cups, estimates):
     figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
     for name, cup in cups.items():
         law = next(law for law in MATERIALS if name.startswith(law))
+        style = "--" if name.endswith("12") else "-." if name.endswith("16") else "-"
         axes.plot(cup.angles, cup.heights - cup.heights.mean(), label=name, linewidth=1.4,
-                  color=f"C{list(MATERIALS).index(law)}", linestyle="-" if name.endswith("24") else "--")
+                  color=f"C{list(MATERIALS).index(law)}", linestyle=style)
     for i, (law, (angles, heights)) in enumerate(estimates.items()):
         axes.plot(angles, heights - heights.mean(), label=f"{law}, estimate by r-values", color=f"C{i}", linewidth=0.9,
                   linestyle=":")

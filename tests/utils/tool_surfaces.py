@@ -352,6 +352,8 @@ def check_cad(folder, program):
         convert(folder / f"{name}.brep", bez)
         assert np.abs(distance(points_of(read(bez), 5)[0])).max() < 0.002, name
     assert "no part '9'; there are 1 " in convert(folder / "punch.step", "--part", "9", expect=2)
+    with mock.patch.object(cad, "MOST_PATCHES", 1):  # of a face, which is then not divided further
+        assert "farther than" in convert(folder / "punch.step", "--tolerance", 1e-5, expect=2)
     for name in ("text.step", "text.igs", "text.brep"):
         (folder / name).write_text("no tool\n")
         convert(folder / name, bez, expect=2)
