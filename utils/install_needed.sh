@@ -6,7 +6,7 @@
 #   utils/install_needed.sh --no-python  without .venv
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd -P "$(dirname "$0")/.."
 usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
 case "$*" in
   "" | --no-python) ;;

@@ -25,8 +25,8 @@ def need(*packages):
         if main and python.exists() and Path(sys.prefix).resolve() != ENVIRONMENT.resolve():
             sys.stdout.flush()
             os.execv(python, [str(python), main, *sys.argv[1:]])
-        end(f"no package {', '.join(missing)}: utils/install_needed.sh installs utils/requirements.txt into .venv, "
-            "then call .venv/bin/python")
+        end(f"no package {', '.join(missing)}: {Path(__file__).resolve().parent / 'install_needed.sh'} makes the "
+            f"Python environment {ENVIRONMENT}, which the script then takes")
 
 
 def end(message):

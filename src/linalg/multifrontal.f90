@@ -5,6 +5,7 @@
 module dd3_linalg_multifrontal
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
+  use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dtrsv
@@ -180,7 +181,8 @@ contains
 
     integer :: b
 
-    !$omp parallel do if (size(self%work) > 1) num_threads(self%threads) schedule(dynamic)
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) &
+    !$omp& num_threads(min(self%threads, most_threads()))
     do b = 1, size(self%work) - 1
       call build_branch(self, matrix, b, self%work(b))
     end do

@@ -88,6 +88,8 @@ contains
         correction => attempt%correction)
       do j = 1, phase%newton%iterations
         verdict%iterations = j
+        if (j == 1) call system%threads%begin_iteration()
+        if (j == 2) call system%threads%end_iteration()
         call evaluate(model, committed, trial, system, attempt)
         if (verdict%outcome /= verdict_converged) return
         call record_status(correction, system%contact, j)
