@@ -41,6 +41,7 @@ contains
     call nodal_forces(model%load_set, trial%load, model%contact_node, trial%fading, &
         trial%external_force)
     trial%external_force = trial%external_force + (1.0_wp - trial%progress)*trial%start%reaction
+    if (size(trial%bead_load) > 0) trial%external_force = trial%external_force + trial%bead_load
     if (size(trial%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
         trial%pressure, trial%x, trial%external_force)
   end subroutine evaluate_external
