@@ -64,6 +64,7 @@ contains
       if (options%initial == "" .or. .not. allocated(model%history)) return
       call set_start(start, options, case, model, error)
       if (.not. allocated(error)) call write_initial(options%initial, case, model, start, error)
+      if (allocated(error)) call write_line("dd3imp: "//error%message)
       return
     end if
     call set_start(start, options, case, model, error)
