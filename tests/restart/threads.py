@@ -10,7 +10,8 @@ import types
 from runs import ROOT, Deck, Runner, call_tests, check, compare, fresh, table
 
 # A thread takes at least 128 elements: four of them are in use.
-CHANGES = (("divisions = 10 2 1", "divisions = 20 13 2"), ("until = displacement punch 1.8", "until = displacement punch 0.2"))
+CHANGES = (("divisions = 10 2 1", "divisions = 20 13 2"),
+           ("until = displacement punch 1.8", "until = displacement punch 0.2"))
 
 
 def same_bits(runner, work, deck, settings=()):

@@ -4,9 +4,9 @@
     run.py --program build/release/dd3imp --work build/strip_bending [--all]
 
 One end of a short strip is held by symmetry, a couple of dead forces acts on the other, so that no other force acts on
-its sections. Its radius is that between the plane of symmetry and a section one element of `solid_shell` from the loaded
-end. Moment and radius after release of `solid_shell`, one layer, elements of two thicknesses, 9 points, must agree
-within 2 % with ring.py at the same radius. --all prints the same for other elements.
+its sections. Its radius is that between the plane of symmetry and a section one element of `solid_shell` from the
+loaded end. Moment and radius after release of `solid_shell`, one layer, elements of two thicknesses, 9 points, must
+agree within 2 % with ring.py at the same radius. --all prints the same for other elements.
 """
 import math
 import pathlib
