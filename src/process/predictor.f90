@@ -51,8 +51,10 @@ module dd3_process_predictor
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Largest number of passes in which unloading plastic points are made elastic.
+  !> Largest number of passes in which unloading plastic points are made elastic, and the fraction of
+  !> the plastic points up to which the solution is not repeated for them: it would hardly change.
   integer, parameter :: most_switches = 2
+  real(wp), parameter :: few_points = 0.05_wp
 
 contains
 
@@ -82,7 +84,7 @@ contains
     type(attempt_t), intent(inout) :: attempt
 
     integer :: switch
-    logical :: switched
+    integer :: switched
 
     associate (phase => model%phase(committed%phase))
       self%progress = phase%trial
@@ -106,7 +108,7 @@ contains
         self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, switched)
-        if (.not. switched) exit
+        if (real(switched, wp) <= few_points*real(count(committed%plastic), wp)) exit
       end do
       call contact_force_increment(model, phase, system%contact, system%stiffness, &
           system%problem, self%lambda)
@@ -241,14 +243,15 @@ contains
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
-    logical, intent(out) :: switched
+    !> Number of these points.
+    integer, intent(out) :: switched
 
     real(wp) :: direction(6)
     integer :: e, p
 
-    switched = .false.
+    switched = 0
     !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) &
-    !$omp& private(direction, e, p) reduction(.or.: switched)
+    !$omp& private(direction, e, p) reduction(+: switched)
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
@@ -258,7 +261,7 @@ contains
           if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
               self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
-          switched = .true.
+          switched = switched + 1
         end do
       end associate
     end do
