@@ -207,6 +207,8 @@ module dd3_input_case
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
     !> Maximum predicted depth of a node inside a tool that it meets, over the thickness.
     type(limit_spec_t) :: depth
+    !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
+    type(limit_spec_t) :: unloading
     !> Minimum and maximum of the factor r on the trial increment.
     type(limit_spec_t) :: r_min = limit_spec_t(value=0.0_wp), r_max
   end type limits_spec_t

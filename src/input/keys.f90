@@ -157,11 +157,13 @@ contains
           lower=zero), &
       row("depth", kind_real, "", "0.0025", "maximum predicted depth of a node inside a tool "// &
           "that it meets, over the thickness"), &
+      row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
+          "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
       row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
     do i = 1, size(key)
       key(i)%may_be_off = .true.
-      if (key(i)%name == "force_floor") cycle
+      if (key(i)%name == "force_floor" .or. key(i)%name == "unloading") cycle
       key(i)%lower = zero
       key(i)%lower_open = .true.
       if (key(i)%name /= "r_min" .and. key(i)%name /= "r_max") cycle

@@ -51,10 +51,8 @@ module dd3_process_predictor
     logical, allocatable :: plastic(:, :)
   end type prediction_t
 
-  !> Largest number of passes in which unloading plastic points are made elastic, and the fraction of
-  !> the plastic points up to which the solution is not repeated for them: it would hardly change.
+  !> Largest number of passes in which unloading plastic points are made elastic.
   integer, parameter :: most_switches = 2
-  real(wp), parameter :: few_points = 0.05_wp
 
 contains
 
@@ -83,10 +81,10 @@ contains
     !> Gets the work of the linear solver, and a verdict on the solution.
     type(attempt_t), intent(inout) :: attempt
 
-    integer :: switch
-    integer :: switched
+    integer :: switch, switched
 
-    associate (phase => model%phase(committed%phase))
+    associate (phase => model%phase(committed%phase), &
+        unloading => model%phase(committed%phase)%limits%unloading)
       self%progress = phase%trial
       self%plastic(:, :) = committed%plastic
       call system%profile%start()
@@ -108,7 +106,8 @@ contains
         self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, switched)
-        if (real(switched, wp) <= few_points*real(count(committed%plastic), wp)) exit
+        if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
+        if (.not. unloading%active) exit
       end do
       call contact_force_increment(model, phase, system%contact, system%stiffness, &
           system%problem, self%lambda)
