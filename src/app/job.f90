@@ -20,6 +20,7 @@ module dd3_app_job
   use dd3_input_reader, only : read_case
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
+  use dd3_model_drawbead_report, only : drawbead_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
@@ -114,7 +115,7 @@ contains
     integer :: i
 
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
-        contact_report(model)
+        contact_report(model)//drawbead_report(model)
     call unit_warnings(case, model, warnings)
     do i = 1, size(warnings)
       write (output_unit, '(a)') warnings(i)%s
@@ -270,7 +271,8 @@ contains
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
     end do
-    call log%note(echo_case(case)//tool_report(model)//contact_report(model))
+    call log%note(echo_case(case)//tool_report(model)//contact_report(model)// &
+        drawbead_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle
