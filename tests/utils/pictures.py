@@ -143,6 +143,10 @@ def main():
         assert "<svg" in (folder / "force.svg").read_text()
         call("plot_sheet.py", run, "--field", "stress:13", "--size", 300, 200, "--output", folder / "one.png")
         assert size_of(folder / "one.png") == (300, 200)
+        elsewhere = shutil.copytree(run, folder / "results" / "of.job")
+        (elsewhere / "job.log").write_text(LOG.replace(": job.dat", f": {folder / 'job.dat'}"))
+        call("plot_sheet.py", elsewhere, "--field", "stress:13", "--size", 300, 200, "--output", folder / "same.png")
+        assert (folder / "same.png").read_bytes() == (folder / "one.png").read_bytes()
         call("plot_sheet.py", run, "--field", "thickness", "--cells", "--at", 0, "--at", 2, "--mirror", "x", "--view",
              "front", "--size", 300, 200, "--output", folder / "two.png")
         assert size_of(folder / "two.png") == (300, 400)
