@@ -20,6 +20,7 @@ module dd3_app_job
   use dd3_input_reader, only : read_case
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
+  use dd3_model_drawbead_report, only : drawbead_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
@@ -64,6 +65,7 @@ contains
       if (options%initial == "" .or. .not. allocated(model%history)) return
       call set_start(start, options, case, model, error)
       if (.not. allocated(error)) call write_initial(options%initial, case, model, start, error)
+      if (allocated(error)) call write_line("dd3imp: "//error%message)
       return
     end if
     call set_start(start, options, case, model, error)
@@ -117,7 +119,7 @@ contains
     integer :: i
 
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
-        contact_report(model)
+        contact_report(model)//drawbead_report(model)
     if (size(case%point) == 0) then
       call find_job_size(job, model, start%state, solver_options(start), ignored)
       write (output_unit, '(a)', advance="no") size_report(job)
@@ -279,7 +281,8 @@ contains
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
     end do
-    call log%note(echo_case(case)//tool_report(model)//contact_report(model))
+    call log%note(echo_case(case)//tool_report(model)//contact_report(model)// &
+        drawbead_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle

@@ -140,11 +140,7 @@ contains
       call self%iteration%solve(matrix, self%fronts, b, x)
     end if
     report%method = "block_lu"
-    report%converged = self%iteration%converged
-    report%iterations = report%iterations + self%iteration%iterations
-    report%restarts = self%iteration%restarts
-    report%residual = self%iteration%residual
-    report%reason = self%iteration%reason
+    call self%iteration%add_to(report)
   end subroutine block_lu_solver_solve
 
   !> Return the memory of the factors and of the workspace, bytes.

@@ -73,11 +73,7 @@ contains
     type(solver_report_t), intent(inout) :: report
 
     call self%iteration%solve(matrix, self%preconditioner, b, x)
-    report%converged = self%iteration%converged
-    report%iterations = self%iteration%iterations
-    report%restarts = self%iteration%restarts
-    report%residual = self%iteration%residual
-    report%reason = self%iteration%reason
+    call self%iteration%add_to(report)
   end subroutine cgs_solver_solve
 
   !> Return the memory of the preconditioner, bytes.

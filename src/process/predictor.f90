@@ -22,8 +22,8 @@ module dd3_process_predictor
   use dd3_system_contact, only : predictor_contact
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
-  use dd3_system_pressure, only : add_pressure_stiffness
-  use dd3_system_release, only : add_release_stiffness
+  use dd3_system_drawbead, only : place_beads
+  use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -91,14 +91,14 @@ contains
       self%plastic(:, :) = committed%plastic
       call system%profile%start()
       call predictor_contact(system%contact, model, committed)
+      call place_beads(system%bead, model, committed)
       call system%profile%add(section_contact)
       call impose_trial(self, model, phase, committed, system)
       do switch = 0, most_switches
         call continuum_tangents(self, model, committed, system)
         call system%profile%add(section_material)
         call assemble_stiffness(system, model, committed)
-        call add_pressure_stiffness(system, model, committed)
-        call add_release_stiffness(system, model, committed)
+        call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
         if (attempt%verdict%outcome /= verdict_converged) return

@@ -122,6 +122,10 @@ def check_inputs(program, folder):
         assert said in message, message
         assert size_of(folder / "initial.png") == (300, 200)
         (folder / "initial.png").unlink()
+    done = subprocess.run([program, "--check", "--quiet", "--initial", folder / "job.out",
+                           UTILS.parent / "tests" / "bad_input" / "tool_inside_sheet.dat"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "job.out' holds results of a run" in done.stderr, done.stderr
     assert "'no'" in call("plot_sheet.py", folder / "job.dat", "--set", "no=1", *options, expect=2)
     assert "no such program" in call("plot_sheet.py", folder / "job.dat", "--program", folder / "none", expect=2)
 
