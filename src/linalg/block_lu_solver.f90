@@ -35,6 +35,7 @@ module dd3_linalg_block_lu_solver
     procedure :: setup_scaled => block_lu_solver_setup
     procedure :: factor_scaled => block_lu_solver_factor
     procedure :: solve_scaled => block_lu_solver_solve
+    procedure :: factor_bytes => block_lu_solver_factor_bytes
   end type block_lu_solver_t
 
 contains
@@ -141,5 +142,16 @@ contains
     report%method = "block_lu"
     call self%iteration%add_to(report)
   end subroutine block_lu_solver_solve
+
+  !> Return the memory of the factors and of the workspace, bytes.
+  real(wp) function block_lu_solver_factor_bytes(self) result(bytes)
+    class(block_lu_solver_t), intent(in) :: self
+
+    if (self%by_rows) then
+      bytes = self%rows%bytes()
+    else
+      bytes = self%fronts%bytes()
+    end if
+  end function block_lu_solver_factor_bytes
 
 end module dd3_linalg_block_lu_solver

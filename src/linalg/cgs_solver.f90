@@ -18,6 +18,7 @@ module dd3_linalg_cgs_solver
     procedure :: setup_scaled => cgs_solver_setup
     procedure :: factor_scaled => cgs_solver_factor
     procedure :: solve_scaled => cgs_solver_solve
+    procedure :: factor_bytes => cgs_solver_factor_bytes
   end type cgs_solver_t
 
 contains
@@ -74,5 +75,12 @@ contains
     call self%iteration%solve(matrix, self%preconditioner, b, x)
     call self%iteration%add_to(report)
   end subroutine cgs_solver_solve
+
+  !> Return the memory of the preconditioner, bytes.
+  real(wp) function cgs_solver_factor_bytes(self) result(bytes)
+    class(cgs_solver_t), intent(in) :: self
+
+    bytes = self%preconditioner%bytes()
+  end function cgs_solver_factor_bytes
 
 end module dd3_linalg_cgs_solver

@@ -17,7 +17,7 @@ module dd3_system_system
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
-  public :: system_t, new_system
+  public :: system_t, new_system, new_stiffness_pattern
 
   !> Data of assembly and solution.
   type :: system_t
@@ -55,11 +55,9 @@ contains
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
 
-    integer, allocatable :: first(:), coupled(:)
     integer :: i
 
-    call coupled_nodes(model, first, coupled)
-    call new_pattern(self%stiffness, model%n_node, model%connectivity, first, coupled)
+    call new_stiffness_pattern(self%stiffness, model)
     call find_positions(self%stiffness, model%connectivity, self%position)
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
@@ -80,6 +78,17 @@ contains
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
+
+  !> Build the pattern of the stiffness, with the rows of the pressed tools.
+  subroutine new_stiffness_pattern(stiffness, model)
+    type(block_matrix_t), intent(out) :: stiffness
+    type(model_t), intent(in) :: model
+
+    integer, allocatable :: first(:), coupled(:)
+
+    call coupled_nodes(model, first, coupled)
+    call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
+  end subroutine new_stiffness_pattern
 
   !> List the nodes that the row of each pressed tool couples with: its candidates and their
   !> neighbours.
