@@ -1,8 +1,8 @@
 # dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...] [GENERATED <file>...])
 #
-# Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only to the
-# libraries that name it in USES: a `use` of an undeclared folder does not compile. The sources are every .f90 below the
-# folder except a main program (see dd3_program), and the GENERATED files.
+# Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only
+# to the libraries that name it in USES: a `use` of an undeclared folder does not compile. The sources are every .f90
+# below the folder except a main program (see dd3_program), and the GENERATED files.
 function(dd3_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
@@ -26,7 +26,8 @@ endfunction()
 
 # dd3_program(<name> <folder>)
 #
-# Declare the executable <name> with its main program src/<folder>/<name>.f90, which may use the folders that <folder> uses.
+# Declare the executable <name> with its main program src/<folder>/<name>.f90, which may use the folders that <folder>
+# uses.
 function(dd3_program name folder)
   set(source "${CMAKE_SOURCE_DIR}/src/${folder}/${name}.f90")
   if(NOT EXISTS "${source}")

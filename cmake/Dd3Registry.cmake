@@ -1,7 +1,8 @@
 # dd3_registry(<source> KIND <kind> BASE <module> ONE <singular> MANY <plural> TITLE <words>)
 #
-# Generate the registry of the laws in src/material/<kind>/ and store its path in <source>. Each line of registry.txt names a
-# law: <law>.f90 contains the module dd3_material_<kind>_<law> with the type <law>_t, which extends that of <module>.
+# Generate the registry of the laws in src/material/<kind>/ and store its path in <source>. Each line of registry.txt
+# names a law: <law>.f90 contains the module dd3_material_<kind>_<law> with the type <law>_t, which extends that of
+# <module>.
 function(dd3_registry source)
   cmake_parse_arguments(PARSE_ARGV 1 "" "" "KIND;BASE;ONE;MANY;TITLE" "")
   set(KIND "${_KIND}")

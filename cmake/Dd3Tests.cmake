@@ -1,9 +1,9 @@
 # add_pfunit_ctest(<name> TEST_SOURCES <x.pf>... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...]
 #                  [WORKING_DIRECTORY <dir>])
 #
-# Add one executable and one test. They use pFUnit if it is installed (-DCMAKE_PREFIX_PATH=<prefix>) and DD3_FORCE_STANDIN is
-# off, otherwise the stand-in in tests/standin/. The label `unit` is added to those given. By default each test runs in its own
-# directory, so that parallel tests do not overwrite each other's files.
+# Add one executable and one test. They use pFUnit if it is installed (-DCMAKE_PREFIX_PATH=<prefix>) and
+# DD3_FORCE_STANDIN is off, otherwise the stand-in in tests/standin/. The label `unit` is added to those given. By
+# default each test runs in its own directory, so that parallel tests do not overwrite each other's files.
 option(DD3_FORCE_STANDIN "Run the unit tests with the in-tree stand-in even where pFUnit is installed" OFF)
 
 include(PfStandin)

@@ -2,7 +2,8 @@
 #
 #   pf_preprocess   converts x.pf to x.F90
 #   pf_standin      the asserts and the runner
-#   dd3_standin_ctest(<name> TEST_SOURCES ... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...] [WORKING_DIRECTORY <dir>])
+#   dd3_standin_ctest(<name> TEST_SOURCES ... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...]
+#     [WORKING_DIRECTORY <dir>])
 set(DD3_STANDIN_SOURCE "${CMAKE_SOURCE_DIR}/tests/standin")
 set(DD3_STANDIN_BINARY "${CMAKE_BINARY_DIR}/standin")
 

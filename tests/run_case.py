@@ -35,8 +35,8 @@ from results import command, find_program, launch, number, read_table  # noqa: E
 from scripts import Problem  # noqa: E402
 
 SELECTS = ("phase", "point")
-KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains", "files",
-         "variants", "labels", "timeout", "description"}
+KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains",
+         "files", "variants", "labels", "timeout", "description"}
 
 
 class Mismatch(Exception):

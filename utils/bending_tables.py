@@ -88,7 +88,8 @@ class Run:
     def limiters(self):
         """Return the percentage of the increments that each limiter set."""
         rows = results.limiters(self.status, "draw")
-        return {name: 100 * rows.count(name) / len(rows) for name in sorted(sorted(set(rows)), key=rows.count, reverse=True)}
+        return {name: 100 * rows.count(name) / len(rows)
+                for name in sorted(sorted(set(rows)), key=rows.count, reverse=True)}
 
 
 def differences(one, other):

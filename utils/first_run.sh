@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# From a clone to the first result: installs what is missing, builds, runs the bending test, draws its curve and the sheet.
+# From a clone to the first result: installs what is missing, builds, runs the bending test, draws its curve and the
+# sheet.
 #
 #   utils/first_run.sh          no arguments but --help
 set -euo pipefail

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the utilities.
-# Needs root only if a package is missing.
+# Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the
+# utilities. Needs root only if a package is missing.
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd -P "$(dirname "$0")/.."
 usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
 case "$*" in
   "" | --no-python) ;;
@@ -41,7 +41,8 @@ install_packages() {
     as_root=(sudo)
   fi
   "${as_root[@]}" apt-get update -q >/dev/null
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends \
+    "${missing[@]}" >/dev/null
 }
 
 # The environment is created again if the list of requirements has changed.

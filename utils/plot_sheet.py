@@ -90,10 +90,29 @@ class Run(Fields):
         return {tool: np.array([float(row[f"{tool}_u{axis}"]) for axis in VECTOR]) for tool in results.tools_in(row)}
 
 
-def tools_of_deck(deck):
-    """Return the surfaces' files by the tools' names in small letters."""
-    tools = [block for block in results.read_deck(deck) if block.keyword == "tool" and block.value("patches")]
+def tools_of_deck(deck, log, settings):
+    """Return the surfaces' files by the tools' names in small letters.
+
+    The values are those that a run used: from its log, the folders of relative paths from the input file. Without a log
+    they are those of the input file with the settings of --set.
+    """
+    tools = tools_in(results.read_deck(deck, settings))
+    used = tools_in(results.read_echo(results.read_text(log), deck.parent)) if log.is_file() else []
+    if len(used) == len(tools):
+        for tool, written in zip(used, tools):
+            tool.folder = written.folder
+        tools = used
     return {tool.name.lower(): tool.folder / tool.value("patches").strip("\"'") for tool in tools}
+
+
+def tools_in(blocks):
+    """Return the blocks of the tools."""
+    return [block for block in blocks if block.keyword == "tool" and block.value("patches")]
+
+
+def settings_of(options):
+    """Return the parameters of --set."""
+    return dict(item.split("=", 1) for item in options.set)
 
 
 def read_patches(path):
@@ -303,7 +322,7 @@ def find_tools(run, options):
         beside = [folder.with_suffix(ending) for ending in (".dat", ".inp", ".txt")]
         deck = next((file for file in beside if file.is_file()), None)
     if deck is not None:
-        files = tools_of_deck(deck)
+        files = tools_of_deck(deck, run.folder / "job.log", settings_of(options))
     for item in options.tool:
         name, _, file = item.partition("=")
         files[name.lower()] = Path(file)
@@ -329,10 +348,9 @@ def opened(options):
         return
     options.field = options.field or "thickness"
     options.deck = options.deck or Path(options.run)
-    settings = dict(item.split("=", 1) for item in options.set)
     with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
         words = results.command(results.find_program(options.program), options.run, None,
-                                ["--check", "--quiet", "--initial", folder], settings)
+                                ["--check", "--quiet", "--initial", folder], settings_of(options))
         done = results.launch(words)
         if done.code != 0:
             if not (Path(folder) / "fields.vtkhdf").exists():

@@ -128,13 +128,10 @@ def add_summary(report):
 
 def add_setup(report):
     """Add the set-up: heading of the log and the blocks of its input."""
-    lines = report.log.splitlines()
-    first = next((i for i, line in enumerate(lines) if line.startswith("*")), len(lines))
-    last = next((i for i, line in enumerate(lines[first:], first)
-                 if not line.startswith(("*", " "))), len(lines))
-    heading = [line for line in lines[:first] if "warning" not in line]
+    heading, values = results.echo_in(report.log)
+    heading = [line for line in heading if "warning" not in line]
     report.add("Set-up", "<p>" + "<br>".join(map(html.escape, heading)) + "</p><details><summary>All input values"
-               "</summary><pre>" + html.escape("\n".join(lines[first:last])) + "</pre></details>")
+               "</summary><pre>" + html.escape("\n".join(values)) + "</pre></details>")
 
 
 def add_statistics(report):

@@ -3,6 +3,7 @@
 Needs Python alone. Whatever cannot be used raises a Problem.
 """
 
+import argparse
 import csv
 import os
 import re
@@ -149,11 +150,16 @@ class Block:
         return next((value for name, value in reversed(self.values) if name == key), None)
 
 
+def without_comment(line):
+    """Return a line of an input file without its comment."""
+    return re.sub(r"[#!].*", "", line).strip()
+
+
 def deck_lines(path, parents=()):
     """Yield the lines of an input file and of those it includes, each with its folder; no comments, no empty lines."""
     path = Path(path)
     for line in re.sub(r"&[ \t]*\n", " ", read_text(path)).splitlines():
-        line = re.sub(r"[#!].*", "", line).strip()
+        line = without_comment(line)
         include = re.match(r"\*include\s+(.*)", line, re.IGNORECASE)
         if include:
             file = path.parent / include[1].strip("\"'")
@@ -163,10 +169,32 @@ def deck_lines(path, parents=()):
             yield line, path.parent
 
 
-def read_deck(path):
-    """Return the blocks of an input file, with its includes and its parameters put in."""
-    blocks, parameters = [], {}
-    for line, folder in deck_lines(path):
+def read_deck(path, settings=None):
+    """Return the blocks of an input file, with its includes and parameters put in; `settings` are those of --set."""
+    return blocks_of(deck_lines(path), settings)
+
+
+def echo_in(log):
+    """Return the lines of job.log before the input that it repeats, with all values that the run used, and those lines.
+
+    `log` is the text.
+    """
+    lines = log.splitlines()
+    first = next((i for i, line in enumerate(lines) if line.startswith("*")), len(lines))
+    last = next((i for i, line in enumerate(lines[first:], first) if not line.startswith(("*", " "))), len(lines))
+    return lines[:first], lines[first:last]
+
+
+def read_echo(log, folder):
+    """Return the blocks of the input that a log repeats; their paths are taken as relative to a folder."""
+    return blocks_of((without_comment(line), folder) for line in echo_in(log)[1])
+
+
+def blocks_of(lines, settings=None):
+    """Return the blocks of lines with their folders, the parameters put in."""
+    settings = {name.lower(): value for name, value in (settings or {}).items()}
+    blocks, parameters = [], dict(settings)
+    for line, folder in lines:
         if line.startswith("*"):
             keyword, *name = line[1:].split(None, 1)
             blocks.append(Block(keyword.lower(), "".join(name), folder))
@@ -175,7 +203,7 @@ def read_deck(path):
             value = re.sub(r"\$\{(\w+)\}", lambda found: parameters.get(found[1].lower(), found[0]), value)
             blocks[-1].values.append((key.lower(), value))
             if blocks[-1].keyword == "parameter":
-                parameters[key.lower()] = value
+                parameters.setdefault(key.lower(), value)
     return blocks
 
 
@@ -199,6 +227,21 @@ def find_program(path):
     if not found:
         raise Problem(f"{path}: no such program; give --program FILE")
     return Path(found).resolve()
+
+
+def made_folder(path):
+    """Return the path of a folder, which is made if it is not there."""
+    path = Path(path)
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def parser_of_runs(description):
+    """Return the parser of a script that makes runs: `program`, looked up, and `work`, the folder of the runs."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=find_program, help="the program dd3imp")
+    parser.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
+    return parser
 
 
 def command(program, deck, folder=None, options=(), settings=None):

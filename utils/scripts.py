@@ -25,14 +25,20 @@ def need(*packages):
         if main and python.exists() and Path(sys.prefix).resolve() != ENVIRONMENT.resolve():
             sys.stdout.flush()
             os.execv(python, [str(python), main, *sys.argv[1:]])
-        end(f"no package {', '.join(missing)}: utils/install_needed.sh installs utils/requirements.txt into .venv, "
-            "then call .venv/bin/python")
+        end(f"no package {', '.join(missing)}: {Path(__file__).resolve().parent / 'install_needed.sh'} makes the "
+            f"Python environment {ENVIRONMENT}, which the script then takes")
 
 
 def end(message):
     """Print one line and exit with code 2; messages in the program's format, file:line: error: ..., are not changed."""
     print(message if "error: " in message else f"error: {message}", file=sys.stderr)
     sys.exit(2)
+
+
+def check(condition, message):
+    """End the script with exit code 1 and a message unless a condition holds."""
+    if not condition:
+        sys.exit(message)
 
 
 class Progress:

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The bending study of docs/reports/bending_study.md: installs what is missing, builds, runs every case of
-# input_files/bending_study/cases.csv on all cores, gathers bending_study.out/results.csv and draws the figures. After an
-# interruption the same command continues; finished cases are not repeated.
+# input_files/bending_study/cases.csv on all cores, gathers bending_study.out/results.csv and draws the figures. After
+# an interruption the same command continues; finished cases are not repeated.
 #
 #   utils/study.sh                       all cases
 #   utils/study.sh --quick               the four cases of quick.csv, to 5 mm, into bending_study_quick.out

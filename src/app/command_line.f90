@@ -22,7 +22,8 @@ module dd3_app_command_line
     character(len=:), allocatable :: initial
     !> Restart file to continue from; empty for none.
     character(len=:), allocatable :: restart
-    integer :: threads = 1
+    !> Largest number of threads; 0 if not given.
+    integer :: threads = 0
     !> Results may not depend on the clock.
     logical :: reproducible = .false.
     !> Read, check, echo and stop; print nothing but errors.
@@ -192,7 +193,7 @@ contains
         newline// &
         "  --output DIR         folder of the results (default: job.out)"//newline// &
         "  --restart FILE       continue the run that wrote the restart file FILE"//newline// &
-        "  --threads N          number of threads (1)"//newline// &
+        "  --threads N          largest number of threads (the processors there are)"//newline// &
         "  --reproducible       choose the linear solver by counting, not by the clock"//newline// &
         "  --quiet              print nothing but errors"//newline// &
         "  --version            the program's version"//newline// &

@@ -13,6 +13,7 @@ module dd3_app_job
   use dd3_base_interrupt, only : watch_interrupts
   use dd3_base_log, only : log_t
   use dd3_base_text, only : text_t, to_text, slice
+  use dd3_base_threads, only : most_threads
   use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
@@ -90,6 +91,7 @@ contains
 
     start%solver = case%solver
     start%threads = options%threads
+    if (start%threads == 0) start%threads = most_threads()
     start%reproducible = options%reproducible
     start%directory = results_directory(options, case)
     if (size(case%point) > 0) then

@@ -44,6 +44,16 @@ module dd3_contact_global_search
     type(tie_t) :: item(most_ties)
   end type ties_t
 
+  !> Closest point on a patch.
+  type :: candidate_t
+    !> Its distance, and the one that is compared, in which points inside a patch are preferred, mm.
+    real(wp) :: near, distance
+    !> False if the point is too far, or if the limits of the query exclude it.
+    logical :: accepted
+    !> Only set if accepted.
+    type(hit_t) :: hit
+  end type candidate_t
+
 contains
 
   !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
@@ -68,11 +78,9 @@ contains
 
     type(box_walk_t) :: walk
     type(ties_t) :: ties
-    type(projection_t) :: projection
-    type(hit_t) :: candidate
-    real(wp) :: radius, margin, box(leaf_size), distance
+    type(candidate_t) :: candidate
+    real(wp) :: radius, margin, box(leaf_size)
     integer :: i, first, last
-    logical :: accepted
 
     radius = max(query%search_distance, query%depth)
     margin = tie_margin*(surface%size + maxval(abs(query%x)))
@@ -90,17 +98,16 @@ contains
         i = minloc(box(:last - first + 1), dim=1)
         if (box(i) > min(radius, best + margin)) exit
         associate (k => surface%tree%number(first + i - 1))
-          call examine(surface, query, k, min(radius, best + margin), projection, distance, &
-              candidate, accepted)
-          clearance = min(clearance, projection%distance)
-          if (accepted) call add_tie(ties, tie_t(k, box(i), projection%distance, distance), &
-              min(best, distance) + margin, ok)
+          call examine(surface, query, k, min(radius, best + margin), candidate)
+          clearance = min(clearance, candidate%near)
+          if (candidate%accepted) call add_tie(ties, tie_t(k, box(i), candidate%near, &
+              candidate%distance), min(best, candidate%distance) + margin, ok)
         end associate
         box(i) = huge(1.0_wp)
         if (.not. ok) return
-        if (.not. accepted .or. distance >= best) cycle
-        best = distance
-        hit = candidate
+        if (.not. candidate%accepted .or. candidate%distance >= best) cycle
+        best = candidate%distance
+        hit = candidate%hit
       end do
     end do
     if (best < huge(1.0_wp)) then
@@ -111,30 +118,30 @@ contains
   end subroutine search_tree
 
   !> Project on a patch.
-  pure subroutine examine(surface, query, k, limit, projection, distance, hit, accepted)
+  pure subroutine examine(surface, query, k, limit, candidate)
     type(surface_t), intent(in) :: surface
     type(query_t), intent(in) :: query
     !> Number of the patch.
     integer, intent(in) :: k
     !> Largest distance of interest, mm.
     real(wp), intent(in) :: limit
-    type(projection_t), intent(out) :: projection
-    !> Distance that is compared, mm: points inside a patch are preferred.
-    real(wp), intent(out) :: distance
-    !> Only set if accepted.
-    type(hit_t), intent(inout) :: hit
-    !> False if the point is too far, or if the limits of the query exclude it.
-    logical, intent(out) :: accepted
+    type(candidate_t), intent(inout) :: candidate
+
+    type(projection_t) :: projection
 
     call project_globally(surface%patch(k), query%x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], projection)
-    distance = projection%distance
-    if (any(projection%active /= 0)) distance = distance + edge_margin*surface%size
-    accepted = projection%distance <= limit
-    if (.not. accepted) return
-    call new_hit(hit, surface, k, query%x, projection)
-    if (.not. hit%found) return
-    call apply_limits(hit, query)
-    accepted = hit%found
+    candidate%near = projection%distance
+    candidate%distance = projection%distance
+    if (any(projection%active /= 0)) &
+        candidate%distance = projection%distance + edge_margin*surface%size
+    candidate%accepted = projection%distance <= limit
+    if (.not. candidate%accepted) return
+    associate (hit => candidate%hit)
+      call new_hit(hit, surface, k, query%x, projection)
+      if (.not. hit%found) return
+      call apply_limits(hit, query)
+      candidate%accepted = hit%found
+    end associate
   end subroutine examine
 
   !> Add a patch, and drop those that are farther than a limit.
@@ -174,10 +181,8 @@ contains
     real(wp), intent(inout) :: best
     type(hit_t), intent(inout) :: hit
 
-    type(projection_t) :: projection
-    real(wp) :: distance
+    type(candidate_t) :: candidate
     integer :: i, chosen
-    logical :: accepted
 
     if (ties%n < 2) return
     best = huge(1.0_wp)
@@ -191,7 +196,8 @@ contains
       end associate
     end do
     if (chosen == hit%patch) return
-    call examine(surface, query, chosen, huge(1.0_wp), projection, distance, hit, accepted)
+    call examine(surface, query, chosen, huge(1.0_wp), candidate)
+    hit = candidate%hit
   end subroutine decide
 
   !> Search all patches in their order.
@@ -202,28 +208,24 @@ contains
     !> Distance of the hit, or a huge value; lower bound of the distance of all patches, mm.
     real(wp), intent(out) :: best, clearance
 
-    type(projection_t) :: projection
-    type(hit_t) :: candidate
-    real(wp) :: radius, near, distance
+    type(candidate_t) :: candidate
+    real(wp) :: radius, near
     integer :: k
-    logical :: accepted
 
     radius = max(query%search_distance, query%depth)
     best = huge(1.0_wp)
     clearance = huge(1.0_wp)
     do k = 1, size(surface%patch)
       near = box_distance(surface%patch(k)%lower, surface%patch(k)%upper, query%x)
-      accepted = near <= min(radius, best)
-      if (accepted) then
-        call examine(surface, query, k, min(radius, best), projection, distance, candidate, &
-            accepted)
-        near = projection%distance
+      if (near > min(radius, best)) then
+        clearance = min(clearance, near)
+        cycle
       end if
-      clearance = min(clearance, near)
-      if (.not. accepted) cycle
-      if (distance >= best) cycle
-      hit = candidate
-      best = distance
+      call examine(surface, query, k, min(radius, best), candidate)
+      clearance = min(clearance, candidate%near)
+      if (.not. candidate%accepted .or. candidate%distance >= best) cycle
+      hit = candidate%hit
+      best = candidate%distance
     end do
   end subroutine search_all
 

@@ -14,7 +14,7 @@ module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_element_log_strain, only : polar_increment, rotate_axes, stretch_of_green
-  use dd3_element_shell_strain, only : column_geometry, mean_director_weight, natural_rates, &
+  use dd3_element_shell_strain, only : column_geometry, set_weights, natural_rates, &
       natural_strains
   use dd3_element_shell_work, only : columns_t, n_column, n_natural, plane_point, shell_work_t
   use dd3_element_table, only : element_t
@@ -42,7 +42,7 @@ contains
     associate (shell => work%shell, n => element%n_point/n_column)
       call column_geometry(work%x_committed, work%x_trial, shell)
       call set_centre(shell)
-      shell%centre_weight = mean_director_weight(work%x_initial)
+      call set_weights(work%x_initial, work%x_committed, shell)
       call natural_strains(work%x_committed, work%x_trial, shell)
       do q = 1, n_column
         enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))

@@ -13,16 +13,21 @@
 !> the mean director, which does not tilt, if the element is flat in the initial mesh;
 !> `centre_weight` is its weight.
 !>
+!> An element bent to the angle theta then keeps the thickness t in its middle: its directors have
+!> the length t/cos(theta/2), and the strain linear in zeta is 2 tan(theta/2) over the length in place
+!> of theta. In the increment it is multiplied by cos(theta/2)^2, the derivative of one in the other,
+!> taken from the committed configuration.
+!>
 !> Internally the element has mid-surface positions m_A = (bottom + top)/2 and directors
 !> d_A = (top - bottom)/2 at its corners.
 module dd3_element_shell_strain
   use dd3_base_kinds, only : wp
-  use dd3_element_shell_work, only : columns_t, n_column, n_corner, n_natural, &
+  use dd3_element_shell_work, only : columns_t, corner, n_column, n_corner, n_natural, &
       plane_point, shell_work_t
   implicit none
   private
-  public :: column_geometry, mean_director_weight, natural_strains, strain_operators, &
-      natural_rates, initial_stress
+  public :: column_geometry, set_weights, natural_strains, strain_operators, natural_rates, &
+      initial_stress
 
   !> Corners at the ends of the edges eta = -1, eta = 1 (along xi) and xi = -1, xi = 1 (along eta).
   integer, parameter :: edge(2, 4) = reshape([1, 2, 4, 3, 1, 4, 2, 3], [2, 4])
@@ -30,6 +35,8 @@ module dd3_element_shell_strain
   integer, parameter :: along(4) = [1, 1, 2, 2], across(4) = [2, 2, 1, 1]
   !> Position of the edges across, -1 or 1.
   real(wp), parameter :: side(4) = [-1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp]
+  !> Positions of the coefficients of zeta in e_11, e_22 and 2 e_12.
+  integer, parameter :: bending_strain(3) = [2, 5, 8]
   !> Position of the natural strain that holds the shear of an edge: 2 e_13, 2 e_23.
   integer, parameter :: shear_of(2) = [12, 11]
   integer, parameter :: thickness_strain = 10
@@ -50,6 +57,27 @@ contains
     call split(x_trial, mid, director)
     call set_columns(shell, mid, director, shell%trial)
   end subroutine column_geometry
+
+  !> Set the weight of the mean director in the mean thickness strain, and the factors of the bending
+  !> strains that belong to it.
+  pure subroutine set_weights(x_initial, x_committed, shell)
+    !> Positions of the nodes, mm.
+    real(wp), intent(in) :: x_initial(3, 8), x_committed(3, 8)
+    !> Gets `centre_weight` and `strain_factor`.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: mid(3, 4), director(3, 4), middle, factor(2)
+    integer :: j
+
+    shell%centre_weight = mean_director_weight(x_initial)
+    call split(x_committed, mid, director)
+    middle = sum(sum(director, dim=2)**2)
+    do j = 1, 2
+      factor(j) = middle/(middle + sum(matmul(director, corner(j, :))**2))
+    end do
+    shell%strain_factor(bending_strain) = 1.0_wp - shell%centre_weight &
+        *(1.0_wp - [factor, sqrt(factor(1)*factor(2))])
+  end subroutine set_weights
 
   !> Return the weight of the mean director in the mean thickness strain: 1 for an element that is
   !> flat in the initial mesh. On curved elements it would lock; the weight falls with the square of
@@ -72,11 +100,11 @@ contains
     weight = max(0.0_wp, 1.0_wp - 0.25_wp*spread*length/sum(mean**2)**2)
   end function mean_director_weight
 
-  !> Evaluate the natural strains of an increment; call `column_geometry` first.
+  !> Evaluate the natural strains of an increment; call `column_geometry` and `set_weights` first.
   pure subroutine natural_strains(x_committed, x_trial, shell)
     !> Positions of the nodes, mm.
     real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
-    !> Holds the weight of the centre; gets `strain`.
+    !> Gets `strain`.
     type(shell_work_t), intent(inout) :: shell
 
     real(wp) :: mid(3, 4), director(3, 4), u(3, 4), ud(3, 4), strain(n_natural, n_column)
@@ -91,7 +119,9 @@ contains
       call in_plane_squares(motion, q, strain(:, q))
     end do
     call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
-    shell%strain = strain
+    do q = 1, n_column
+      shell%strain(:, q) = shell%strain_factor*strain(:, q)
+    end do
   end subroutine natural_strains
 
   !> Evaluate the natural strains of first order of a displacement from the trial configuration.
@@ -113,6 +143,9 @@ contains
       call in_plane_strains(shell%trial, motion, q, strain(:, q))
     end do
     call assumed_strains(mid, director, u, ud, shell, strain)
+    do q = 1, n_column
+      strain(:, q) = shell%strain_factor*strain(:, q)
+    end do
   end subroutine natural_rates
 
   !> Split nodal vectors into those of the mid-surface and of the directors.
@@ -272,6 +305,9 @@ contains
           call add_row(b(:, j), slope(:, 3 - j), 12, row(:, 9))
         end do
         call assumed_operators(mid, director, q, shell, row)
+        do j = 1, n_natural
+          row(:, j) = shell%strain_factor(j)*row(:, j)
+        end do
         call to_nodes(row)
       end associate
     end do
@@ -346,7 +382,7 @@ contains
     !> Node by node, N/mm.
     real(wp), intent(out) :: factor(8, 8)
 
-    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), t, weight
+    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), n(n_natural), t, weight
     integer :: a, b, i, j, k, l, q
 
     weight = 0.25_wp*shell%centre_weight
@@ -354,7 +390,8 @@ contains
     md = 0.0_wp
     dd = 0.0_wp
     do q = 1, n_column
-      associate (n => shell%resultant(:, q), slope => shell%slope(:, :, q))
+      n = shell%strain_factor*shell%resultant(:n_natural, q)
+      associate (slope => shell%slope(:, :, q))
         do b = 1, n_corner
           do j = 1, 2
             k = 3*j - 2

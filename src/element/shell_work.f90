@@ -39,6 +39,8 @@ module dd3_element_shell_work
     type(columns_t) :: committed, trial
     !> Weight of the mean director in the mean thickness strain, 0 to 1.
     real(wp) :: centre_weight = 0.0_wp
+    !> Factors of the natural strains: below 1 for those linear in zeta where directors differ.
+    real(wp) :: strain_factor(n_natural) = 1.0_wp
     !> Coefficients of the natural strains: `strain(n_natural,n_column)`.
     real(wp) :: strain(n_natural, n_column)
     !> Their derivatives in the nodal positions, 1/mm: `operator(24,n_natural,n_column)`.

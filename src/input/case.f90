@@ -215,6 +215,8 @@ module dd3_input_case
   type :: newton_spec_t
     !> Tolerance of the convergence criterion.
     real(wp) :: tolerance = 0.0_wp
+    !> Maximum of the tolerance in a phase in which all tools are released.
+    real(wp) :: release_tolerance = 0.0_wp
     !> Tolerance of the balance of a pressed tool under which nodes keep opening and closing, over
     !> its force.
     real(wp) :: tool_force = 0.0_wp

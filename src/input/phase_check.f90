@@ -3,6 +3,7 @@ module dd3_input_phase_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
+  use dd3_input_block, only : token_t
   use dd3_input_case, only : case_t, phase_spec_t, tool_vector_t, until_never
   implicit none
   private
@@ -14,6 +15,8 @@ module dd3_input_phase_check
   real(wp), parameter :: most_increments = 1.0e7_wp
   !> Largest trial increment, in motions of the controlling tool.
   real(wp), parameter :: largest_trial = 1.0e3_wp
+  !> Least difference of the progress of two points of a table.
+  real(wp), parameter :: least_progress = 1.0e-6_wp
 
 contains
 
@@ -268,7 +271,7 @@ contains
 
     character(len=*), parameter :: form = "table = 0 0  s1 f1 ... 1 fn, with the progress s "// &
         "increasing from 0 to 1"
-    integer :: n, i
+    integer :: n
 
     n = size(phase%table)
     if (n == 0) return
@@ -277,20 +280,14 @@ contains
       if (mod(n, 2) == 1 .or. n < 4) then
         call errors%push_input(value(1)%at, "expected pairs of progress and factor, at least "// &
             "two, got "//to_text(n)//" numbers", form)
-      else if (any(abs(x(:2)) > 0.0_wp)) then
-        call errors%push_input(value(1)%at, "the table does not begin with 0 0", form)
-      else if (abs(x(n - 1) - 1.0_wp) > 0.0_wp) then
-        call errors%push_input(value(n - 1)%at, "the table does not end at a progress of 1", form)
-      else if (size(phase%displace) + size(phase%motion) + size(phase%load) &
-          + size(phase%pressure) == 0) then
-        call errors%push_input(value(1)%at, "the table has no effect in this phase", &
-            "a phase with displace, rotate, bend, load or pressure; tools move linearly")
+        return
       end if
-      do i = 3, n - 1, 2
-        if (x(i) - x(i - 2) >= 1.0e-6_wp) cycle
-        call errors%push_input(value(i)%at, "the progress does not increase here", form)
-        exit
-      end do
+      if (any(abs(x(:2)) > 0.0_wp)) call errors%push_input(value(1)%at, &
+          "the table does not begin with 0 0", form)
+      if (size(phase%displace) + size(phase%motion) + size(phase%load) + size(phase%pressure) &
+          == 0) call errors%push_input(value(1)%at, "the table has no effect in this phase", &
+          "a phase with displace, rotate, bend, load or pressure; tools move linearly")
+      call check_progress(x(3:), value(3:), form, errors)
     end associate
   end subroutine check_table
 
@@ -315,16 +312,34 @@ contains
       end if
       if (size(phase%press) == 0) call errors%push_input(value(1)%at, &
           "the table has no effect in this phase", "a phase with press")
-      if (abs(x(n - 1) - 1.0_wp) > 0.0_wp) call errors%push_input(value(n - 1)%at, &
-          "the table does not end at a progress of 1", form)
-      do i = 1, n - 1, 2
-        if (x(i) - merge(0.0_wp, x(max(1, i - 2)), i == 1) < 1.0e-6_wp) &
-            call errors%push_input(value(i)%at, "the progress does not increase here", form)
-        if (x(i + 1) < 0.0_wp) call errors%push_input(value(i + 1)%at, &
-            "the factor is negative", form)
+      call check_progress(x, value, form, errors)
+      do i = 2, n, 2
+        if (x(i) < 0.0_wp) call errors%push_input(value(i)%at, "the factor is negative", form)
       end do
     end associate
   end subroutine check_press_table
+
+  !> Check that the progress of a table increases from 0 to 1.
+  subroutine check_progress(x, value, form, errors)
+    !> Progress and factor, in pairs, without those of the start.
+    real(wp), intent(in) :: x(:)
+    type(token_t), intent(in) :: value(:)
+    !> Form of the table.
+    character(len=*), intent(in) :: form
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: previous
+    integer :: i
+
+    previous = 0.0_wp
+    do i = 1, size(x) - 1, 2
+      if (x(i) - previous < least_progress) &
+          call errors%push_input(value(i)%at, "the progress does not increase here", form)
+      previous = x(i)
+    end do
+    if (abs(previous - 1.0_wp) > 0.0_wp) call errors%push_input(value(size(x) - 1)%at, &
+        "the table does not end at a progress of 1", form)
+  end subroutine check_progress
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

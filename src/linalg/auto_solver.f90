@@ -98,7 +98,7 @@ contains
 
     options = self%options
     level = "ILU("//to_text(options%ilu_level)//")"
-    call self%block%setup_scaled(matrix)
+    call self%block%analyse(matrix)
     call count_products(self, matrix)
     outright = self%block%products <= self%setup_products &
         + assumed_iterations*self%iteration_products
@@ -109,6 +109,7 @@ contains
     if (.not. self%may_factorise) options%ilu_level = matrix%n
     call new_cgs_solver(self%cgs, options)
     if (self%may_iterate) call self%cgs%setup_scaled(matrix)
+    if (self%may_factorise) call self%block%prepare(matrix)
     if (.not. outright) then
       self%description = "CGS with "//level//" or "//trim(self%block%description)// &
           ", whichever takes less time"

@@ -1,6 +1,5 @@
-!> Restrict OpenBLAS to one thread: the dense blocks in the factorisation of a sheet are too small
-!> for several, and waking the thread pool for each takes a third of the time. The call is looked up
-!> by name in the running program; no-op with any other BLAS.
+!> Restrict OpenBLAS to one thread, so that only the option --threads starts further ones. The call
+!> is looked up by name in the running program; no-op with any other BLAS.
 module dd3_linalg_blas_threads
   use, intrinsic :: iso_c_binding, only : c_int, c_funptr, c_associated, c_f_procpointer
   use dd3_linalg_program_symbol, only : program_symbol

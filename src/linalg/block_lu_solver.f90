@@ -30,6 +30,8 @@ module dd3_linalg_block_lu_solver
     type(multifrontal_t) :: fronts
     type(cgs_t) :: iteration
   contains
+    procedure :: analyse => block_lu_solver_analyse
+    procedure :: prepare => block_lu_solver_prepare
     procedure :: setup_scaled => block_lu_solver_setup
     procedure :: factor_scaled => block_lu_solver_factor
     procedure :: solve_scaled => block_lu_solver_solve
@@ -62,24 +64,52 @@ contains
     class(block_lu_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
+    call self%analyse(matrix)
+    call self%prepare(matrix)
+  end subroutine block_lu_solver_setup
+
+  !> Find the factorisation that costs less.
+  subroutine block_lu_solver_analyse(self, matrix)
+    class(block_lu_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
     real(wp) :: by_rows
     integer :: i, n_block
 
     self%fronts%threads = self%options%threads
-    call self%fronts%setup(matrix)
+    call self%fronts%analyse(matrix)
     self%products = front_product*self%fronts%products &
         + front_overhead*real(self%fronts%tree%n_front, wp)
     call factor_cost(matrix, [(i, i=1, matrix%n)], fill_limit*size(matrix%column), by_rows, n_block)
     self%by_rows = by_rows <= self%products
     self%description = "complete LU by fronts ("//trim(self%fronts%tree%ordering)//")"
+    if (.not. self%by_rows) return
+    self%products = by_rows
+    self%description = "complete LU by rows"
+    call free(self%fronts)
+  end subroutine block_lu_solver_analyse
+
+  !> Free everything.
+  subroutine free(fronts)
+    type(multifrontal_t), intent(out) :: fronts
+
+    fronts%n = 0
+  end subroutine free
+
+  !> Set up the factorisation.
+  subroutine block_lu_solver_prepare(self, matrix)
+    !> Analysed.
+    class(block_lu_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
     if (self%by_rows) then
-      self%products = by_rows
-      self%description = "complete LU by rows"
       call new_ilu(self%rows, matrix%n)
       call self%rows%setup(matrix)
+    else
+      call self%fronts%prepare(matrix)
     end if
     call self%iteration%setup(3*matrix%n, self%options%tolerance, most_refinements)
-  end subroutine block_lu_solver_setup
+  end subroutine block_lu_solver_prepare
 
   !> Factorise.
   subroutine block_lu_solver_factor(self, matrix, verdict)

@@ -5,6 +5,7 @@
 module dd3_linalg_multifrontal
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
+  use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dtrsv
@@ -43,6 +44,8 @@ module dd3_linalg_multifrontal
     !> Number of fronts shifted in the last factorisation.
     integer :: shifted = 0
   contains
+    procedure :: analyse => multifrontal_analyse
+    procedure :: prepare => multifrontal_prepare
     procedure :: setup => multifrontal_setup
     procedure :: build => multifrontal_build
     procedure :: apply => multifrontal_apply
@@ -56,16 +59,39 @@ contains
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
-    call use_one_blas_thread()
+    call self%analyse(matrix)
+    call self%prepare(matrix)
+  end subroutine multifrontal_setup
+
+  !> Find the tree of the fronts and count the block products.
+  subroutine multifrontal_analyse(self, matrix)
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    integer :: f
+
     self%description = "multifrontal LU"
     self%n = matrix%n
+    call new_front_tree(self%tree, matrix)
+    self%products = 0.0_wp
+    do f = 1, self%tree%n_front
+      self%products = self%products + front_products(self%tree, f)
+    end do
+  end subroutine multifrontal_analyse
+
+  !> Allocate the factors and the workspaces.
+  subroutine multifrontal_prepare(self, matrix)
+    !> Analysed.
+    class(multifrontal_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    call use_one_blas_thread()
     if (allocated(self%left)) deallocate (self%left, self%upper, self%left_start, &
         self%upper_start, self%pivot, self%y, self%part)
-    call new_front_tree(self%tree, matrix)
     call find_sizes(self)
     call find_branches(self%tree, self%threads, self%branch_of, self%work)
     call place_blocks(self, matrix)
-  end subroutine multifrontal_setup
+  end subroutine multifrontal_prepare
 
   !> Find the sizes of the factors and allocate them.
   subroutine find_sizes(self)
@@ -78,14 +104,12 @@ contains
       allocate (self%left_start(tree%n_front + 1), self%upper_start(tree%n_front + 1))
       self%left_start(1) = 1
       self%upper_start(1) = 1
-      self%products = 0.0_wp
       largest = 0
       do f = 1, tree%n_front
         p = 3*int(tree%first(f + 1) - tree%first(f), i8)
         m = 3*int(rows_of(tree, f), i8)
         self%left_start(f + 1) = self%left_start(f) + m*p
         self%upper_start(f + 1) = self%upper_start(f) + p*(m - p)
-        self%products = self%products + front_products(tree, f)
         largest = max(largest, int(m - p))
       end do
       allocate (self%left(self%left_start(tree%n_front + 1) - 1))
@@ -157,7 +181,8 @@ contains
 
     integer :: b
 
-    !$omp parallel do if (size(self%work) > 1) num_threads(self%threads) schedule(dynamic)
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) &
+    !$omp& num_threads(min(self%threads, most_threads()))
     do b = 1, size(self%work) - 1
       call build_branch(self, matrix, b, self%work(b))
     end do

@@ -25,8 +25,9 @@ module dd3_model_build
   use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_rim, only : set_rim
   use dd3_model_sheet_faces, only : new_sheet_faces
-  use dd3_model_thickness_columns, only : set_thickness
+  use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
@@ -65,6 +66,7 @@ contains
     call set_supports(model, case, mesh)
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
+    call set_rim(model)
     call new_phases(model, case, mesh)
     call check_loads(model, case, errors)
     call set_output(model, case, mesh)
@@ -205,6 +207,7 @@ contains
     model%connectivity = mesh%connectivity
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
+    call set_columns(model)
     call set_thickness(model, mesh%thickness)
     model%tolerance = new_tolerances(model%thickness, mesh%x)
     associate (element => model%element)

@@ -8,7 +8,6 @@ module dd3_model_drawbead_build
   use dd3_model_drawbead, only : drawbead_t, elastic_slip, new_drawbead
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_area, part_of_nine
-  use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
   public :: new_drawbeads
@@ -50,15 +49,13 @@ contains
   pure subroutine find_bead_faces(model)
     type(model_t), intent(inout) :: model
 
-    integer, allocatable :: column(:, :)
     integer :: f, i, n
 
     allocate (model%bead_face(4, 4*model%face%n))
     n = 0
     if (size(model%drawbead) > 0) then
-      call thickness_columns(model, column)
       do f = 1, model%face%n
-        associate (bottom => column(1, model%face%corner(:, f)), node => model%face%node(:, f))
+        associate (bottom => model%column(1, model%face%corner(:, f)), node => model%face%node(:, f))
           if (any(bottom == cshift(bottom, 1))) cycle
           do i = 1, merge(4, 1, size(node) == 9)
             n = n + 1

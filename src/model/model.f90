@@ -68,6 +68,11 @@ module dd3_model_model
     real(wp) :: thickness = 0.0_wp
     !> Thickness at each node, `(n_node)`, mm; not allocated if it does not vary.
     real(wp), allocatable :: node_thickness(:)
+    !> Bottom and top node of the column of each node, `(2, n_node)`; a node that is in no column is
+    !> its own bottom and top.
+    integer, allocatable :: column(:, :)
+    !> Initial inward unit normals of the rim, `(3, n_node)`; zero for a node elsewhere.
+    real(wp), allocatable :: rim_normal(:, :)
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
     !> Candidates for contact, `(n_contact)`: their node numbers.

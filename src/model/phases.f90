@@ -14,10 +14,6 @@ module dd3_model_phases
   private
   public :: new_phases
 
-  !> Default of the tolerance of convergence once all tools are released: the residual stresses, by
-  !> which it is scaled, are far larger than what bends a slender sheet.
-  real(wp), parameter :: free_tolerance = 1.0e-5_wp
-
 contains
 
   !> Resolve all phases of the case.
@@ -159,9 +155,10 @@ contains
         call stop_pressing(phase, t)
       end do
     end if
-    if (size(phase%active) > 0 .and. .not. any(phase%active) &
-        .and. .not. spec%source%has("tolerance")) &
-        phase%newton%tolerance = min(phase%newton%tolerance, free_tolerance)
+    ! The residual stresses, by which the criterion is scaled, are far larger than those that bend a
+    ! slender sheet.
+    if (size(phase%active) > 0 .and. .not. any(phase%active)) &
+        phase%newton%tolerance = min(phase%newton%tolerance, phase%newton%release_tolerance)
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return

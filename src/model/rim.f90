@@ -4,10 +4,9 @@ module dd3_model_rim
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
-  use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
-  public :: rim_normals, draw_in, mean_draw_in
+  public :: set_rim, draw_in, mean_draw_in
 
   !> Least component of the normal of a face on a plane of symmetry, whose nodes are all held in
   !> that direction.
@@ -15,21 +14,19 @@ module dd3_model_rim
 
 contains
 
-  !> Return the initial inward unit normals of the rim at the nodes, `(3, n_node)`: the mean over
-  !> the faces at a node, by area; zero for a node that is not on the rim.
-  pure function rim_normals(model) result(normal)
-    type(model_t), intent(in) :: model
-    real(wp), allocatable :: normal(:, :)
+  !> Set the normals of the rim at the nodes: the mean over the faces at a node, by area.
+  pure subroutine set_rim(model)
+    !> With faces, columns and supports; gets `rim_normal`.
+    type(model_t), intent(inout) :: model
 
-    integer, allocatable :: column(:, :)
+    real(wp), allocatable :: normal(:, :)
     real(wp) :: area(3)
     integer :: f, i
 
     allocate (normal(3, model%n_node), source=0.0_wp)
-    call thickness_columns(model, column)
     do f = 1, model%face%n
       associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
-        if (.not. shares_column(column(1, corner))) cycle
+        if (.not. shares_column(model%column(1, corner))) cycle
         associate (x => model%x0(:, corner))
           area = cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))
         end associate
@@ -42,7 +39,8 @@ contains
     do i = 1, model%n_node
       normal(:, i) = normal(:, i)/max(norm2(normal(:, i)), tiny(1.0_wp))
     end do
-  end function rim_normals
+    call move_alloc(normal, model%rim_normal)
+  end subroutine set_rim
 
   !> Whether corners of a face lie over one another.
   pure logical function shares_column(bottom)
@@ -69,7 +67,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: value(:)
 
-    value = sum((x - model%x0)*rim_normals(model), dim=1)
+    value = sum((x - model%x0)*model%rim_normal, dim=1)
   end function draw_in
 
   !> Return the mean draw-in of the nodes of a set that lie on the rim, mm.
@@ -79,14 +77,12 @@ contains
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: node(:)
 
-    real(wp), allocatable :: normal(:, :)
     integer :: i, n
 
-    normal = rim_normals(model)
     mean_draw_in = 0.0_wp
     n = 0
     do i = 1, size(node)
-      associate (direction => normal(:, node(i)))
+      associate (direction => model%rim_normal(:, node(i)))
         if (norm2(direction) <= 0.0_wp) cycle
         mean_draw_in = mean_draw_in + dot_product(direction, x(:, node(i)) - model%x0(:, node(i)))
       end associate

@@ -7,7 +7,6 @@ module dd3_model_surface_strain
   use dd3_element_table, only : element_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
-  use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
   public :: surface_strains
@@ -30,16 +29,15 @@ contains
 
     real(wp), allocatable :: tensor(:, :, :), normal(:, :)
     real(wp), allocatable :: face_tensor(:, :, :), face_normal(:, :)
-    integer, allocatable :: column(:, :), local(:)
+    integer, allocatable :: local(:)
     integer :: sharing(model%n_node), e, i
 
-    call thickness_columns(model, column)
     local = lower_face(model%element)
     allocate (tensor(3, 3, model%n_node), normal(3, model%n_node), source=0.0_wp)
     allocate (face_tensor(3, 3, size(local)), face_normal(3, size(local)))
     sharing = 0
     do e = 1, model%n_element
-      associate (node => model%connectivity(local, e))
+      associate (node => model%connectivity(local, e), column => model%column)
         if (any(column(1, node) /= node)) cycle
         call strain_of_face(model%element%node_slope(:2, local, local), &
             between(model%x0(:, node), model%x0(:, column(2, node))), &
@@ -51,7 +49,7 @@ contains
     end do
     strain = 0.0_wp
     do i = 1, model%n_node
-      associate (bottom => column(1, i))
+      associate (bottom => model%column(1, i))
         if (sharing(bottom) == 0) cycle
         strain(:, i) = principal_values(tensor(:, :, bottom)/real(sharing(bottom), wp), &
             normal(:, bottom))

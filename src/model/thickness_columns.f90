@@ -5,7 +5,7 @@ module dd3_model_thickness_columns
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: set_thickness, thickness_columns
+  public :: set_columns, set_thickness
 
   !> Largest relative difference of thicknesses that count as equal.
   real(wp), parameter :: round_off = 1.0e-6_wp
@@ -13,12 +13,11 @@ module dd3_model_thickness_columns
 contains
 
   !> Find the column in which each node lies.
-  pure subroutine thickness_columns(model, column)
-    type(model_t), intent(in) :: model
-    !> Bottom and top node of the column of each node, `(2, n_node)`; a node that is in no column is
-    !> its own bottom and top.
-    integer, allocatable, intent(out) :: column(:, :)
+  pure subroutine set_columns(model)
+    !> With its mesh; gets `column`.
+    type(model_t), intent(inout) :: model
 
+    integer, allocatable :: column(:, :)
     integer :: above(model%n_node), node, top
     logical :: has_below(model%n_node)
     integer :: e, p, i
@@ -48,12 +47,13 @@ contains
       end do
     end do
     call add_middle_nodes(model, column)
-  end subroutine thickness_columns
+    call move_alloc(column, model%column)
+  end subroutine set_columns
 
   !> Add the nodes in the middle of edges through the thickness to the columns of these edges.
   pure subroutine add_middle_nodes(model, column)
     type(model_t), intent(in) :: model
-    !> As in `thickness_columns`.
+    !> As in the model.
     integer, intent(inout) :: column(:, :)
 
     integer :: e, a, p
@@ -73,19 +73,18 @@ contains
 
   !> Set the thickness of a mesh from a file; that of a structured blank is given.
   pure subroutine set_thickness(model, given)
-    !> With its mesh.
+    !> With its columns.
     type(model_t), intent(inout) :: model
     !> mm; 0 for a mesh from a file.
     real(wp), intent(in) :: given
 
     real(wp) :: length(model%n_node)
-    integer, allocatable :: column(:, :)
     integer :: i
 
     model%thickness = given
     if (given > 0.0_wp) return
-    call thickness_columns(model, column)
-    length = [(norm2(model%x0(:, column(2, i)) - model%x0(:, column(1, i))), i=1, model%n_node)]
+    length = [(norm2(model%x0(:, model%column(2, i)) - model%x0(:, model%column(1, i))), &
+        i=1, model%n_node)]
     model%thickness = minval(length, mask=length > 0.0_wp)
     where (length <= 0.0_wp) length = model%thickness
     if (maxval(length) > (1.0_wp + round_off)*model%thickness) model%node_thickness = length

@@ -7,8 +7,7 @@ module dd3_output_field_table
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_forming_fields, only : fill_contact_gap, fill_contact_pressure, fill_contact_tool, &
-      fill_draw_in, fill_major_lower, fill_major_middle, fill_major_upper, fill_minor_lower, &
-      fill_minor_middle, fill_minor_upper, fill_slip_path, fill_thickness, fill_thinning
+      fill_draw_in, fill_slip_path, fill_thickness, fill_thinning
   implicit none
   private
   public :: field_t, field_table, fill_internal_variable, at_nodes_and_cells, at_points
@@ -31,7 +30,11 @@ module dd3_output_field_table
     logical :: whole = .false., positive = .false.
     character(len=8) :: unit = ""
     character(len=120) :: description = ""
+    !> Not associated for a strain in the surface and for an internal variable.
     procedure(fill_interface), nopass, pointer :: fill => null()
+    !> Position of a strain in the surface among those of `evaluate_strains`: component and height;
+    !> 0 for another field.
+    integer :: strain = 0, height = 0
     !> Position among the internal variables of the model, if the field is one of them; 0 otherwise.
     integer :: variable = 0
   end type field_t
@@ -88,12 +91,7 @@ contains
     table = [ &
       row("thinning", at_nodes_and_cells, 1, "", &
           "decrease of the thickness over the initial thickness", fill_thinning), &
-      strain_row("major_strain_lower", "major", "lower face", fill_major_lower), &
-      strain_row("minor_strain_lower", "minor", "lower face", fill_minor_lower), &
-      strain_row("major_strain_middle", "major", "middle", fill_major_middle), &
-      strain_row("minor_strain_middle", "minor", "middle", fill_minor_middle), &
-      strain_row("major_strain_upper", "major", "upper face", fill_major_upper), &
-      strain_row("minor_strain_upper", "minor", "upper face", fill_minor_upper), &
+      strain_rows(), &
       row("draw_in", at_nodes, 1, "mm", &
           "displacement of the rim along its initial inward normal; 0 elsewhere", fill_draw_in), &
       row("contact_pressure", at_nodes, 1, "MPa", &
@@ -109,15 +107,29 @@ contains
           fill_contact_tool, whole=.true.)]
   end function forming_rows
 
-  !> Make the row of a strain in the surface of the sheet.
-  function strain_row(name, which, place, fill) result(field)
-    character(len=*), intent(in) :: name, which, place
-    procedure(fill_interface) :: fill
-    type(field_t) :: field
+  !> Return the rows of the strains in the surface of the sheet.
+  function strain_rows() result(table)
+    type(field_t) :: table(6)
 
-    field = row(name, at_nodes_and_cells, 1, "", which//" logarithmic strain in the surface at "// &
-        "the "//place//" of the sheet", fill)
-  end function strain_row
+    character(len=*), parameter :: strain(2) = ["major", "minor"]
+    character(len=*), parameter :: name(3) = [character(len=6) :: "lower", "middle", "upper"]
+    character(len=*), parameter :: place(3) = [character(len=10) :: "lower face", "middle", &
+        "upper face"]
+    integer :: i, k, n
+
+    n = 0
+    do i = 1, size(name)
+      do k = 1, size(strain)
+        n = n + 1
+        table(n)%name = strain(k)//"_strain_"//name(i)
+        table(n)%location = at_nodes_and_cells
+        table(n)%description = strain(k)//" logarithmic strain in the surface at the "// &
+            trim(place(i))//" of the sheet"
+        table(n)%strain = k
+        table(n)%height = i
+      end do
+    end do
+  end function strain_rows
 
   !> Make the row of an internal variable.
   function internal_variable_row(model, i) result(row)

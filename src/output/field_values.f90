@@ -14,10 +14,12 @@ module dd3_output_field_values
 contains
 
   !> Evaluate a field.
-  subroutine field_values(field, model, state, nodal, cell)
+  subroutine field_values(field, model, state, strain, nodal, cell)
     type(field_t), intent(in) :: field
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    !> Strains in the surface, from `evaluate_strains`.
+    real(wp), intent(in) :: strain(:, :, :)
     !> Values at the nodes, `(components, n_node)`.
     real(wp), allocatable, intent(out) :: nodal(:, :)
     !> Values at the cells, `(components, n_element)`; of size zero for a field of the nodes alone.
@@ -31,7 +33,11 @@ contains
       call point_values(field, model, state, nodal, cell)
       return
     end if
-    call field%fill(model, state, nodal)
+    if (field%strain > 0) then
+      nodal(1, :) = strain(field%strain, :, field%height)
+    else
+      call field%fill(model, state, nodal)
+    end if
     if (field%location /= at_nodes_and_cells) then
       allocate (cell(field%components, 0))
       return

@@ -14,6 +14,7 @@ module dd3_output_fields
   use dd3_output_field_values, only : cell_offsets, field_values
   use dd3_output_field_series, only : append, close_attribute, close_group, close_target, &
       copy_series, copy_target, count_steps, make_targets, put_constant, step_chunk, target_t
+  use dd3_output_forming_fields, only : evaluate_strains
   use dd3_output_hdf5, only : flush_hdf5, integer_attribute, kind_byte, kind_int, kind_long, &
       kind_real, make_group, rewrite_attribute, series_t, start_hdf5, text_attribute
   use dd3_output_hdf5_read, only : close_hdf5, open_hdf5, read_rows
@@ -286,7 +287,7 @@ contains
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp), allocatable :: nodal(:, :), cell(:, :)
+    real(wp), allocatable :: nodal(:, :), cell(:, :), strain(:, :, :)
     integer :: i, i_cell
     logical :: ok
 
@@ -295,9 +296,10 @@ contains
     if (allocated(error)) return
     ok = .true.
     call append(self%points, reshape(state%x, [size(state%x)]), ok)
+    call evaluate_strains(model, state, strain)
     i_cell = 0
     do i = 1, size(self%field)
-      call field_values(self%field(i), model, state, nodal, cell)
+      call field_values(self%field(i), model, state, strain, nodal, cell)
       call append(self%at_node(i), reshape(nodal, [size(nodal)]), ok)
       if (size(cell) == 0) cycle
       i_cell = i_cell + 1

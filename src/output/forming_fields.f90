@@ -9,18 +9,14 @@ module dd3_output_forming_fields
   use dd3_model_rim, only : draw_in
   use dd3_model_state, only : state_t
   use dd3_model_surface_strain, only : surface_strains
-  use dd3_model_thickness_columns, only : thickness_columns
   implicit none
   private
+  public :: evaluate_strains
   public :: fill_thickness, fill_thinning, fill_draw_in
-  public :: fill_major_lower, fill_minor_lower, fill_major_middle, fill_minor_middle
-  public :: fill_major_upper, fill_minor_upper
   public :: fill_contact_pressure, fill_contact_gap, fill_slip_path, fill_contact_tool
 
-  !> Positions between the lower and the upper face.
-  real(wp), parameter :: lower = 0.0_wp, middle = 0.5_wp, upper = 1.0_wp
-  !> Components of the strain.
-  integer, parameter :: major = 1, minor = 2
+  !> Lower face, middle and upper face of the sheet.
+  real(wp), parameter :: height(3) = [0.0_wp, 0.5_wp, 1.0_wp]
 
 contains
 
@@ -54,12 +50,10 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp) :: length(model%n_node)
 
-    integer, allocatable :: column(:, :)
     integer :: i
 
-    call thickness_columns(model, column)
     do i = 1, model%n_node
-      length(i) = norm2(x(:, column(2, i)) - x(:, column(1, i)))
+      length(i) = norm2(x(:, model%column(2, i)) - x(:, model%column(1, i)))
     end do
   end function thicknesses
 
@@ -72,75 +66,20 @@ contains
     value(1, :) = draw_in(model, state%x)
   end subroutine fill_draw_in
 
-  !> Evaluate the major strain at the lower face.
-  subroutine fill_major_lower(model, state, value)
+  !> Evaluate the strains in the surface of the sheet.
+  subroutine evaluate_strains(model, state, strain)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
+    !> Major and minor strain of the nodes at the heights, `(2, n_node, size(height))`.
+    real(wp), allocatable, intent(out) :: strain(:, :, :)
 
-    call fill_strain(model, state, lower, major, value)
-  end subroutine fill_major_lower
+    integer :: i
 
-  !> Evaluate the minor strain at the lower face.
-  subroutine fill_minor_lower(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-
-    call fill_strain(model, state, lower, minor, value)
-  end subroutine fill_minor_lower
-
-  !> Evaluate the major strain at the middle.
-  subroutine fill_major_middle(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-
-    call fill_strain(model, state, middle, major, value)
-  end subroutine fill_major_middle
-
-  !> Evaluate the minor strain at the middle.
-  subroutine fill_minor_middle(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-
-    call fill_strain(model, state, middle, minor, value)
-  end subroutine fill_minor_middle
-
-  !> Evaluate the major strain at the upper face.
-  subroutine fill_major_upper(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-
-    call fill_strain(model, state, upper, major, value)
-  end subroutine fill_major_upper
-
-  !> Evaluate the minor strain at the upper face.
-  subroutine fill_minor_upper(model, state, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
-
-    call fill_strain(model, state, upper, minor, value)
-  end subroutine fill_minor_upper
-
-  !> Evaluate a strain in the surface.
-  subroutine fill_strain(model, state, height, component, value)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    !> `lower`, `middle` or `upper`.
-    real(wp), intent(in) :: height
-    !> `major` or `minor`.
-    integer, intent(in) :: component
-    real(wp), intent(out) :: value(:, :)
-
-    real(wp) :: strain(2, model%n_node)
-
-    call surface_strains(model, state%x, height, strain)
-    value(1, :) = strain(component, :)
-  end subroutine fill_strain
+    allocate (strain(2, model%n_node, size(height)))
+    do i = 1, size(height)
+      call surface_strains(model, state%x, height(i), strain(:, :, i))
+    end do
+  end subroutine evaluate_strains
 
   !> Evaluate the contact pressure.
   subroutine fill_contact_pressure(model, state, value)

@@ -3,10 +3,12 @@
 module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
+  use dd3_model_phase, only : phase_t
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
-  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction, status_memory
+  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction, reduce_penalty
+  public :: status_memory
 
   !> Number of iterations whose contact status is kept, to detect cycles.
   integer, parameter :: status_memory = 3
@@ -54,7 +56,7 @@ module dd3_process_attempt
   type :: attempt_t
     !> Number of the attempt at this increment, from 1.
     integer :: number = 1
-    !> Whether the penalty of the input is reduced to the automatic one.
+    !> Whether a penalty of the input above the automatic one is reduced to it.
     logical :: penalty_reduced = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit
@@ -80,6 +82,15 @@ contains
     self%verdict = verdict_t()
     call clear_correction(self%correction, n_contact)
   end subroutine new_attempt
+
+  !> Reduce the penalty of the input from here to the end of the phase, unless the phase forbids it.
+  subroutine reduce_penalty(self, phase)
+    type(attempt_t), intent(inout) :: self
+    type(phase_t), intent(in) :: phase
+
+    self%penalty_reduced = self%penalty_reduced .or. &
+        (phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp)
+  end subroutine reduce_penalty
 
   !> Reset the course of the corrector before its first iteration.
   subroutine clear_correction(self, n_contact)

@@ -12,7 +12,8 @@ module dd3_process_corrector
   use dd3_model_state, only : state_t
   use dd3_process_active_set, only : keeps_changing, record_status, unsettled, &
       update_active_set
-  use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, status_memory
+  use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, &
+      reduce_penalty, status_memory
   use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
@@ -86,6 +87,8 @@ contains
         correction => attempt%correction)
       do j = 1, phase%newton%iterations
         verdict%iterations = j
+        if (j == 1) call system%threads%begin_iteration()
+        if (j == 2) call system%threads%end_iteration()
         call evaluate(model, committed, trial, system, attempt)
         if (verdict%outcome /= verdict_converged) return
         call record_status(correction, system%contact, j)
@@ -105,8 +108,8 @@ contains
           return
         end if
         if (phase%newton%damping .and. is_lost(correction%criterion)) exit
-        if (j == reducing_iteration) trial%penalty_reduced = trial%penalty_reduced .or. &
-            (phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp)
+        if (j == reducing_iteration) call reduce_penalty(attempt, phase)
+        trial%penalty_reduced = attempt%penalty_reduced
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
         call subtract_condensed(system%enhanced, system%problem%residual)

@@ -7,7 +7,7 @@ module dd3_process_increment
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : new_attempt
+  use dd3_process_attempt, only : new_attempt, reduce_penalty
   use dd3_process_corrector, only : correct
   use dd3_process_external, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
@@ -124,7 +124,7 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
-      attempt%penalty_reduced = phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp
+      call reduce_penalty(attempt, phase)
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate

@@ -3,6 +3,7 @@
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
+  use dd3_base_threads, only : least_elements, threads_for
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
@@ -36,6 +37,10 @@ module dd3_process_limiters
     !> The limiter does not lower r below r_min.
     logical :: above_r_min = .false.
   end type limiter_t
+
+  !> The largest modulus of a principal strain is at least this fraction of the norm of the tensor;
+  !> 1/sqrt(3) less a margin for round-off.
+  real(wp), parameter :: least_principal = 0.577_wp
 
 contains
 
@@ -114,25 +119,46 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: values(3), vectors(3, 3), largest
-    integer :: e, p
+    real(wp) :: bound, largest(model%n_element)
+    integer :: e, point(model%n_element)
 
     associate (allowed => model%phase(state%phase)%limits%strain)
       if (.not. allowed%active) return
-      largest = allowed%value/stepper%attempt%limit%r
+      bound = max(allowed%value/stepper%attempt%limit%r, &
+          least_principal*sqrt(maxval(sum(stepper%prediction%strain**2, dim=1))))
+      !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e)
       do e = 1, model%n_element
-        do p = 1, model%element%n_point
-          associate (strain => stepper%prediction%strain(:, p, e))
-            if (norm2(strain) <= largest) cycle
-            call symmetric_eigen(tensor_from_kelvin(strain), values, vectors)
-          end associate
-          if (maxval(abs(values)) <= largest) cycle
-          largest = maxval(abs(values))
-          limit = limit_t(r=allowed%value/largest, element=e, point=p)
-        end do
+        call largest_strain(stepper%prediction%strain(:, :, e), bound, largest(e), point(e))
       end do
+      !$omp end parallel do
+      e = maxloc(largest, dim=1)
+      if (largest(e) > bound) &
+          limit = limit_t(r=allowed%value/largest(e), element=e, point=point(e))
     end associate
   end function strain_limit
+
+  !> Find the largest modulus of a principal strain above a bound at the points of an element.
+  pure subroutine largest_strain(strain, bound, largest, point)
+    !> Kelvin, `(6, n_point)`.
+    real(wp), intent(in) :: strain(:, :)
+    real(wp), intent(in) :: bound
+    !> The bound if no strain is above it; the point is 0 then.
+    real(wp), intent(out) :: largest
+    integer, intent(out) :: point
+
+    real(wp) :: values(3), vectors(3, 3)
+    integer :: p
+
+    largest = bound
+    point = 0
+    do p = 1, size(strain, 2)
+      if (norm2(strain(:, p)) <= largest) cycle
+      call symmetric_eigen(tensor_from_kelvin(strain(:, p)), values, vectors)
+      if (maxval(abs(values)) <= largest) cycle
+      largest = maxval(abs(values))
+      point = p
+    end do
+  end subroutine largest_strain
 
   !> Limit the largest rotation increment, eq. (10).
   function rotation_limit(model, state, stepper) result(limit)
@@ -161,8 +187,8 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: change(6), direction(6), magnitude, normal, tangential, inverse_a, inverse_b, bound
-    integer :: e, p
+    real(wp) :: inverse_a, inverse_b, bound(model%n_element)
+    integer :: e, point(model%n_element)
 
     associate (limits => model%phase(state%phase)%limits)
       if (.not. (limits%stress_tangential%active .or. limits%stress_normal%active)) return
@@ -171,24 +197,50 @@ contains
       if (limits%stress_tangential%active) inverse_a = 1.0_wp/limits%stress_tangential%value
       if (limits%stress_normal%active) inverse_b = 1.0_wp/limits%stress_normal%value
     end associate
+    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e)
     do e = 1, model%n_element
-      associate (material => model%material(model%material_of(e)))
-        do p = 1, model%element%n_point
-          change = matmul(stepper%system%tangent(:, :, p, e), stepper%prediction%strain(:, p, e))
-          magnitude = norm2(change)
-          if (magnitude <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
-          direction = material%plastic_direction(state%stress(:, p, e), &
-              state%internal_variables(:, p, e))
-          normal = abs(dot_product(direction, change))/(norm2(direction)*magnitude)
-          normal = min(1.0_wp, normal)
-          tangential = sqrt(1.0_wp - normal**2)
-          bound = material%flow_stress(state%internal_variables(:, p, e)) &
-              /(magnitude*(normal*inverse_b + tangential*inverse_a))
-          if (bound < limit%r) limit = limit_t(r=bound, element=e, point=p)
-        end do
-      end associate
+      call smallest_stress_bound(model, state, stepper, e, [inverse_a, inverse_b], bound(e), &
+          point(e))
     end do
+    !$omp end parallel do
+    e = minloc(bound, dim=1)
+    if (point(e) > 0) limit = limit_t(r=bound(e), element=e, point=point(e))
   end function stress_limit
+
+  !> Find the smallest bound by the stress at the points of an element.
+  subroutine smallest_stress_bound(model, state, stepper, e, inverse, smallest, point)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
+    integer, intent(in) :: e
+    !> Inverse limits, tangential and normal; 0 for none.
+    real(wp), intent(in) :: inverse(2)
+    !> Huge if no stress changes; the point is 0 then.
+    real(wp), intent(out) :: smallest
+    integer, intent(out) :: point
+
+    real(wp) :: change(6), direction(6), magnitude, normal, tangential, bound
+    integer :: p
+
+    smallest = huge(1.0_wp)
+    point = 0
+    associate (material => model%material(model%material_of(e)))
+      do p = 1, model%element%n_point
+        change = matmul(stepper%system%tangent(:, :, p, e), stepper%prediction%strain(:, p, e))
+        magnitude = norm2(change)
+        if (magnitude <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
+        direction = material%plastic_direction(state%stress(:, p, e), &
+            state%internal_variables(:, p, e))
+        normal = min(1.0_wp, abs(dot_product(direction, change))/(norm2(direction)*magnitude))
+        tangential = sqrt(1.0_wp - normal**2)
+        bound = material%flow_stress(state%internal_variables(:, p, e)) &
+            /(magnitude*(normal*inverse(2) + tangential*inverse(1)))
+        if (bound >= smallest) cycle
+        smallest = bound
+        point = p
+      end do
+    end associate
+  end subroutine smallest_stress_bound
 
   !> Limit the increment of the contact forces to an ellipsoid, eqs (15)-(17). The size B of the
   !> force has a lower bound, a fraction of the mean contact force: with eq. (16) as printed a node

@@ -4,10 +4,13 @@
 !> Source: McMeeking and Rice 1975; Teodosiu and Cao 1988; Oliveira and Menezes 2004, eqs (7) and
 !> (8).
 module dd3_process_predictor
+  !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
+  use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
+  use dd3_element_work, only : element_work_t
   use dd3_model_loads, only : nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
@@ -178,6 +181,7 @@ contains
 
     integer :: e, p
 
+    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e, p)
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
@@ -186,6 +190,7 @@ contains
         end do
       end associate
     end do
+    !$omp end parallel do
   end subroutine continuum_tangents
 
   !> Evaluate the strain and rotation increments of the trial displacement.
@@ -193,26 +198,43 @@ contains
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
-    !> Provides the workspace.
+    !> Provides the workspaces.
     type(system_t), intent(inout) :: system
 
-    type(verdict_t) :: verdict
-    integer :: e
+    integer :: e, thread
 
+    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) private(e, thread)
+    thread = 1
+    !$ thread = omp_get_thread_num() + 1
+    !$omp do
     do e = 1, model%n_element
-      associate (nodes => model%connectivity(:, e), work => system%element(1), &
-          element => model%element)
-        work%x_committed(:, :) = committed%x(:, nodes)
-        work%enhanced(:) = self%enhanced(:, e)
-        work%x_initial(:, :) = model%x0(:, nodes)
-        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
-        call element%evaluate_rate(element, self%displacement(:, nodes), &
-            committed%orientation(:, :, :, e), work)
-        self%strain(:, :, e) = work%strain_increment
-        self%rotation(:, e) = work%rotation_increment
-      end associate
+      call element_increments(self, model, committed, e, system%element(thread))
     end do
+    !$omp end do
+    !$omp end parallel
   end subroutine point_increments
+
+  !> Evaluate those of one element.
+  subroutine element_increments(self, model, committed, e, work)
+    type(prediction_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    integer, intent(in) :: e
+    type(element_work_t), intent(inout) :: work
+
+    type(verdict_t) :: verdict
+
+    associate (nodes => model%connectivity(:, e), element => model%element)
+      work%x_committed(:, :) = committed%x(:, nodes)
+      work%enhanced(:) = self%enhanced(:, e)
+      work%x_initial(:, :) = model%x0(:, nodes)
+      call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+      call element%evaluate_rate(element, self%displacement(:, nodes), &
+          committed%orientation(:, :, :, e), work)
+      self%strain(:, :, e) = work%strain_increment
+      self%rotation(:, e) = work%rotation_increment
+    end associate
+  end subroutine element_increments
 
   !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
   subroutine switch_unloading(self, model, committed, switched)
@@ -225,6 +247,8 @@ contains
     integer :: e, p
 
     switched = .false.
+    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) &
+    !$omp& private(direction, e, p) reduction(.or.: switched)
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
@@ -238,6 +262,7 @@ contains
         end do
       end associate
     end do
+    !$omp end parallel do
   end subroutine switch_unloading
 
   !> Set the displacement of the tools: the solution for pressed ones, the prescribed motion for the

@@ -6,9 +6,10 @@ module dd3_process_run
   use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
   use dd3_base_text, only : text_t, to_text
+  use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_input_case, only : solver_spec_t
-  use dd3_linalg_solver, only : linear_solver_t, solver_options_t
+  use dd3_linalg_solver, only : solver_options_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
@@ -26,7 +27,7 @@ module dd3_process_run
   use dd3_process_tool_observation, only : observe_tools
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
-  use dd3_system_system, only : new_system
+  use dd3_system_system, only : new_system, system_t
   implicit none
   private
   public :: run_model, run_start_t, run_summary_t
@@ -86,8 +87,9 @@ contains
     integer :: number
 
     began = wall_time()
+    call set_threads(start%threads)
     run%committed = start%state
-    call new_system(run%stepper%system, model, solver_options(start), start%threads, error)
+    call new_system(run%stepper%system, model, solver_options(start), error)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     call new_prediction(run%stepper%prediction, model)
@@ -171,7 +173,7 @@ contains
         next_output = next_output_progress(model%output, phase, committed)
         done = committed%increment
         call run_increment(run, model, error)
-        call note_choice(run%stepper%system%solver, log)
+        call note_choices(run%stepper%system, log)
         if (committed%increment > done) then
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
@@ -195,14 +197,16 @@ contains
     end associate
   end subroutine run_phase
 
-  !> Log what changed in the choice of the linear solver.
-  subroutine note_choice(solver, log)
-    class(linear_solver_t), intent(inout) :: solver
+  !> Log what changed in the choices of the linear solver and of the number of threads.
+  subroutine note_choices(system, log)
+    type(system_t), intent(inout) :: system
     type(log_t), intent(inout) :: log
 
-    if (len_trim(solver%news) > 0) call log%note(trim(solver%news))
-    solver%news = ""
-  end subroutine note_choice
+    if (len_trim(system%solver%news) > 0) call log%note(trim(system%solver%news))
+    if (len_trim(system%threads%news) > 0) call log%note(trim(system%threads%news))
+    system%solver%news = ""
+    system%threads%news = ""
+  end subroutine note_choices
 
   !> Begin a phase, with notes and warnings.
   subroutine start_phase(model, number, committed, log, error)

@@ -6,7 +6,7 @@ module dd3_process_work
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_external, only : evaluate_external
+  use dd3_process_external, only : external_forces
   use dd3_system_contact, only : contact_work_t
   implicit none
   private
@@ -42,15 +42,10 @@ contains
     real(wp), intent(in) :: moved(:, :)
     type(state_t), intent(inout) :: new
 
-    type(state_t) :: start
-    real(wp) :: force(3, model%n_node), reaction(3, model%n_node)
+    real(wp) :: force(3, model%n_node), reaction(3, model%n_node), fading(3, model%n_contact)
 
     force = old%external_force
-    if (old%progress <= 0.0_wp) then
-      start = old
-      call evaluate_external(model, start)
-      force = start%external_force
-    end if
+    if (old%progress <= 0.0_wp) call external_forces(model, old, fading, force)
     force = force + new%external_force
     reaction = old%internal_force + new%internal_force - force
     reaction(:, model%contact_node) = reaction(:, model%contact_node) + old%lambda + new%lambda

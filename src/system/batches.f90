@@ -6,16 +6,11 @@ module dd3_system_batches
   private
   public :: batches_t, new_batches
 
-  !> Elements per thread below which the threads wait for one another longer than they work.
-  integer, parameter :: least_elements = 128
   !> Elements in a batch.
   integer, parameter :: batch_size = 32
 
   !> Coloured batches.
   type :: batches_t
-    integer :: threads = 1
-    !> The sheet has enough elements for several threads.
-    logical :: parallel = .false.
     !> First element of each batch, and the end of the last one, `(n_batch + 1)`.
     integer, allocatable :: start(:)
     !> Batches sorted by colour, `(n_batch)`.
@@ -27,16 +22,13 @@ module dd3_system_batches
 contains
 
   !> Colour the batches greedily in their order: two colours for a mesh numbered section by section.
-  subroutine new_batches(self, model, threads)
+  subroutine new_batches(self, model)
     type(batches_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    integer, intent(in) :: threads
 
     logical, allocatable :: left(:), taken(:)
     integer :: i, n, n_batch
 
-    self%threads = threads
-    self%parallel = threads > 1 .and. model%n_element >= least_elements*threads
     n_batch = (model%n_element + batch_size - 1)/batch_size
     self%start = [(min(1 + i*batch_size, model%n_element + 1), i=0, n_batch)]
     allocate (self%coloured(n_batch), left(n_batch), taken(model%n_node))

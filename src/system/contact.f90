@@ -2,6 +2,7 @@
 !> (corrector) or at the committed state with its stored status (predictor).
 module dd3_system_contact
   use dd3_base_kinds, only : wp
+  use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       contact_violation, round_off, status_gap, status_slip, status_stick
@@ -16,6 +17,8 @@ module dd3_system_contact
 
   !> Value of `held` of a candidate whose status is not held.
   integer, parameter :: not_held = -1
+  !> Candidates that a thread takes at a time.
+  integer, parameter :: chunk = 64
 
   !> Contact of the candidates.
   type :: contact_work_t
@@ -69,35 +72,49 @@ contains
     !> Gets status, tool and closest points.
     type(state_t), intent(inout) :: trial
 
+    integer :: c
+
+    self%search_distance = model%phase(trial%phase)%search_distance
+    !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
+    !$omp& schedule(dynamic, chunk)
+    do c = 1, model%n_contact
+      call find_and_evaluate(self, model, committed, trial, c)
+    end do
+    !$omp end parallel do
+  end subroutine evaluate_contact
+
+  !> Evaluate the contact of one candidate.
+  subroutine find_and_evaluate(self, model, committed, trial, c)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    integer, intent(in) :: c
+
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
     real(wp) :: slip(3)
-    integer :: c, node, tool
+    integer :: node, tool
 
-    associate (phase => model%phase(trial%phase))
-      self%search_distance = phase%search_distance
-      do c = 1, model%n_contact
-        node = model%contact_node(c)
-        hint = trial%hint(:, c)
-        call find_nearest_tool(self, model, committed, trial, c, hint, hit)
-        tool = self%tool(c)
-        trial%contact_tool(c) = tool
-        trial%hint(:, c) = hint
-        self%lambda(:, c) = trial%lambda(:, c)
-        if (tool == 0) then
-          call open_candidate(self, c)
-        else
-          slip = trial%x(:, node) - committed%x(:, node) - trial%tool_displacement(:, tool) &
-              + committed%tool_displacement(:, tool)
-          self%distance(c) = hit%distance
-          self%normal(:, c) = hit%normal
-          call evaluate_candidate(self, c, hit, slip, &
-              contact_penalty(model, phase, c, trial%penalty_reduced), model%tool(tool)%friction)
-        end if
-        trial%status(c) = self%status(c)
-      end do
-    end associate
-  end subroutine evaluate_contact
+    node = model%contact_node(c)
+    hint = trial%hint(:, c)
+    call find_nearest_tool(self, model, committed, trial, c, hint, hit)
+    tool = self%tool(c)
+    trial%contact_tool(c) = tool
+    trial%hint(:, c) = hint
+    self%lambda(:, c) = trial%lambda(:, c)
+    if (tool == 0) then
+      call open_candidate(self, c)
+    else
+      slip = trial%x(:, node) - committed%x(:, node) - trial%tool_displacement(:, tool) &
+          + committed%tool_displacement(:, tool)
+      self%distance(c) = hit%distance
+      self%normal(:, c) = hit%normal
+      call evaluate_candidate(self, c, hit, slip, contact_penalty(model, &
+          model%phase(trial%phase), c, trial%penalty_reduced), model%tool(tool)%friction)
+    end if
+    trial%status(c) = self%status(c)
+  end subroutine find_and_evaluate
 
   !> Evaluate status, force and linearisation of a candidate near a tool.
   subroutine evaluate_candidate(self, c, hit, slip, penalty, friction)
@@ -131,12 +148,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
 
-    real(wp), parameter :: no_slip(3) = 0.0_wp
-    type(hint_t) :: hint(model%n_tool)
-    type(hit_t) :: hit
     logical :: touching(model%n_tool)
-    real(wp) :: friction
-    integer :: c, tool
+    integer :: c
 
     self%outward = outward_normals(model, committed%x)
     self%search_distance = model%tolerance%tool_search
@@ -148,27 +161,50 @@ contains
             <= round_off*contact_penalty(model, phase, c, committed%penalty_reduced)) cycle
         touching(committed%contact_tool(c)) = .true.
       end do
-      do c = 1, model%n_contact
-        hint = committed%hint(:, c)
-        call find_nearest_tool(self, model, committed, committed, c, hint, hit)
-        tool = self%tool(c)
-        self%lambda(:, c) = committed%lambda(:, c)
-        self%status(c) = committed%status(c)
-        if (tool == 0) then
-          call open_candidate(self, c)
-          cycle
-        end if
-        self%distance(c) = hit%distance
-        self%normal(:, c) = hit%normal
-        friction = model%tool(tool)%friction
-        call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
-            model%tolerance%touch)
-        call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-            self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
-            friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
-      end do
     end associate
+    !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
+    !$omp& schedule(dynamic, chunk)
+    do c = 1, model%n_contact
+      call find_and_predict(self, model, committed, touching, c)
+    end do
+    !$omp end parallel do
   end subroutine predictor_contact
+
+  !> Evaluate the contact of one candidate in the predictor.
+  subroutine find_and_predict(self, model, committed, touching, c)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    !> Whether any candidate is in contact with each tool.
+    logical, intent(in) :: touching(:)
+    integer, intent(in) :: c
+
+    real(wp), parameter :: no_slip(3) = 0.0_wp
+    type(hint_t) :: hint(model%n_tool)
+    type(hit_t) :: hit
+    real(wp) :: friction
+    integer :: tool
+
+    hint = committed%hint(:, c)
+    call find_nearest_tool(self, model, committed, committed, c, hint, hit)
+    tool = self%tool(c)
+    self%lambda(:, c) = committed%lambda(:, c)
+    self%status(c) = committed%status(c)
+    if (tool == 0) then
+      call open_candidate(self, c)
+      return
+    end if
+    self%distance(c) = hit%distance
+    self%normal(:, c) = hit%normal
+    friction = model%tool(tool)%friction
+    associate (phase => model%phase(committed%phase))
+      call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
+          model%tolerance%touch)
+      call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
+          self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
+          friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+    end associate
+  end subroutine find_and_predict
 
   !> Set the status of a candidate in the predictor.
   pure subroutine set_predictor_status(status, friction, phase, tool, touching, hit, touch)

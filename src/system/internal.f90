@@ -6,6 +6,7 @@
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
+  use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear
@@ -38,8 +39,8 @@ contains
     verdict%outcome = verdict_converged
     trial%internal_force = 0.0_wp
     if (with_stiffness) call clear_stiffness(system)
-    !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
-    !$omp& default(shared) private(mine, colour, k, e, batch, thread)
+    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) default(shared) &
+    !$omp& private(mine, colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(system%batches%colour_start) - 1
@@ -119,8 +120,8 @@ contains
     integer :: colour, k, e, batch, thread
 
     call clear_stiffness(system)
-    !$omp parallel if (system%batches%parallel) num_threads(system%batches%threads) &
-    !$omp& default(shared) private(colour, k, e, batch, thread)
+    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) default(shared) &
+    !$omp& private(colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(system%batches%colour_start) - 1

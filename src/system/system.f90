@@ -3,6 +3,7 @@ module dd3_system_system
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : profile_t
   use dd3_base_error, only : error_t
+  use dd3_base_threads, only : most_threads
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : new_linear_solver
@@ -13,6 +14,7 @@ module dd3_system_system
   use dd3_system_contact, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_reduced, only : linear_problem_t, new_linear_problem
+  use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
   public :: system_t, new_system
@@ -29,6 +31,7 @@ module dd3_system_system
     real(wp), allocatable :: tangent(:, :, :, :)
     !> Workspaces of the element kernels, one per thread.
     type(element_work_t), allocatable :: element(:)
+    type(thread_choice_t) :: threads
     !> Batches of elements for the threads.
     type(batches_t) :: batches
     !> Condensation of the enhanced strains.
@@ -45,11 +48,10 @@ module dd3_system_system
 contains
 
   !> Build the patterns, allocate the work arrays and set up the solver.
-  subroutine new_system(self, model, options, threads, error)
+  subroutine new_system(self, model, options, error)
     type(system_t), intent(out) :: self
     type(model_t), intent(in) :: model
     type(solver_options_t), intent(in) :: options
-    integer, intent(in) :: threads
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
 
@@ -62,9 +64,10 @@ contains
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
     allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
-    call new_batches(self%batches, model, threads)
-    allocate (self%element(threads))
-    do i = 1, threads
+    call new_thread_choice(self%threads, most_threads())
+    call new_batches(self%batches, model)
+    allocate (self%element(self%threads%all))
+    do i = 1, size(self%element)
       associate (element => model%element)
         call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
             element%n_enhanced)

@@ -8,7 +8,6 @@
 Each deck is strip.dat, or an input file of tests/, with some changes. The answer is the exit code and the line that
 says what is wrong, or, of a run that is right, values of the last row of history.csv.
 """
-import argparse
 import dataclasses
 import math
 import pathlib
@@ -20,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 REPORT = ROOT / "docs" / "reports" / "answers.md"
 sys.path.insert(0, str(ROOT / "utils"))
-from results import command, find_program, launch, read_table  # noqa: E402
+from results import command, launch, parser_of_runs, read_table  # noqa: E402
 from scripts import Problem  # noqa: E402
 
 HEAD = ["deck", "earlier answer", "exit code", "answer"]
@@ -209,14 +208,11 @@ def same(a, b):
 
 def main():
     """Compare, print or write the table; exit code 1 if a row differs."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--write", action="store_true", help="write the table")
     parser.add_argument("--print", action="store_true", help="print the table")
     options = parser.parse_args()
-    program = find_program(options.program)
-    rows = [(deck, *answer(program, deck, options.work / str(i))) for i, deck in enumerate(DECKS, 1)]
+    rows = [(deck, *answer(options.program, deck, options.work / str(i))) for i, deck in enumerate(DECKS, 1)]
     lines = table(rows)
     text = REPORT.read_text(encoding="utf-8")
     start = text.index(lines[0])

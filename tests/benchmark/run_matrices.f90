@@ -128,7 +128,7 @@ contains
 
     call new_state(committed, model)
     call new_state(trial, model)
-    call new_system(stepper%system, model, usual_options("auto"), 1, error)
+    call new_system(stepper%system, model, usual_options("auto"), error)
     if (allocated(error)) error stop 1
     call new_prediction(stepper%prediction, model)
     do number = 1, size(model%phase)

@@ -1,4 +1,5 @@
-# Build tests/build/boundary. It must compile; with FORBIDDEN it must fail, because the module of an undeclared folder is missing.
+# Build tests/build/boundary. It must compile; with FORBIDDEN it must fail, because the module of an undeclared folder
+# is missing.
 file(REMOVE_RECURSE "${WORK}")
 execute_process(COMMAND "${CMAKE_COMMAND}" -S "${ROOT}/tests/build/boundary" -B "${WORK}" -G "${GENERATOR}"
   "-DCMAKE_Fortran_COMPILER=${COMPILER}" -DFORBIDDEN=${FORBIDDEN} RESULT_VARIABLE result OUTPUT_VARIABLE output

@@ -4,8 +4,8 @@
     run.py --program build/release/dd3imp --work build/capstan           check
     run.py --program build/release/dd3imp --work build/capstan --write   and put the table into docs/reports/capstan.md
 
-The ratio of the tensions is exp(mu pi/2) = 1.25382 (Euler, Eytelwein). Each run must reach its end within 2 % of it, with
-no node more than 1e-3 mm inside the cylinder in any increment, or stop with a message. The deck is that of
+The ratio of the tensions is exp(mu pi/2) = 1.25382 (Euler, Eytelwein). Each run must reach its end within 2 % of it,
+with no node more than 1e-3 mm inside the cylinder in any increment, or stop with a message. The deck is that of
 tests/cases/capstan; its loads are proportional to the thickness.
 """
 import argparse
@@ -66,7 +66,8 @@ def measure(program, work, thickness, penalty):
             wrong.append(f"T1/T2 = {ratio:.5f}, expected {EXACT:.5f}")
     if depth > ALLOWED_DEPTH:
         wrong.append(f"a node is {depth:.3g} mm inside the cylinder")
-    row = [f"{thickness:g}", f"{penalty:g}" if penalty else "automatic", end, str(total.increments), str(total.cutbacks),
+    row = [f"{thickness:g}", f"{penalty:g}" if penalty else "automatic", end,
+           str(total.increments), str(total.cutbacks),
            str(total.iterations), *results, f"{depth:.1e}"]
     return row, [f"thickness {row[0]}, penalty {row[1]}: {text}" for text in wrong]
 

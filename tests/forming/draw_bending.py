@@ -3,8 +3,6 @@
 
     draw_bending.py --program build/release/dd3imp --work build/draw_bending            make the runs that are missing
     draw_bending.py --program build/release/dd3imp --work build/draw_bending --write    and put them into docs/reports
-
-The runs take hours; `--only` selects some. An interrupted run is continued.
 """
 import math
 import sys
@@ -14,9 +12,7 @@ import studies
 from fields import Fields
 from scripts import run
 
-DECK = studies.ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
-REPORT = studies.ROOT / "docs" / "reports" / "draw_bending.md"
-PICTURE = studies.ROOT / "docs" / "images" / "draw_bending.png"
+DECK, REPORT, PICTURE = studies.paths("draw_bending")
 DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not count, half length of the bottom, mm
 FLANGE = 36.0  # x beyond which the strip is flat at the end of the draw, mm
 HOLDERS = {"2.45 kN": -35, "19.6 kN": -280}  # N for 1 mm of the half strip
@@ -80,10 +76,7 @@ def shape(folder):
 
 def draw(lines):
     """Draw the strips after springback."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(6, 5), layout="constrained")
+    figure, axes = studies.new_figure(6, 5)
     for name, line in lines.items():
         axes.plot(line[:, 0], line[:, 1], label=name, linewidth=1.2)
     axes.set(xlabel="x, mm", ylabel="z, mm", aspect="equal")

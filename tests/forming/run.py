@@ -3,7 +3,6 @@
 
     run.py --program build/release/dd3imp --work build/forming
 """
-import argparse
 import importlib.util
 import math
 import sys
@@ -17,26 +16,25 @@ if any(importlib.util.find_spec(name) is None for name in ("h5py", "numpy")):
 
 import numpy as np  # noqa: E402
 from fields import Fields  # noqa: E402
-from results import command, find_program, launch, read_table  # noqa: E402
+from results import command, launch, parser_of_runs, read_table  # noqa: E402
 
 K, E0, N, YOUNG, POISSON = 565.0, 0.007117, 0.259, 2.1e5, 0.3
 MATERIAL = f"*MATERIAL steel\n  young = {YOUNG}\n  poisson = {POISSON}\n  yield = von_mises\n" \
            f"  hardening = swift K={K} e0={E0} n={N}\n"
 FINE = "*NEWTON\n  tolerance = 1e-9\n*LIMITS\n  strain = 0.002\n  rotation = off\n"
+
+
+def fixed(**sets):
+    """Return the supports of node sets, each with its directions."""
+    return "".join(f"*BOUNDARY {name}\n  set = {name}\n  fix = {directions}\n" for name, directions in sets.items())
+
+
+PLANE_STRAIN = fixed(x_min="x", all="y", z_min="z")
 STRETCH = """*BLANK sheet
   size = 10 4 1
   divisions = 5 2 1
   element = {element}
   material = steel
-*BOUNDARY left
-  set = x_min
-  fix = x
-*BOUNDARY width
-  set = all
-  fix = y
-*BOUNDARY bottom
-  set = z_min
-  fix = z
 *PHASE stretch
   control = load
   trial = 0.02
@@ -46,18 +44,12 @@ STRETCH = """*BLANK sheet
   quantities = displacement draw_in
 *OUTPUT
   fields = increments 1000
-""" + MATERIAL + FINE
+""" + PLANE_STRAIN + MATERIAL + FINE
 SHEAR = """*BLANK sheet
   size = 10 10 1
   divisions = 1 1 1
   element = {element}
   material = steel
-*BOUNDARY front
-  set = y_min
-  fix = x y z
-*BOUNDARY flat
-  set = all
-  fix = z
 *PHASE shear
   control = load
   trial = 0.02
@@ -65,7 +57,7 @@ SHEAR = """*BLANK sheet
   displace = y_max y 0
 *OUTPUT
   fields = increments 1000
-""" + MATERIAL + FINE
+""" + fixed(y_min="x y z", all="z") + MATERIAL + FINE
 PRESS = """*BLANK sheet
   size = 10 6 1
   divisions = 4 3 2
@@ -81,12 +73,6 @@ PRESS = """*BLANK sheet
   contact = z_min
 *CONTACT
   search_distance = 0.5
-*BOUNDARY left
-  set = x_min
-  fix = x
-*BOUNDARY front
-  set = y_min
-  fix = y
 *NEWTON
   tolerance = 1e-9
 *PHASE press
@@ -94,7 +80,7 @@ PRESS = """*BLANK sheet
   trial = 0.5
   hold = table
   pressure = z_max 1.2
-"""
+""" + fixed(x_min="x", y_min="y")
 # A rigid cylinder of radius 100 mm on an elastic block in plane strain, one half: elements of 0.1 mm at the contact.
 HERTZ_RADIUS, HERTZ_YOUNG = 100.0, 1000.0
 HERTZ = """*BLANK block
@@ -113,22 +99,13 @@ HERTZ = """*BLANK block
   contact = z_max
   position = 0 0 10
 *CONTACT
-*BOUNDARY symmetry
-  set = x_min
-  fix = x
-*BOUNDARY plane
-  set = all
-  fix = y
-*BOUNDARY bottom
-  set = z_min
-  fix = z
 *NEWTON
   tolerance = 1e-6
 *PHASE press
   control = load
   trial = 0.5
   press = cylinder 0 0 {force}
-"""
+""" + PLANE_STRAIN
 SLIDE = ROOT / "tests" / "cases" / "friction_slide"
 
 
@@ -271,11 +248,7 @@ def check_slide(options, element):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=find_program, required=True)
-    parser.add_argument("--work", type=Path, required=True)
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = parser_of_runs(__doc__).parse_args()
     check_hertz(options)
     for element in ("hex8", "solid_shell", "hex20", "hex27"):
         check_stretch(options, element)

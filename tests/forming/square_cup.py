@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""The square cup of NUMISHEET'93 with several meshes and elements: draw-in, and thickness along the diagonal.
+"""The square cup of NUMISHEET'93, steel and aluminium, by several meshes and elements: draw-in and thickness.
 
     square_cup.py --program build/release/dd3imp --work build/square_cup            make the runs that are missing
     square_cup.py --program build/release/dd3imp --work build/square_cup --write    and put them into docs/reports
-
-The runs take hours; `--only` selects some. An interrupted run is continued.
 """
 import math
 import sys
@@ -14,15 +12,15 @@ import studies
 from fields import Fields
 from scripts import run
 
-DECK = studies.ROOT / "input_files" / "square_cup" / "square_cup.dat"
-REPORT = studies.ROOT / "docs" / "reports" / "square_cup.md"
-PICTURE = studies.ROOT / "docs" / "images" / "square_cup.png"
+DECK, REPORT, PICTURE = studies.paths("square_cup")
+ALUMINIUM = DECK.with_name("aluminium.dat")
 SIZE = 75.0  # of the quarter, mm
 TRAVELS = (15.0, 40.0)
 # Name of the run, elements along a side, through the thickness, element, points.
 RUNS = [("solid_shell 15 x 15", 15, 1, "solid_shell", 5), ("solid_shell 20 x 20", 20, 1, "solid_shell", 5),
         ("solid_shell 30 x 30", 30, 1, "solid_shell", 5), ("solid_shell 45 x 45", 45, 1, "solid_shell", 5),
-        ("hex8 30 x 30 x 2", 30, 2, "hex8", 0), ("hex8 30 x 30 x 3", 30, 3, "hex8", 0)]
+        ("hex8 30 x 30 x 2", 30, 2, "hex8", 0), ("hex8 30 x 30 x 3", 30, 3, "hex8", 0),
+        ("aluminium 15 x 15", 15, 1, "solid_shell", 5), ("aluminium 30 x 30", 30, 1, "solid_shell", 5)]
 PLACES = (20.0, 40.0, 50.0, 60.0, 70.0, 80.0, 100.0)  # along the diagonal of the blank, mm from the centre
 
 
@@ -48,10 +46,7 @@ class Cup:
 
 def draw(cups):
     """Draw the thickness along the diagonal at the end."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    figure, axes = studies.new_figure(7, 4)
     for name, cup in cups.items():
         axes.plot(cup.place, cup.thickness(TRAVELS[-1]), label=name, linewidth=1.2,
                   linestyle="--" if name.startswith("hex8") else "-")
@@ -66,7 +61,7 @@ def main():
     cups, efforts = {}, {}
     for name, across, layers, element, points in RUNS:
         settings = {"divisions": f"{across} {across} {layers}", "element": element}
-        deck = DECK
+        deck = ALUMINIUM if name.startswith("aluminium") else DECK
         if points:
             settings["points"] = points
         else:

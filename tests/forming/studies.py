@@ -1,27 +1,36 @@
 """What the studies of this folder share: runs that are kept, and tables in reports. Needs the Python environment."""
-import argparse
-import pathlib
 import re
 import sys
+from pathlib import Path
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "utils"))
 import scripts  # noqa: E402
 
 scripts.need("h5py", "matplotlib", "numpy")
-from results import command, find_program, launch, read_table, read_text, totals  # noqa: E402
+from results import command, launch, parser_of_runs, read_table, read_text, totals  # noqa: E402
 
 
 def arguments(description):
-    """Return the options of a study."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=find_program)
-    parser.add_argument("--work", required=True, type=pathlib.Path, help="folder of the runs; finished ones are kept")
+    """Return the options of a study. Its runs take hours; finished ones are kept, interrupted ones are continued."""
+    parser = parser_of_runs(description)
     parser.add_argument("--only", nargs="+", help="names of the runs to make; the others only if they are there")
     parser.add_argument("--write", action="store_true", help="put tables and pictures into the report")
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
-    return options
+    return parser.parse_args()
+
+
+def paths(name):
+    """Return input file, report and picture of a study."""
+    return (ROOT / "input_files" / name / f"{name}.dat", ROOT / "docs" / "reports" / f"{name}.md",
+            ROOT / "docs" / "images" / f"{name}.png")
+
+
+def new_figure(*size):
+    """Return a figure of a size in inches and its axes."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    return pyplot.subplots(figsize=size, layout="constrained")
 
 
 def is_finished(folder):

@@ -35,7 +35,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ("input_files", "tests/cases", "tests/bad_input")
 # Errors of a file as a whole, which have no line.
 WITHOUT_LINE = ("is missing", "contains no block", "cannot read the input file", "would overwrite the input file")
-TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer", "terminate")
+TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer",
+          "terminate")
 NUMBER = re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$")
 EXTREMES = ("0", "-1", "1", "-0.0", "1e300", "-1e300", "1e-300", "1e-12", "1e12", "nan", "inf", "1e999", "2", "3", "7",
             "0.5", "2147483647", "2147483648", "-2147483648", "99999999999999999999", "1e", "--1", "1,5", "0x10", "off")
@@ -220,13 +221,14 @@ def faults_of_tables(output, code):
         text = path.read_text(encoding="utf-8", errors="replace")
         if text and not text.endswith("\n"):
             faults.append(f"{path.name} ends in the middle of a line")
-        if code == 0 and path.name == "history.csv" and re.search(r"(^|,)-?(nan|inf)", text, re.MULTILINE | re.IGNORECASE):
+        if code == 0 and path.name == "history.csv" \
+                and re.search(r"(^|,)-?(nan|inf)", text, re.MULTILINE | re.IGNORECASE):
             faults.append(f"{path.name} has values that are not numbers")
     return faults
 
 
 def call(words, limit, end_limit, memory):
-    """Run the program; return its exit code (None if it had to be killed) and what it said. A run gets SIGTERM first."""
+    """Run the program; return its exit code (None if it had to be killed) and what it said. SIGTERM comes first."""
     def limits():
         if memory:
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))

@@ -24,12 +24,13 @@ if not all(importlib.util.find_spec(name) for name in ("numpy", "scipy", "matplo
     print("the packages of utils/requirements.txt are not installed: run utils/install_needed.sh")
     sys.exit(1 if (ROOT / ".venv").exists() else 77)
 
+import fit  # noqa: E402
 import identify  # noqa: E402
 import numpy as np  # noqa: E402
 from measurements import TENSION, Datum  # noqa: E402
 from scripts import Problem  # noqa: E402
 
-identify.BORDER, identify.EVALUATIONS = 5, 25  # enough to see that it works
+fit.BORDER, fit.EVALUATIONS = 5, 25  # enough to see that it works
 ANGLES = range(0, 91, 15)
 TITANIUM = ["--stress", "90:1.053", "--compression", "0:0.898", "90:0.805", "--biaxial-stress", "1.449",
             "--biaxial-compression", "1.104"]  # Ti-4Al-1/4O2 at 0.2 %
@@ -127,7 +128,7 @@ class Trial:
     """Runs of identify.py in a folder, and their failures."""
 
     def __init__(self, program):
-        self.program, self.points, self.wrong = program, identify.Points(program, 2.1e5, 0.3), []
+        self.program, self.points, self.wrong = program, fit.Points(program, 2.1e5, 0.3), []
 
     def expect(self, true, what):
         """Record a failure unless the condition holds."""
@@ -203,7 +204,7 @@ def measure(trial, name, law):
         keys += ["compression"] * 7 + ["biaxial_compression"]
     paths = [(control, angle, [(values, 1) for values in targets])
              for control, angle, targets in (d.path() for d in data)]
-    rows = trial.points.rows([(f"yield = {name} {law}", f"hardening = {identify.UNIT}")], paths)[0]
+    rows = trial.points.rows([(f"yield = {name} {law}", f"hardening = {fit.UNIT}")], paths)[0]
     return [(key, d.angle if d.angled else None, d.computed(row)) for key, d, row in zip(keys, data, rows)]
 
 

@@ -164,7 +164,8 @@ def other_ways(runner, work):
     shutil.copytree(work / "whole", output)
     runner.run(deck, output, output / "restart.h5", settings=settings)
     compare(output, work / "whole")
-    check((output / "status.csv").read_bytes() == (work / "whole" / "status.csv").read_bytes(), "status.csv has changed")
+    check((output / "status.csv").read_bytes() == (work / "whole" / "status.csv").read_bytes(),
+          "status.csv has changed")
     source = fresh(work / "lost")
     shutil.copy(first, source / "restart.h5")
     (source / "fields.vtkhdf").write_bytes((work / "whole" / "fields.vtkhdf").read_bytes()[:20000])

@@ -11,7 +11,8 @@ import random
 import signal
 import time
 
-from runs import Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of, table
+from runs import (Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of,
+                  table)
 
 # Phases before the last one, and the beginning of that.
 MOTIONS = """*PHASE turn
@@ -33,8 +34,8 @@ MOTIONS = """*PHASE turn
 
 *PHASE springback
   free = x_max x z"""
-# Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only; fields by
-# increments; motions and pressures along curves of progress; a linear solver that falls back.
+# Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;
+# fields by increments; motions and pressures along curves of progress; a linear solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),

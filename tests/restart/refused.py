@@ -26,7 +26,8 @@ DIFFERENT = {
                         "material 'mild_steel'"),
     "other elasticity": ((("young = 2.1e5", "young = 2.0e5"),), "material 'mild_steel'"),
     "other back-stress": ((("CX=5", "CX=6"),), "material 'mild_steel'"),
-    "other name of the material": ((("*MATERIAL mild_steel", "*MATERIAL steel"), ("material = mild_steel", "material = steel")),
+    "other name of the material": ((("*MATERIAL mild_steel", "*MATERIAL steel"),
+                                    ("material = mild_steel", "material = steel")),
                                    "material 'steel' (new), material 'mild_steel' (missing)"),
     "other surface": ((("bending/punch.bez", "bending/die.bez"),), "tool 'punch'"),
     "other friction": ((('die.bez"\n  friction = 0.144', 'die.bez"\n  friction = 0.1'),), "tool 'die'"),
@@ -185,7 +186,8 @@ class Refusals:
 
     def checked(self):
         """--check refuses too, and accepts without touching anything."""
-        self.refuse(Deck(self.work / "changed.dat", ("K=565", "K=566")), "belongs to another model", arguments=("--check",))
+        self.refuse(Deck(self.work / "changed.dat", ("K=565", "K=566")), "belongs to another model",
+                    arguments=("--check",))
         output = self.work / "results"
         before = sorted(path.name for path in output.iterdir())
         self.runner.run(Deck(self.work / "same.dat"), output, output / "restart.h5", arguments=("--check", "--quiet"))

@@ -6,7 +6,6 @@
 The chosen supports are as many as the free rigid motions and carry no force. The free shape, given by the distances
 between some nodes, is that found with `release` and supports chosen by hand, and the same in all three models.
 """
-import argparse
 import itertools
 import math
 import pathlib
@@ -15,7 +14,8 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "utils"))
-from results import command, find_program, launch, number, read_table  # noqa: E402
+from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
+from scripts import check  # noqa: E402
 
 MODEL = """
 *MATERIAL steel
@@ -64,12 +64,6 @@ MODELS = {
              "  displace = edge z 0\n  displace = edge x 0\n  displace = tip z 0\n", 6)}
 
 
-def check(condition, message):
-    """End the test with a message unless the condition holds."""
-    if not condition:
-        sys.exit(message)
-
-
 def write_deck(path, name, unload):
     """Write the input file of a model, with the springback phase by `unload` or by `release`."""
     blank, supports, hold, free, by_hand, _ = MODELS[name]
@@ -110,11 +104,7 @@ def run(program, work, name, unload):
 
 def main():
     """Compare the free shapes."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=find_program)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
-    arguments = parser.parse_args()
-    arguments.work.mkdir(parents=True, exist_ok=True)
+    arguments = parser_of_runs(__doc__).parse_args()
     reference = None
     for name in MODELS:
         for unload in (False, True):

@@ -1,7 +1,7 @@
 # cmake -DPROGRAM=<executable> -DEXIT_CODE=<n> [-DEXPECTED=<file>] -P check_failing.cmake
 #
-# Run a suite that must fail: with this exit code, stopping at a failed assert, and with output that matches each line (a
-# regular expression) of the file.
+# Run a suite that must fail: with this exit code, stopping at a failed assert, and with output that matches each line
+# (a regular expression) of the file.
 execute_process(COMMAND "${PROGRAM}" --verbose RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
 if(NOT result STREQUAL EXIT_CODE)
   message(FATAL_ERROR "exit code ${result}, expected ${EXIT_CODE}\n${output}${errors}")

@@ -1,4 +1,5 @@
-# cmake -DPREPROCESSOR=<command> -DCOMPILER=<gfortran> -DMODULES=<folders> -DSOURCE=<x.pf> -DWORK=<folder> [-DGENUINE=ON]
+# cmake -DPREPROCESSOR=<command> -DCOMPILER=<gfortran> -DMODULES=<folders> -DSOURCE=<x.pf> -DWORK=<folder>
+# [-DGENUINE=ON]
 #       -P check_refused.cmake
 #
 # Preprocess and compile a test file that must be refused. Its first line says by whom and why:

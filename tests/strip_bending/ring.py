@@ -4,9 +4,9 @@
     ring.py [RADIUS ...]
 
 The strip becomes a ring: its layer at the height Z before bending lies at the radius r(Z). With L0/R the angle of a
-piece of the length L0, the stretches are r/R along the strip, dr/dZ across it and 1 in the width. r(Z) is found from the
-equilibrium of a chain of layers, radial stress included; both faces are free, hence no axial force. Material: Hencky
-elasticity, von Mises, Swift's law, backward Euler along the path.
+piece of the length L0, the stretches are r/R along the strip, dr/dZ across it and 1 in the width. r(Z) is found from
+the equilibrium of a chain of layers, radial stress included; both faces are free, hence no axial force. Material:
+Hencky elasticity, von Mises, Swift's law, backward Euler along the path.
 """
 import math
 import sys

@@ -4,19 +4,19 @@
     run.py --program build/release/dd3imp --work build/strip_bending [--all]
 
 One end of a short strip is held by symmetry, a couple of dead forces acts on the other, so that no other force acts on
-its sections. Its radius is that between the plane of symmetry and a section one element of `solid_shell` from the loaded
-end. Moment and radius after release of `solid_shell`, one layer, elements of two thicknesses, 9 points, must agree
-within 2 % with ring.py at the same radius. --all prints the same for other elements.
+its sections. Its radius is that between the plane of symmetry and a section one element of `solid_shell` from the
+loaded end. Moment and radius after release of `solid_shell`, one layer, elements of two thicknesses, 9 points, must
+agree within 2 % with ring.py at the same radius. --all prints the same for other elements.
 """
-import argparse
 import math
 import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "utils"))
-from results import command, find_program, launch, number, read_table  # noqa: E402
+from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
 from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to  # noqa: E402
+from scripts import check  # noqa: E402
 
 TOLERANCE = 0.02
 RADII = (10.0, 50.0, 100.0)
@@ -46,12 +46,6 @@ MODEL = f"""
 *NEWTON
   tolerance = 1e-6
 """
-
-
-def check(condition, message):
-    """End the test with a message unless the condition holds."""
-    if not condition:
-        sys.exit(message)
 
 
 def deck(element, divisions, force):
@@ -101,9 +95,7 @@ def variants(everything):
 
 def main():
     """Compare the strips with the ring."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=find_program)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--all", action="store_true", help="further elements, without a check")
     arguments = parser.parse_args()
     for goal in RADII:

@@ -27,12 +27,21 @@ increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,pun
 2,draw,2,1,0,0,-2,0,0,2500,4
 """
 DECK = """*PARAMETER
-  shape = punch
+  shape = elsewhere
 *TOOL punch
   patches = "${shape}.bez"   # beside this file
 *PHASE draw
   control = punch
 """
+LOG = """dd3imp 0.1.0: job.dat
+started 2026-01-01 00:00
+*TOOL punch
+  patches = "punch.bez"
+  position = 0 0 0                                  # mm, default
+*PHASE draw
+  control = punch
+linear solver: umfpack
+"""  # of a run with --set shape=punch
 PATCHES = "patch 2 1 rational\n0 0 2 1\n1 0 2 0.7\n1 0 3 1\n0 1 2 1\n1 1 2 0.7\n1 1 3 1\n"
 
 
@@ -42,6 +51,7 @@ def make_run(folder):
     run = folder / "job.out"
     run.mkdir()
     (run / "history.csv").write_text(HISTORY)
+    (run / "job.log").write_text(LOG)
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
     with h5py.File(run / "fields.vtkhdf", "w") as file:
         grid = file.create_group("VTKHDF")

@@ -42,6 +42,13 @@ time by section, s:
   solve         0.2082
 reached the end; results in x
 """
+ECHO = """dd3imp 0.1.0: job.dat
+*TOOL Punch
+  patches = "die.bez"                               # a surface
+*PHASE draw
+linear solver: umfpack
+*** no part of the input
+"""
 PROGRAM = """#!{python}
 import sys, time
 print("said", *sys.argv[1:])
@@ -95,6 +102,12 @@ def check_deck(folder):
     (folder / "parts").mkdir()
     (folder / "job.dat").write_text(DECK)
     (folder / "parts" / "tools.inc").write_text(TOOLS)
+    _, tool, _ = results.read_deck(folder / "job.dat", {"Shape": "die"})
+    assert tool.value("patches") == '"die.bez"', tool
+    heading, values = results.echo_in(ECHO)
+    assert heading == ["dd3imp 0.1.0: job.dat"] and len(values) == 3, (heading, values)
+    tool, phase = results.read_echo(ECHO, folder)
+    assert tool.value("patches") == '"die.bez"' and phase.name == "draw" and not phase.values, (tool, phase)
     _, tool, phase = results.read_deck(folder / "job.dat")
     assert (tool.keyword, tool.name, tool.folder) == ("tool", "Punch", folder / "parts"), tool
     assert tool.value("patches") == '"punch.bez"' and tool.value("friction") is None

@@ -352,19 +352,20 @@ def check_cad(folder, program):
         convert(folder / f"{name}.brep", bez)
         assert np.abs(distance(points_of(read(bez), 5)[0])).max() < 0.002, name
     assert "no part '9'; there are 1 " in convert(folder / "punch.step", "--part", "9", expect=2)
+    with mock.patch.object(cad, "MOST_PATCHES", 1):  # of a face, which is then not divided further
+        assert "farther than" in convert(folder / "punch.step", "--tolerance", 1e-5, expect=2)
     for name in ("text.step", "text.igs", "text.brep"):
         (folder / name).write_text("no tool\n")
         convert(folder / name, bez, expect=2)
 
 
-def check_example(folder, program):
-    """Check the tools of the square cup made from its STEP files, which have the places of the input file."""
-    cup = ROOT / "input_files" / "square_cup"
-    done = subprocess.run([cup / "step_files.py", folder], capture_output=True, text=True, check=True)
+def check_box_tools(folder, program, deck, tools):
+    """Check tools made from the STEP files of a part: half size, radii in plan and of the profile, height of the face
+    of each; and that the program takes them without a near miss."""
+    done = subprocess.run([deck.with_name("step_files.py"), folder], capture_output=True, text=True, check=True)
     assert not done.stdout + done.stderr, done
-    for kind, toward, half, corner, radius, face in (("punch", -1, 35, 10, 8, 0.78), ("holder", -1, 37, 12, 0, 0.78),
-                                                     ("die", 1, 37, 12, 5, 0)):
-        convert(folder / f"{kind}.step", folder / f"{kind}.bez", "--toward", 0, 0, toward)
+    for kind, (half, corner, radius, face) in tools.items():
+        convert(folder / f"{kind}.step", folder / f"{kind}.bez", "--toward", 0, 0, 1 if kind == "die" else -1)
         point = points_of(read(folder / f"{kind}.bez"), 5)[0] - (0, 0, face)
         if kind == "holder":  # a die upside down
             point[..., 2] *= -1
@@ -372,9 +373,34 @@ def check_example(folder, program):
         shape = "punch" if kind == "punch" else "die"
         distance = np.abs(box_distance(point, (half, half), corner, radius, shape))[near].max()
         assert distance < 0.002, (kind, distance)
-    done = subprocess.run([program, "--check", "--set", f"tools={folder}", cup / "square_cup.dat"], capture_output=True,
-                          text=True, check=False)
+    check_taken(folder, program, deck)
+
+
+def check_taken(folder, program, deck):
+    """Check that the program takes the three tools of a folder without a near miss."""
+    done = subprocess.run([program, "--check", "--set", f"tools={folder}", deck], capture_output=True, text=True,
+                          check=False)
     assert done.returncode == 0 and done.stdout.count(" 0 near misses, 0 T-junctions") == 3, done.stdout + done.stderr
+
+
+def check_examples(folder, program):
+    """Check the tools of the parts made from their STEP files, which have the places of the input files."""
+    parts = ROOT / "input_files"
+    check_box_tools(folder, program, parts / "square_cup" / "square_cup.dat",
+                    {"punch": (35, 10, 8, 0.78), "holder": (37, 12, 0, 0.78), "die": (37, 12, 5, 0)})
+    check_box_tools(folder, program, parts / "round_cup" / "round_cup.dat",
+                    {"punch": (48.73, 48.73, 12.7, 1.6), "holder": (50.74, 50.74, 0, 1.6),
+                     "die": (50.74, 50.74, 12.7, 0)})
+    rail = parts / "rail"
+    subprocess.run([rail / "step_files.py", folder], capture_output=True, text=True, check=True)
+    for kind in ("punch", "holder", "die"):
+        convert(folder / f"{kind}.step", folder / f"{kind}.bez", "--toward", 0, 0, 1 if kind == "die" else -1)
+    check_taken(folder, program, rail / "rail.dat")
+    for path, tolerance in ((folder, 0.002), (rail, 1e-9)):
+        x, y, z = points_of(read(path / "die.bez"), 5)[0].reshape(-1, 3).T
+        across = np.hypot(x - np.sign(x) * 37.5, y + np.sign(x) * 75 * np.cos(np.pi / 6)) - 75
+        wall = (z < -5.01) & (np.abs(x) > 10) & (np.abs(x) < 37)
+        assert wall.any() and np.abs(np.abs(across) - 16)[wall].max() < tolerance, path
 
 
 def check_messages(folder):
@@ -398,7 +424,7 @@ def main():
             check(Path(name), program)
         if importlib.util.find_spec("gmsh"):
             check_cad(Path(name), program)
-            check_example(Path(name), program)
+            check_examples(Path(name), program)
         check_messages(Path(name))
     print("tool surfaces are right")
 

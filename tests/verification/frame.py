@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(ROOT / "utils"))
-from results import command, find_program, launch, number, read_table, read_text  # noqa: E402
+from results import command, launch, number, read_table, read_text  # noqa: E402
 from scripts import Problem, need  # noqa: E402
 
 VALUE_HEAD = ["quantity", "expected", "computed", "error", "tolerance"]
@@ -168,7 +168,7 @@ class Bench:
     """The program, and a folder for decks and results."""
 
     def __init__(self, program, work):
-        self.program, self.work = find_program(program), work.resolve()
+        self.program, self.work = program, work.resolve()
         self.work.mkdir(parents=True, exist_ok=True)
 
     def run(self, name, deck, settings=None, options=(), timeout=1800):

@@ -12,12 +12,11 @@ run, and their pictures, into the page. --only WORD runs the sections with this 
 A section is an entry of SECTIONS in gathered.py, which gathers cases of tests/cases, or in the file case.py of a
 folder here, beside its deck.
 """
-import argparse
-import pathlib
 import re
 import sys
 
 from frame import HERE, ROOT, STUDY_HEAD, VALUE_HEAD, Bench, Problem, load, need, study_rows
+from results import parser_of_runs
 
 PAGE = ROOT / "docs" / "verification.md"
 PICTURES = ROOT / "docs" / "images" / "verification"
@@ -198,9 +197,7 @@ def write(parts):
 
 def main():
     """Run the sections; exit code 1 if one is wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--slow", action="store_true", help="run all sections")
     parser.add_argument("--write", action="store_true", help="write the page and the pictures")
     parser.add_argument("--only", default="", help="a word of the headings of the sections to run")

@@ -23,6 +23,8 @@ SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
 NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
 MOST_ROUNDS = 8
+# Patches of a face beyond which it is not divided further.
+MOST_PATCHES = 2000
 # Kink inside a face above which it is divided further, degrees, in this many rounds.
 KINK, KINK_ROUNDS = 0.5, 2
 # Points of the distance: between the nodes.
@@ -324,7 +326,9 @@ def mesh_within(gmsh, model, tolerance, progress):
             best = score, model.nodes, model.uv, model.labels, model.face, model.distance
         if not any(score):
             break
-        if not division.refine(model.distance / tolerance, kink / KINK, bent):
+        full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
+        if not division.refine(np.where(full, 0.0, model.distance / tolerance), np.where(full, 0.0, kink / KINK),
+                               bent - set(np.flatnonzero(full).tolist())):
             break
     _, model.nodes, model.uv, model.labels, model.face, model.distance = best
 

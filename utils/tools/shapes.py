@@ -13,6 +13,7 @@ A shape file has blocks like an input file, and the parameters of *PARAMETER:
       start = 0 -10
       arc = 10 0  0 0       # to a point, about a centre, the shorter way
       revolve = 0 90        # degrees, about the second axis, from the first one
+      centre = 0 0          # place of that axis along the first and the third one
     *ROUNDED_BOX cup
       kind = die            # punch, die, holder
       half = 37 37          # half sizes of the punch or of the opening
@@ -32,7 +33,7 @@ from tools.surface import Surface, homogeneous, joined, turned
 
 AXES = "xyz"
 KINDS = ("punch", "die", "holder")
-KEYS = {"profile": ("axes", "start", "line", "corner", "arc", "extrude", "revolve"),
+KEYS = {"profile": ("axes", "start", "line", "corner", "arc", "extrude", "revolve", "centre"),
         "rounded_box": ("kind", "half", "corner", "radius", "depth", "flange", "quarter", "centre")}
 # Relative difference of lengths that count as equal.
 EQUAL = 1e-9
@@ -303,7 +304,7 @@ def make_profile(block, place, distance):
     pieces = curve(profile)
     if pieces[..., 0].min() < -EQUAL * np.abs(pieces).max() < EQUAL * np.abs(pieces).max() < pieces[..., 0].max():
         raise Problem(f"{place}: the profile crosses the axis of revolution")
-    return revolved(pieces, axes, start, end)
+    return revolved(pieces, axes, start, end, numbers(block, "centre", 2, place, [0, 0]))
 
 
 def make_box(block, place, distance):

@@ -11,7 +11,9 @@ module small_model
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : new_material
   use dd3_model_model, only : model_t
+  use dd3_model_rim, only : set_rim
   use dd3_model_state, only : state_t, new_state
+  use dd3_model_thickness_columns, only : set_columns
   implicit none
   private
   public :: make_small_model, fresh_folder, link_full_disk, lines_of, line_t
@@ -66,6 +68,8 @@ contains
       model%connectivity(:, k + 1) = [node(0, 0, k), node(1, 0, k), node(1, 1, k), node(0, 1, k), &
           node(0, 0, k + 1), node(1, 0, k + 1), node(1, 1, k + 1), node(0, 1, k + 1)]
     end do
+    call set_columns(model)
+    call set_rim(model)
     criterion%name = "von_mises"
     hardening%name = "perfect"
     allocate (criterion%values(0))

@@ -97,7 +97,8 @@ def full_disk(program, directory):
             print("cannot mount a file system of limited size: full_disk is skipped")
             return
         both = '"$1" --output "$2/out" "$3"; code=$?; cp -r "$2/out" "$4"; exit $code'
-        done = subprocess.run(mounted + ["sh", "-c", both, "sh", program, disk, BEGINNING, copy], stdout=subprocess.PIPE,
+        done = subprocess.run(mounted + ["sh", "-c", both, "sh", program, disk, BEGINNING, copy],
+                              stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
         check(done.returncode == 3 and "No space left" in done.stdout, f"{done.returncode}:\n{done.stdout}")
         history, status = table(copy / "history.csv"), table(copy / "status.csv")
@@ -163,7 +164,8 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, next_to_old, interrupted):
+    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, next_to_old,
+                 interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 

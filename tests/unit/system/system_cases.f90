@@ -52,7 +52,7 @@ contains
     options%tolerance = 1.0e-10_wp
     options%iterations = 200
     options%ordering = "none"
-    call new_system(system, model, options, 1, error)
+    call new_system(system, model, options, error)
     if (allocated(error)) error stop "the solver of the test is unknown"
   end subroutine load_system
 

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Install into a temporary prefix; run the program, an example and the utilities from there."""
+import argparse
+import importlib.util
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)")
+
+
+def call(words, folder):
+    """Run a command in a folder; return what it prints."""
+    done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True, timeout=100,
+                          check=False)
+    if done.returncode:
+        sys.exit(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def missing(folder):
+    """Return the links of the installed documents that lead nowhere."""
+    pages = [folder / "README.md", *(folder / "docs").rglob("*.md")]
+    return [f"{page}: {link}" for page in pages for link in LINK.findall(page.read_text(encoding="utf-8"))
+            if not (page.parent / link).exists()]
+
+
+def check_program(prefix, folder):
+    """Run an example whose tools are beside it, for a millimetre."""
+    program = prefix / "bin" / "dd3imp"
+    assert "dd3imp" in call([program, "--version"], folder)
+    deck = prefix / "share" / "dd3imp" / "input_files" / "square_cup" / "square_cup.dat"
+    call([program, "--quiet", "--set", "divisions=4 4 1", "--set", "depth=1", "--output", folder / "cup.out", deck],
+         folder)
+    assert "reached the end" in (folder / "cup.out" / "job.log").read_text(encoding="utf-8")
+
+
+def check_utilities(prefix, folder):
+    """Call each utility by its name; without their packages none starts, and they say what makes the environment."""
+    environment = prefix / "share" / "dd3imp" / ".venv"
+    packages = all(importlib.util.find_spec(name) for name in ("h5py", "matplotlib", "numpy", "scipy"))
+    if packages:
+        environment.symlink_to(sys.prefix)
+    names = sorted(path.name for path in (prefix / "bin").glob("dd3imp-*"))
+    assert "dd3imp-report" in names and "dd3imp-section" in names, names
+    for name in names if packages else []:
+        assert name in call([prefix / "bin" / name, "--help"], folder)
+    if packages:
+        call([prefix / "bin" / "dd3imp-section", "cup.out", "--plane", "y=0", "--field", "thickness", "--table",
+              "section.csv"], folder)
+        assert (folder / "section.csv").stat().st_size > 100
+    script = prefix / "share" / "dd3imp" / "utils" / "install_needed.sh"
+    assert "install_needed" in call(["bash", script, "--help"], folder)
+
+
+def main():
+    """Install, check, remove."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cmake", required=True)
+    parser.add_argument("--build", required=True, type=pathlib.Path)
+    options = parser.parse_args()
+    os.environ.pop("DESTDIR", None)
+    with tempfile.TemporaryDirectory() as name:
+        prefix, folder = pathlib.Path(name) / "a prefix", pathlib.Path(name) / "work"
+        folder.mkdir()
+        call([options.cmake, "--install", options.build, "--prefix", prefix], folder)
+        lost = missing(prefix / "share" / "doc" / "dd3imp")
+        assert not lost, "\n".join(lost)
+        check_program(prefix, folder)
+        check_utilities(prefix, folder)
+    print("the installed program, example and utilities run")
+
+
+if __name__ == "__main__":
+    main()

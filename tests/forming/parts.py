@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
+
+Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, and the ears and
+the height of the round cup's script on a profile that is known.
+"""
+import argparse
+import importlib.util
+import math
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "utils"))
+if any(importlib.util.find_spec(name) is None for name in ("h5py", "matplotlib", "numpy", "scipy")):
+    print("skipped: the packages of utils/requirements.txt are not installed")
+    sys.exit(77)
+
+import numpy as np  # noqa: E402
+import scripts  # noqa: E402
+from fields import Fields  # noqa: E402
+from results import command, find_program, launch, read_table  # noqa: E402
+
+# Deck, parameters, force of the holder (N).
+RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
+        "square_cup/aluminium.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
+        "round_cup/round_cup.dat": ({"divisions": "3 5 1", "pressed": 1, "held": 0.5}, 5550),
+        "rail/rail.dat": ({"divisions": "10 6 1", "points": 3, "depth": 1}, 20000)}
+
+
+def check_runs(options):
+    """Run the decks."""
+    for name, (settings, force) in RUNS.items():
+        folder = options.work / pathlib.Path(name).stem
+        done = launch(command(options.program, ROOT / "input_files" / name, folder, ["--quiet"], settings), 300)
+        assert done.code == 0, f"{name}: {done.code}\n{done.errors}"
+        rows = read_table(folder / "history.csv")
+        clamped = [row for row in rows if row["phase"] == "clamp"][-1]
+        assert abs(float(clamped["holder_fz"]) / force - 1) < 0.02, (name, clamped["holder_fz"])
+        assert float(rows[-1]["travel"]) >= 1.0, name
+
+
+def check_rail(options):
+    """Check that the rail is the same turned by 180 degrees, before it springs back."""
+    fields = Fields(options.work / "rail")
+    step = int(np.flatnonzero(np.abs(fields.travel - 1) < 1e-7)[0])
+    points = fields.points(step).reshape(11, 7, 2, 3)
+    turned = points[::-1, ::-1] * (-1, -1, 1)
+    assert np.abs(points - turned).max() < 0.02, np.abs(points - turned).max()
+
+
+def check_tools(work):
+    """Check that the tools are those of the shape files."""
+    shapes = sorted((ROOT / "input_files").glob("*/*.shape"))
+    assert len(shapes) == 6, shapes
+    for shape in shapes:
+        target = work / f"{shape.stem}.bez"
+        subprocess.run([ROOT / "utils" / "tool.py", shape, target], check=True, capture_output=True)
+        new, old = (path.read_text(encoding="utf-8").splitlines()[1:] for path in (target, shape.with_suffix(".bez")))
+        assert new == old, shape
+
+
+def check_ears():
+    """Check the number of ears on cosines."""
+    import round_cup
+    angles = np.linspace(0, 90, 13)
+    for count, found in ((4, [0, 90]), (6, [0, 60]), (8, [0, 45, 90])):
+        heights = 40 + np.cos(np.radians(count * angles))
+        assert round_cup.ears(angles, heights) == found and round_cup.number(found) == count, count
+    assert math.isclose(round_cup.WALL, (97.46 / 2 + 101.48 / 2) / 2)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=find_program, required=True)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    check_tools(options.work)
+    check_ears()
+    check_runs(options)
+    check_rail(options)
+    print("the parts run")
+
+
+if __name__ == "__main__":
+    scripts.run(main)
