@@ -23,6 +23,7 @@ from tools import moved, report, sides  # noqa: E402
 from tools.cad import SUFFIXES as CAD  # noqa: E402
 from tools.facet_files import SUFFIXES as FACETS  # noqa: E402
 from tools.joints import turn  # noqa: E402
+from tools.limits import supervised  # noqa: E402
 from tools.surface import turned, write  # noqa: E402
 
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
@@ -236,4 +237,4 @@ def main():
 
 
 if __name__ == "__main__":
-    run(main)
+    supervised(lambda: run(main), "the file is damaged: a fault in the library that reads it")

@@ -309,7 +309,7 @@ def make_cad(folder):
         box, faces = punch()
         occ.copy([(2, faces[3])])
         save("doubled.brep")
-        for name, shift in (("loose.brep", 0.0), ("shifted.brep", 0.1)):
+        for name, shift in (("loose.brep", 0.0), ("shifted.brep", 0.1), ("shifted_a_little.brep", 0.01)):
             box, faces = punch()
             copies = [occ.copy([(2, tag)])[0] for tag in faces]
             occ.remove([(3, box)], recursive=True)

@@ -6,16 +6,19 @@ regular mesh. The divisions of a face grow until its distance from the CAD, meas
 below the tolerance.
 """
 import os
+import re
 import sys
 from collections import defaultdict
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial import cKDTree
 from scripts import Problem
 from tools.closest import closest
 from tools.division import Division
 from tools.joints import find_joints, folded, kinks, to_chords
+from tools.limits import limited
 from tools.report import REACH, up
 from tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
@@ -27,6 +30,9 @@ MOST_ROUNDS = 8
 MOST_PATCHES = 2000
 # Kink inside a face above which it is divided further, degrees, in this many rounds.
 KINK, KINK_ROUNDS = 0.5, 2
+# Processor time after which OpenCASCADE and Gmsh are given up, s: reading, sewing, and on top of each for a MB of the
+# file; a mesh of all faces. They do not end on some files.
+READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
 # Points of the distance: between the nodes.
 PLACES = grid(5)
 
@@ -80,9 +86,11 @@ def session():
 def load(gmsh, path):
     """Read the shapes of a file."""
     gmsh.clear()
+    refuse_cut(path)
     # Shapes are kept as they are; the lengths become mm by the unit that the file states.
     try:
-        with silence():
+        with silence(), limited(allowed(READ_TIME, path), f"{path}: OpenCASCADE does not end reading the file: it is "
+                                "damaged, or too large"):
             gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
             gmsh.model.occ.synchronize()
     except Exception as error:  # Gmsh raises nothing more specific
@@ -92,14 +100,34 @@ def load(gmsh, path):
         raise Problem(f"{path}: no faces; the file holds {kind}")
 
 
+def allowed(seconds, path):
+    """Return the processor time for the file, s."""
+    return seconds + TIME_PER_MB * path.stat().st_size / 1e6
+
+
+def refuse_cut(path):
+    """Refuse BREP and IGES texts without their end: OpenCASCADE does not end reading the one, and takes the part of the
+    other that is there."""
+    data = path.read_bytes()
+    lines = data[-400:].split(b"\n")
+    if path.suffix.lower() in (".brep", ".brp"):
+        text = b"CASCADE Topology" in data[:200] and data.lstrip()[:4] != b"Open"
+        cut = text and not re.search(rb"\*\s+[-+]\d+ \d+\s*$", data[-200:])
+    else:  # the section of a line of IGES is in column 73: S is the first, T the last
+        text = path.suffix.lower() in (".iges", ".igs") and data[72:73] == b"S"
+        cut = text and not any(line[72:73] == b"T" for line in lines)
+    if cut:
+        raise Problem(f"{path}: the file is cut off")
+
+
 def free_edges(gmsh):
     """Return the edges with one face, those without length and seams left out."""
     single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
     return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
 
 
-def refuse_gaps(gmsh, path):
-    """Refuse free edges that run beside each other: the faces were not joined."""
+def refuse_gaps(gmsh, path, sewn):
+    """Refuse free edges that run beside each other: the faces were not joined, or not sewn within `sewn` mm."""
     single = free_edges(gmsh)
     if not single:
         return
@@ -119,7 +147,9 @@ def refuse_gaps(gmsh, path):
     if count:
         faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
         raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
-                      f"{faces[0]} and {faces[1]}; --sew {up(worst):g} joins them")
+                      f"{faces[0]} and {faces[1]}; "
+                      + (f"--sew {up(worst):g} joins them" if worst > (sewn or 0.0)
+                         else "their courses differ, so --sew does not join them; mend the CAD"))
 
 
 def is_seam(gmsh, edge):
@@ -136,7 +166,9 @@ def sew(gmsh, path, tolerance, wanted):
         return []
     faces = len(gmsh.model.getEntities(2))
     try:
-        with silence():
+        with silence(), limited(allowed(SEW_TIME, path), f"{path}: the faces are not sewn within {tolerance:g} mm in "
+                                f"{allowed(SEW_TIME, path):.0f} s of processor time: take a smaller --sew, or sew them "
+                                "in the CAD program"):
             gmsh.model.occ.healShapes([], tolerance, False, False, False, True, True)
             gmsh.model.occ.synchronize()
         after = len(free_edges(gmsh))
@@ -197,20 +229,18 @@ def choose(path, parts, wanted):
 
 def doubled(gmsh, tags):
     """Return the faces that lie on an earlier one: same area, centre and box."""
-    seen, result = {}, []
-    for tag in tags:
-        box = np.array(gmsh.model.getBoundingBox(2, tag))
-        size = np.linalg.norm(box[3:] - box[:3])
-        centre = np.array(gmsh.model.occ.getCenterOfMass(2, tag))
-        area = gmsh.model.occ.getMass(2, tag)
-        for other, (o_box, o_centre, o_area) in seen.items():
-            if max(np.abs(box - o_box).max(), np.abs(centre - o_centre).max()) <= 1e-5 * size \
-                    and abs(area - o_area) <= 1e-5 * area:
-                result.append((tag, other))
+    box = np.array([gmsh.model.getBoundingBox(2, tag) for tag in tags]).reshape(-1, 6)
+    centre = np.array([gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags]).reshape(-1, 3)
+    area = np.array([gmsh.model.occ.getMass(2, tag) for tag in tags])
+    size = np.linalg.norm(box[:, 3:] - box[:, :3], axis=1)
+    result = {}
+    for i, near in enumerate(cKDTree(centre).query_ball_point(centre, 2e-5 * size)):
+        for j in sorted(near):
+            if j < i and tags[j] not in result and abs(area[i] - area[j]) <= 1e-5 * area[i] and \
+                    max(np.abs(box[i] - box[j]).max(), np.abs(centre[i] - centre[j]).max()) <= 1e-5 * size[i]:
+                result[tags[i]] = tags[j]
                 break
-        else:
-            seen[tag] = box, centre, area
-    return result
+    return list(result.items())
 
 
 def collect(gmsh, model):
@@ -302,12 +332,14 @@ def worst_kinks(net, face, count):
     return result
 
 
-def mesh_within(gmsh, model, tolerance, progress):
+def mesh_within(gmsh, path, model, tolerance, progress):
     """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
     division = Division(gmsh, model.tags)
     best = None
     for rounds in range(MOST_ROUNDS):
-        failed = division.mesh(gmsh)
+        with limited(MESH_TIME, f"{path}: the faces are not meshed in {MESH_TIME:.0f} s of processor time: leave out "
+                                "what the sheet does not touch, in the CAD program or by --part"):
+            failed = division.mesh(gmsh)
         if failed:
             if rounds == MOST_ROUNDS - 1:
                 raise Problem("Gmsh cannot mesh " + ", ".join(model.names[model.tags.index(tag)] for tag in failed))
@@ -341,7 +373,7 @@ def read_cad(gmsh, path, options, progress):
     if options.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
         gmsh.model.occ.synchronize()
-    refuse_gaps(gmsh, path)
+    refuse_gaps(gmsh, path, options.sew)
     model.parts = part_names(gmsh)
     tags = choose(path, model.parts, options.part)
     twins = doubled(gmsh, tags)
@@ -354,7 +386,7 @@ def read_cad(gmsh, path, options, progress):
                    + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
-    mesh_within(gmsh, model, max(options.tolerance, options.sew or 0.0), progress)
+    mesh_within(gmsh, path, model, max(options.tolerance, options.sew or 0.0), progress)
     return model
 
 

@@ -62,7 +62,7 @@ def read_stl(path):
 
 def stl_text(path, data):
     """Return the points, the part of each facet and the parts' names of a text."""
-    text = data.decode("utf-8", errors="replace")
+    text = data.decode("utf-8-sig", errors="replace")
     if not text.lstrip().lower().startswith("solid") or "facet" not in text.lower():
         raise Problem(f"{path}: neither a text nor a complete binary STL file")
     points, part, names = [], [], []
@@ -94,6 +94,8 @@ def from_cells(path, nodes, cells):
     facets, part, names, outer = [], [], {}, {}
     for name, dimension, members in cells:
         number = names.setdefault(name, len(names))
+        if len(members) < 3:  # a shell whose nodes are one point or one line
+            continue
         if dimension == 2:
             facets.append([*members, -1][:4])
             part.append(number)
@@ -193,6 +195,8 @@ def read_dyna(path):
                 lines = 1 + sum(name in options for name in ("THICKNESS", "BETA", "MCID", "OFFSET", "DOF"))
                 if (row - 1) % max(1, min(lines, 2)) == 0:
                     words = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
+                    if len(words) < 5:
+                        raise ValueError
                     cells.append((words[1], 2, corners_of(words[2:6])))
             elif keyword.startswith("*ELEMENT_SOLID"):
                 words = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]

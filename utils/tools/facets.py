@@ -4,11 +4,14 @@ from scripts import Problem
 from tools import moved
 from tools.facet_files import read_facets
 from tools.joints import find_joints, kinks
-from tools.mend import (SAME_NODE, consistent, edge_table, gaps, keep, merged, nodes_inside_edges, pairs_of,
+from tools.mend import (SAME_NODE, consistent, edge_table, gaps, keep, merged, pairs_of, with_whole_edges,
                         without_doubles, without_repeats, without_slivers)
 from tools.nagata import CREASE, estimate_normals, facet_areas, groups, patches_of, unit
 from tools.report import REACH, plural, up, where
 from tools.surface import Surface
+
+# Largest coordinate, mm; beyond it a damaged number is likelier than a tool.
+FARTHEST = 1e9
 
 __all__ = ["keep", "load", "patches", "sides_of", "turned_number"]
 
@@ -17,14 +20,9 @@ def load(options):
     """Return the mended facets of a file, of the parts wanted."""
     path = options.source
     mesh = read_facets(path)
-    if not np.isfinite(mesh.nodes).all():
-        raise Problem(f"{path}: a coordinate is not a number")
     mesh.nodes = mesh.nodes * options.scale
     choose(path, mesh, options.part)
-    used = mesh.nodes[np.unique(mesh.facets[mesh.facets >= 0])]
-    size = np.linalg.norm(np.ptp(used, axis=0))
-    if size == 0.0:
-        raise Problem(f"{path}: all nodes are one point")
+    size = diagonal(path, mesh)
     merge = merged(mesh, max(options.sew or 0.0, SAME_NODE * size))
     empty = without_repeats(mesh)
     doubled = without_doubles(mesh)
@@ -32,15 +30,29 @@ def load(options):
     doubled += without_doubles(mesh)
     if not len(mesh.facets):
         raise Problem(f"{path}: no facet has an area")
-    refuse_gaps(path, mesh)
+    inserted, left = with_whole_edges(mesh, max(options.sew or 0.0, SAME_NODE * size))
+    refuse_gaps(path, mesh, left)
     for count, what in ((merge, "nodes merged"), (empty, "facets without area removed"),
-                        (doubled, "doubled facets left out")):
+                        (doubled, "doubled facets left out"), (inserted, "nodes inserted into edges of other facets")):
         if count:
             mesh.notes.append(f"{what}: {count}")
     return mesh
 
 
-def refuse_gaps(path, mesh):
+def diagonal(path, mesh):
+    """Return the diagonal of the box of the facets, mm; refuse damaged coordinates, and nodes that span no surface."""
+    if not np.isfinite(mesh.nodes).all():
+        raise Problem(f"{path}: a coordinate is not a number")
+    used = mesh.nodes[np.unique(mesh.facets[mesh.facets >= 0])]
+    if np.abs(used).max(initial=0.0) > FARTHEST:
+        raise Problem(f"{path}: a coordinate of {np.abs(used).max():.3g} mm; expected at most {FARTHEST:g} mm")
+    size = np.linalg.norm(np.ptp(used, axis=0))
+    if size == 0.0 or np.linalg.svd(used - used.mean(axis=0), compute_uv=False)[1] <= SAME_NODE * size:
+        raise Problem(f"{path}: all nodes are on one line or at one point")
+    return size
+
+
+def refuse_gaps(path, mesh, inside):
     """Refuse facets with cracks, or with nodes inside the edges of others."""
     pairs, distance = gaps(mesh, REACH)
     if len(pairs):
@@ -48,8 +60,7 @@ def refuse_gaps(path, mesh):
         raise Problem(f"{path}: error: {plural(len(pairs), 'pair')} of nodes on free edges up to "
                       f"{distance[worst]:.3g} mm apart, the widest at x y z = {where(mesh.nodes[pairs[worst, 0]])}; "
                       f"--sew {up(distance[worst]):g} joins them")
-    inside = nodes_inside_edges(mesh)
-    if len(inside):
+    if inside:
         raise Problem(f"{path}: error: {plural(len(inside), 'node')} inside the edges of other facets, the first at "
                       f"x y z = {where(mesh.nodes[inside[0]])}; mend the mesh so that facets meet in whole edges")
 

@@ -10,6 +10,8 @@ SAME_NODE = 1e-7
 # Height of a triangle over its longest edge below which it has no area, relative to that edge.
 NO_AREA = 1e-5
 MOST_PASSES = 8
+# Rounds of division of facets at the nodes inside their edges: each halves the number of nodes at an edge.
+MOST_DIVISIONS = 40
 
 
 def merged(mesh, distance):
@@ -185,20 +187,49 @@ def gaps(mesh, reach):
     return pairs[near], distance[near]
 
 
-def nodes_inside_edges(mesh):
-    """Return the nodes of free edges that lie inside another free edge."""
-    a, b, _, _ = edge_table(mesh.facets)
+def with_whole_edges(mesh, reach):
+    """Divide facets with nodes of others inside their edges, so that facets meet in whole edges; return the number of
+    nodes that were inserted and those that are left."""
+    inserted = 0
+    for _ in range(MOST_DIVISIONS):
+        found = nodes_inside_edges(mesh, reach)
+        if not found:
+            break
+        facets, part = mesh.facets.tolist(), mesh.part.tolist()
+        for index, (a, b, middle) in found.items():
+            pieces = divided(facets[index], a, b, middle)
+            facets[index] = pieces[0]
+            facets += pieces[1:]
+            part += [part[index]] * (len(pieces) - 1)
+        inserted += len(found)
+        mesh.facets, mesh.part = np.array(facets), np.array(part)
+    return inserted, [middle for _, _, middle in nodes_inside_edges(mesh, reach).values()]
+
+
+def nodes_inside_edges(mesh, reach):
+    """Return the facets with nodes of free edges inside one of their free edges: the ends of this edge and the node in
+    the middle of those inside, by facet.
+
+    A node counts within `reach` mm of the edge, or 1e-4 of its length.
+    """
+    a, b, facet, _ = edge_table(mesh.facets)
     free = pairs_of(mesh.facets)[1]
-    a, b = a[free], b[free]
+    a, b, facet = a[free], b[free], facet[free]
     if not len(a):
-        return np.zeros(0, int)
+        return {}
     nodes = np.unique(np.concatenate([a, b]))
     tree = cKDTree(mesh.nodes[nodes])
     middle, along = (mesh.nodes[a] + mesh.nodes[b]) / 2, mesh.nodes[b] - mesh.nodes[a]
     length = np.linalg.norm(along, axis=1)
-    found = set()
-    for i, near in enumerate(tree.query_ball_point(middle, 0.499 * length)):
-        offset = mesh.nodes[nodes[near]] - middle[i]
-        across = np.linalg.norm(np.cross(offset, along[i]), axis=1) / max(length[i], 1e-300)
-        found.update(nodes[np.array(near, int)[across < 1e-4 * length[i]]].tolist())
-    return np.array(sorted(found), int)
+    found = {}
+    for i, near in enumerate(tree.query_ball_point(middle, 0.5 * length)):
+        limit = max(1e-4 * length[i], reach)
+        near = nodes[near]
+        offset = mesh.nodes[near] - middle[i]
+        place = offset @ along[i] / length[i]
+        across = np.linalg.norm(offset - np.outer(place, along[i] / length[i]), axis=1)
+        inside = (across < limit) & (np.abs(place) < 0.5 * length[i] - limit) & ~np.isin(near, mesh.facets[facet[i]])
+        if inside.any():
+            order = near[inside][np.argsort(place[inside])]
+            found.setdefault(int(facet[i]), (int(a[i]), int(b[i]), int(order[len(order) // 2])))
+    return found

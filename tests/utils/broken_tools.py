@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Check what utils/tool.py makes of files that users break: each is converted right or refused by a sentence, and never
+ends in a traceback. The parts that need gmsh are skipped if the package is missing.
+"""
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests" / "utils")]
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
+    print("skipped: numpy or scipy is not installed")
+    sys.exit(77)
+
+import numpy as np  # noqa: E402
+from tool_surfaces import (MESHES, box_distance, convert, die_triangles, make_cad, points_of, read,  # noqa: E402
+                           write_stl)
+
+SIDE = (35, 25)
+
+
+def largest_distance(bez):
+    """Return the largest distance of a surface from the die of the tests, mm."""
+    return np.abs(box_distance(points_of(read(bez))[0], SIDE, 10, 5, "die")).max()
+
+
+def run_tool(*words):
+    """Run the tool in a process of its own; return what it says."""
+    done = subprocess.run([sys.executable, ROOT / "utils" / "tool.py", *words], capture_output=True, text=True,
+                          errors="replace", check=False)
+    assert done.returncode in (0, 2) and "Traceback" not in done.stderr, (words, done)
+    return done.stdout + done.stderr
+
+
+def with_nodes(triangles, count):
+    """Return triangles whose second edge is divided by nodes: of every other one in the plane of the die."""
+    result = []
+    for number, corners in enumerate(triangles):
+        if np.ptp(corners[:, 2]) > 1e-9 or number % 2:
+            result.append(corners)
+            continue
+        one, two, three = corners
+        place = [two + (three - two) * k / (count + 1) for k in range(count + 2)]
+        result += [np.array([a, b, one]) for a, b in zip(place, place[1:])]
+    return np.array(result)
+
+
+def check_nodes_in_edges(folder):
+    """Check that facets with nodes of others inside their edges are divided: the same surface as without."""
+    good = die_triangles(10)
+    for count in (1, 2, 5):
+        write_stl(folder / "die.stl", with_nodes(good, count))
+        said = convert(folder / "die.stl", folder / "die.bez", "--toward", 0, 0, 1)
+        assert "nodes inserted into edges of other facets" in said and "1 body" in said, said
+        assert largest_distance(folder / "die.bez") < 0.002, said
+
+
+def check_numbers(folder):
+    """Check STL files with wrong numbers, and with few facets."""
+    good = die_triangles(15)
+    stl, bez = folder / "numbers.stl", folder / "numbers.bez"
+    spoiled = [good.copy() for _ in range(3)]
+    for triangles, value in zip(spoiled, (np.nan, np.inf, 1e30)):
+        triangles[3, 1, 1] = value
+    for triangles, code, words in (
+            (spoiled[0], 2, "not a number"), (spoiled[1], 2, "not a number"),
+            (spoiled[2], 2, "expected at most 1e+09 mm"), (1e30 * good, 2, "expected at most 1e+09 mm"),
+            (1e-30 * good, 0, "warning: "), (good[:1], 0, "6 free"),
+            (0 * good, 2, "at one point"), (good * [1, 0, 0], 2, "on one line")):
+        write_stl(stl, triangles)
+        said = convert(stl, bez, expect=code)
+        assert words in said, said
+
+
+def check_stl_files(folder):
+    """Check STL files that are cut off, of other kinds, or have unusual names and text."""
+    stl, bez = folder / "file.stl", folder / "file.bez"
+    write_stl(stl, die_triangles(15))
+    raw = stl.read_bytes()
+    text = MESHES["die.stl"]
+    for data, code, words in (
+            (raw[:5000], 2, "neither a text nor a complete binary STL"), (raw[:-1], 2, "complete binary"),
+            (raw[:83], 2, "complete binary"), (b"\0" * 500, 2, "complete binary"),
+            (b"solid of facets".ljust(80) + raw[80:], 0, "448"), (text[:150].encode(), 2, "expected vertex"),
+            (text[:text.index("endloop")].encode(), 2, "cut off"),
+            (text.replace("20 0 0", "20 zero 0", 1).encode(), 2, "expected vertex x y z"),
+            (text.replace("20 0 0", "nan 0 0", 1).encode(), 2, "not a number"),
+            (("\ufeff" + text).encode(), 0, "2, turned"), (text.replace("\n", "\r\n").encode(), 0, "2, turned")):
+        stl.write_bytes(data)
+        said = convert(stl, bez, expect=code)
+        assert words in said, said
+    odd = folder / "dié ö 1.STL"
+    odd.write_bytes(raw)
+    convert(odd, folder / "dié ö 1.bez")
+    assert largest_distance(folder / "dié ö 1.bez") < 0.006
+
+
+def check_cut_texts(folder):
+    """Check meshes that end anywhere, and bytes that are no text."""
+    for name in ("die.inp", "die.k", "solid.inp"):
+        path = folder / f"cut_{name}"
+        for parts in range(1, 7):
+            path.write_text(MESHES[name][:len(MESHES[name]) * parts // 7])
+            try:  # the part that is left may be a mesh
+                convert(path, expect=2)
+            except AssertionError:
+                convert(path)
+        path.write_text(MESHES[name].replace("10", "nan", 1))
+        assert "error: " in convert(path, expect=2)
+        path.write_text(MESHES[name].replace("10", "1e300", 1))
+        assert "error: " in convert(path, expect=2)
+    endings = ["stl", "inp", "k", "shape"]
+    endings += ["vtk", "vtu", "vtp", "ply", "obj"] if importlib.util.find_spec("pyvista") else []
+    endings += ["msh", "step", "igs", "brep"] if importlib.util.find_spec("gmsh") else []
+    noise = np.random.default_rng(1).bytes(2000)
+    for ending in endings:
+        for data in (noise, b"\0" * 2000):
+            path = folder / f"noise.{ending}"
+            path.write_bytes(data)
+            assert "error: " in convert(path, expect=2), path
+
+
+def check_places(folder):
+    """Check folders and files that cannot be read or written."""
+    stl = folder / "place.stl"
+    write_stl(stl, die_triangles(15))
+    assert "No such file or directory" in convert(stl, folder / "none" / "die.bez", expect=2)
+    (folder / "folder.bez").mkdir()
+    assert "Is a directory" in convert(stl, folder / "folder.bez", expect=2)
+    if os.geteuid():  # root may read and write all files
+        stl.chmod(0)
+        assert "Permission denied" in convert(stl, expect=2)
+
+
+def check_limits():
+    """Check that a library that does not end, or ends by a fault, is reported by a sentence and exit code 2."""
+    for body, code, words in (
+            ("with limits.limited(0.3, 'too long'):\n while True: pass", 2, "error: too long"),
+            ("with limits.limited(60, 'too long'): pass", 0, ""),
+            ("limits.supervised(lambda: os.kill(os.getpid(), 11), 'a fault')", 2, "error: a fault"),
+            ("limits.supervised(lambda: sys.exit(3), 'a fault')", 3, "")):
+        text = f"import os, sys; sys.path.insert(0, {str(ROOT / 'utils')!r})\nfrom tools import limits\n{body}\n"
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=100, check=False)
+        assert (done.returncode, done.stderr.strip()) == (code, words), (body, done)
+
+
+def check_cut_cad(folder):
+    """Check CAD files that are cut off or damaged: OpenCASCADE does not end reading half a BREP text."""
+    make_cad(folder)
+    for name in ("punch.step", "punch.igs", "loose.brep"):
+        data = (folder / name).read_bytes()
+        path = folder / f"cut_{name}"
+        for parts in (2, 5):
+            path.write_bytes(data[:len(data) * parts // 6])
+            assert "error: " in run_tool(path), (name, parts)
+    odd = folder / "dié ö.step"
+    odd.write_bytes((folder / "punch.step").read_bytes())
+    assert "18 faces" in run_tool(odd)
+    assert "--sew 0.015 joins them" in run_tool(folder / "shifted_a_little.brep")
+    assert "80 of 80 free edges" in run_tool(folder / "shifted_a_little.brep", "--sew", "0.015")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_cut_texts, check_places):
+            check(Path(name))
+        check_limits()
+        if importlib.util.find_spec("gmsh"):
+            check_cut_cad(Path(name))
+    print("broken files are converted right or refused")
+
+
+if __name__ == "__main__":
+    main()
