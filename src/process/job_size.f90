@@ -17,23 +17,26 @@ module dd3_process_job_size
   !> Bytes of a real and of an integer.
   real(wp), parameter :: real_bytes = 8.0_wp, integer_bytes = 4.0_wp
   real(wp), parameter :: megabyte = 1.0e6_wp
+  !> Blocks in a row of the matrix: at least as many on average on every sheet.
+  integer, parameter :: least_blocks = 8
   !> Memory that BLAS and HDF5 take in a run, bytes.
   real(wp), parameter :: libraries = 10.0e6_wp
 
   !> Size of a job.
   type :: job_size_t
     integer :: elements = 0, unknowns = 0
-    !> Blocks of the matrix.
+    !> Blocks of the matrix; 0 if there is no memory for it.
     integer :: blocks = 0
     !> Memory of the factors and of the whole program in the run, bytes; the factors are 0 if only
-    !> the factorisation tells.
+    !> the factorisation tells. Without a matrix the total is a lower bound.
     real(wp) :: factors = 0.0_wp, total = 0.0_wp
   end type job_size_t
 
 contains
 
-  !> Find the size of a job by its symbolic factorisation. The memory of UMFPACK, where it stands in
-  !> for a solver that fails, comes on top.
+  !> Find the size of a job by its symbolic factorisation, which is not made if there is too little
+  !> memory for the rest. The memory of UMFPACK, where it stands in for a solver that fails, comes on
+  !> top.
   subroutine find_job_size(self, model, state, options, error)
     type(job_size_t), intent(out) :: self
     type(model_t), intent(in) :: model
@@ -45,19 +48,22 @@ contains
 
     class(linear_solver_t), allocatable :: solver
     type(block_matrix_t) :: matrix
-    real(wp) :: resident
+    real(wp) :: without_solver
 
-    resident = resident_memory()
+    self%elements = model%n_element
+    self%unknowns = 3*model%n_node
+    without_solver = resident_memory() + libraries + states_bytes(model, state) &
+        + element_bytes(model)
+    self%total = without_solver + matrix_bytes(least_blocks*model%n_node)
+    if (is_too_large(self)) return
     call new_stiffness_pattern(matrix, model)
     call new_linear_solver(solver, options, error)
     if (allocated(error)) return
     call solver%setup(matrix)
-    self%elements = model%n_element
     self%unknowns = 3*matrix%n
     self%blocks = size(matrix%column)
     self%factors = solver%factor_bytes()
-    self%total = resident + libraries + solver%bytes() + matrix_bytes(self%blocks) &
-        + states_bytes(model, state) + element_bytes(model)
+    self%total = without_solver + matrix_bytes(self%blocks) + solver%bytes()
     call solver%release()
   end subroutine find_job_size
 
@@ -109,8 +115,12 @@ contains
     type(job_size_t), intent(in) :: self
     character(len=:), allocatable :: text
 
-    text = "size: "//to_text(self%elements)//" elements, "//to_text(self%unknowns)// &
-        " unknowns; matrix of "//to_text(9.0_wp*real(self%blocks, wp)/1.0e6_wp, 3)// &
+    text = "size: "//to_text(self%elements)//" elements, "//to_text(self%unknowns)//" unknowns"
+    if (self%blocks == 0) then
+      text = text//newline//"memory: more than "//to_text(nint(self%total/megabyte))//" MB"//newline
+      return
+    end if
+    text = text//"; matrix of "//to_text(9.0_wp*real(self%blocks, wp)/1.0e6_wp, 3)// &
         " million entries, "
     if (self%factors > 0.0_wp) then
       text = text//"factors "//to_text(self%factors/real_bytes/(9.0_wp*real(self%blocks, wp)), 3)// &
@@ -129,15 +139,22 @@ contains
     type(job_size_t), intent(in) :: self
     character(len=:), allocatable :: text
 
+    text = ""
+    if (.not. is_too_large(self)) return
+    text = "warning: the job needs about "//to_text(nint(self%total/megabyte))//" MB of memory, "// &
+        "the machine has "//to_text(nint(available_memory()/megabyte))//" MB left: it would be "// &
+        "slow or be ended by the system; a mesh with fewer elements needs less"
+  end function memory_warning
+
+  !> Whether the job needs more memory than the machine has left.
+  logical function is_too_large(self)
+    type(job_size_t), intent(in) :: self
+
     real(wp) :: available
 
-    text = ""
     available = available_memory()
-    if (available <= 0.0_wp) return
-    if (self%total <= available + resident_memory()) return
-    text = "warning: the job needs about "//to_text(nint(self%total/megabyte))//" MB of memory, "// &
-        "the machine has "//to_text(nint(available/megabyte))//" MB left: it would be slow or be "// &
-        "ended by the system; a mesh with fewer elements needs less"
-  end function memory_warning
+    is_too_large = available > 0.0_wp
+    if (is_too_large) is_too_large = self%total > available + resident_memory()
+  end function is_too_large
 
 end module dd3_process_job_size
