@@ -16,7 +16,7 @@ from problems import BENDING, ROOT, with_paths, without
 
 sys.path.insert(0, str(ROOT / "utils"))
 from results import command, find_program, is_whole, launch, read_table  # noqa: E402
-from scripts import Problem, run  # noqa: E402
+from scripts import Problem, put_table, run  # noqa: E402
 
 REPORT = ROOT / "docs" / "reports" / "default_settings.md"
 MESHES = {"(a)": "0", "(b)": "1"}
@@ -89,12 +89,10 @@ def main():
     options = parser.parse_args()
     options.program, options.work = find_program(options.program), options.work.resolve()
     options.work.mkdir(parents=True, exist_ok=True)
-    for number, table in enumerate(tables(options), start=1):
+    for name, table in zip(("spread", "runs"), tables(options), strict=True):
         print(table)
         if options.write:
-            head, rest = REPORT.read_text(encoding="utf-8").split(f"<!-- table {number} -->\n")
-            rest = rest.split("\n\n", 1)[1] if "\n\n" in rest else ""
-            REPORT.write_text(f"{head}<!-- table {number} -->\n{table}\n\n{rest}".rstrip("\n") + "\n", encoding="utf-8")
+            put_table(REPORT, name, table)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import studies
 from fields import Fields
-from scripts import run
+from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("draw_bending")
 DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not count, half length of the bottom, mm
@@ -109,7 +109,7 @@ def main():
                           "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        studies.put(REPORT, "shape", text)
+        put_table(REPORT, "shape", text)
         draw(lines)
     sys.exit(0 if len(rows) == wanted else 1)
 

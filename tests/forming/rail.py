@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import studies
 from fields import Fields
-from scripts import run
+from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("rail")
 DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm
@@ -90,7 +90,7 @@ def main():
                           "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        studies.put(REPORT, "springback", text)
+        put_table(REPORT, "springback", text)
         draw(rails)
     sys.exit(0 if len(rails) == len(RUNS) else 1)
 

@@ -13,7 +13,7 @@ import studies
 from fields import Fields
 from plot_point import r_value
 from results import run_points
-from scripts import run
+from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("round_cup")
 BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall, mm
@@ -123,8 +123,8 @@ def main():
                                for name, cup in cups.items()])
     print(heights, thickness, sep="\n\n")
     if options.write:
-        studies.put(REPORT, "heights", heights)
-        studies.put(REPORT, "thickness", thickness)
+        put_table(REPORT, "heights", heights)
+        put_table(REPORT, "thickness", thickness)
         draw(cups, estimates)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 
