@@ -7,13 +7,14 @@ module dd3_input_case
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t
   use dd3_input_block, only : block_t, deck_t
+  use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
   implicit none
   private
   public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
+  public :: tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
   public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force
@@ -27,8 +28,6 @@ module dd3_input_case
   integer, parameter :: set_plane = 1, set_box = 2, set_nodes = 3, set_near = 4
   !> Quantity that ends a phase early.
   integer, parameter :: until_never = 0, until_displacement = 1, until_force = 2
-  !> Number of components of a deformation gradient.
-  integer, parameter :: gradient_values = 9
   !> When fields are written: first and last state only, at intervals of the travel, at given
   !> travels, at intervals in increments.
   integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3
@@ -268,6 +267,16 @@ module dd3_input_case
     type(location_t) :: at
   end type tool_vector_t
 
+  !> A gap between two tools at the end of a phase.
+  type :: tool_gap_t
+    !> Positions in `case%tool` of the tool that moves and of the other one.
+    integer :: tool = 0, other = 0
+    !> mm, or thicknesses of the sheet.
+    real(wp) :: value = 0.0_wp
+    logical :: in_thicknesses = .false.
+    type(location_t) :: at
+  end type tool_gap_t
+
   !> A prescribed displacement of nodes.
   type :: displace_spec_t
     !> Node set.
@@ -342,6 +351,7 @@ module dd3_input_case
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.
     type(tool_vector_t), allocatable :: move(:), press(:)
+    type(tool_gap_t), allocatable :: gap(:)
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
@@ -385,32 +395,6 @@ module dd3_input_case
     !> Folder of the results; empty for the default beside the input file.
     character(len=:), allocatable :: directory
   end type output_spec_t
-
-  !> A target of a single-point run.
-  type :: point_goal_t
-    !> Strains (tensorial shear) and stresses (MPa) 11 22 33 12 23 13; or the deformation gradient
-    !> row by row.
-    real(wp), allocatable :: value(:)
-    !> Number of equal steps.
-    integer :: steps = 1
-    type(location_t) :: at
-  end type point_goal_t
-
-  !> A run of a single material point.
-  type :: point_spec_t
-    character(len=:), allocatable :: name
-    !> Position in `case%material`.
-    integer :: material = 0
-    !> Rolling, transverse and normal direction at the start, in columns.
-    real(wp) :: frame(3, 3) = 0.0_wp
-    !> Whether the targets are deformation gradients.
-    logical :: by_gradient = .false.
-    !> Whether the stress is prescribed, 11 22 33 12 23 13; the strain otherwise.
-    logical :: by_stress(6) = .false.
-    !> Targets in order.
-    type(point_goal_t), allocatable :: goal(:)
-    type(block_t) :: source
-  end type point_spec_t
 
   !> Input of a job.
   type :: case_t

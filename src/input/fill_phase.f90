@@ -4,7 +4,7 @@ module dd3_input_fill_phase
   use dd3_base_text, only : same_name
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
-      newton_spec_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, &
+      newton_spec_t, tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, &
       motion_spec_t, pressure_spec_t, until_spec_t, until_displacement, until_force
   implicit none
   private
@@ -41,6 +41,7 @@ contains
     call fill_tool_names(phase%release, case, block, "release")
     call fill_tool_vectors(phase%move, case, block, "move")
     call fill_tool_vectors(phase%press, case, block, "press")
+    call fill_gaps(phase%gap, case, block)
     call fill_displacements(phase%displace, block)
     call fill_freed(phase%free, block)
     call fill_loads(phase%load, block)
@@ -190,6 +191,28 @@ contains
       end associate
     end do
   end subroutine fill_motions
+
+  subroutine fill_gaps(list, case, block)
+    type(tool_gap_t), allocatable, intent(out) :: list(:)
+    !> Its tools must be filled.
+    type(case_t), intent(in) :: case
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "gap")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%tool = tool_position(case, entry%value(1)%text)
+        list(i)%other = tool_position(case, entry%value(2)%text)
+        list(i)%value = entry%number(1)
+        list(i)%in_thicknesses = size(entry%value) > 3
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_gaps
 
   subroutine fill_pressures(list, block)
     type(pressure_spec_t), allocatable, intent(out) :: list(:)

@@ -236,6 +236,9 @@ contains
           form="tool"), &
       row("move", kind_other, "mm", "-", "displacement of a tool over the phase", &
           repeatable=.true., form="tool number number number"), &
+      row("gap", kind_other, "mm", "-", "tool that moves along z over the phase to a gap from "// &
+          "another tool, in mm or thicknesses of the sheet", repeatable=.true., &
+          form="tool tool number [thicknesses]"), &
       row("press", kind_other, "N", "-", &
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &

@@ -4,7 +4,7 @@ module dd3_input_phase_check
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
   use dd3_input_block, only : token_t
-  use dd3_input_case, only : case_t, phase_spec_t, tool_vector_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_vector_t, until_never
   implicit none
   private
   public :: check_phases
@@ -68,6 +68,11 @@ contains
       call name_tool(case, phase%move(i)%tool, phase%move(i)%at, named, errors)
       motion(phase%move(i)%tool) = moved
     end do
+    do i = 1, size(phase%gap)
+      call name_tool(case, phase%gap(i)%tool, phase%gap(i)%at, named, errors)
+      call check_gap(phase%gap(i), errors)
+      motion(phase%gap(i)%tool) = moved
+    end do
     do i = 1, size(phase%press)
       call name_tool(case, phase%press(i)%tool, phase%press(i)%at, named, errors)
       call check_press(phase%press(i), motion, force, errors)
@@ -105,10 +110,21 @@ contains
 
     if (named(tool)) then
       call errors%push_input(at, "tool '"//case%tool(tool)%source%called()// &
-          "' is given two actions in this phase", "one of hold, move and press for each tool")
+          "' is given two actions in this phase", "one of hold, move, gap and press for each tool")
     end if
     named(tool) = .true.
   end subroutine name_tool
+
+  !> Check that a gap is positive and between two tools.
+  subroutine check_gap(gap, errors)
+    type(tool_gap_t), intent(in) :: gap
+    type(error_list_t), intent(inout) :: errors
+
+    if (gap%tool == gap%other) call errors%push_input(gap%at, "a gap is between two tools", &
+        "gap = tool tool number")
+    if (.not. gap%value > 0.0_wp) call errors%push_input(gap%at, "the gap is not positive", &
+        "a number > 0")
+  end subroutine check_gap
 
   !> Check the force on a tool: it is not zero at first, and keeps its direction while the tool is
   !> pressed.
@@ -144,13 +160,13 @@ contains
 
     integer :: i, n_actions
 
-    n_actions = size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
+    n_actions = size(phase%gap) + size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
     n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
     n_actions = n_actions + size(phase%motion) + size(phase%pressure)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, press, displace, free, load, release, unload, rotate, "// &
+            "at least one of move, gap, press, displace, free, load, release, unload, rotate, "// &
             "bend, pressure")
       end if
       if (phase%trial > 1.0_wp) then

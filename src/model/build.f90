@@ -29,6 +29,7 @@ module dd3_model_build
   use dd3_model_sheet_faces, only : new_sheet_faces
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
+  use dd3_model_tool_gaps, only : set_gaps
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
   private
@@ -68,6 +69,7 @@ contains
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
     call new_phases(model, case, mesh)
+    call set_gaps(model, case, errors)
     call check_loads(model, case, errors)
     call set_output(model, case, mesh)
     call check_start(model, case, errors)

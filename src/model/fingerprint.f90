@@ -214,10 +214,11 @@ contains
     logical :: held
 
     held = phase%active(tool) .and. .not. phase%pressed(tool)
-    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
+    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0) return
     call digest%add(name)
     call digest%add([phase%pressed(tool), phase%active(tool), phase%keeps_tool_load(tool)])
     call digest%add([phase%move(:, tool), phase%direction(:, tool)])
+    if (phase%gap_other(tool) > 0) call digest%add([phase%gap_offset(tool)])
     if (.not. phase%keeps_tool_load(tool)) call digest%add(phase%tool_load_end(:, tool))
   end subroutine add_tool
 

@@ -23,6 +23,10 @@ module dd3_model_phase
     real(wp) :: length = 0.0_wp
     !> Displacement of the tools over the phase, `(3, n_tool)`, mm.
     real(wp), allocatable :: move(:, :)
+    !> Other tool, from which a tool has a gap at the end of the phase, 0 for none, and z of their
+    !> relative displacement there, mm, `(n_tool)`.
+    integer, allocatable :: gap_other(:)
+    real(wp), allocatable :: gap_offset(:)
     !> Tools under a prescribed force, which move freely along their lines, `(n_tool)`.
     logical, allocatable :: pressed(:)
     !> Force on the pressed tools at the end of the phase, `(3, n_tool)`, N; without meaning for
@@ -71,6 +75,7 @@ module dd3_model_phase
   contains
     procedure :: factor
     procedure :: slope
+    procedure :: tool_motion
     procedure :: tool_load
     procedure :: tool_load_rate
     procedure :: next_kink
@@ -105,6 +110,22 @@ contains
     i = interval(self%table(1, :), progress + step)
     slope = (self%table(2, i + 1) - self%table(2, i))/(self%table(1, i + 1) - self%table(1, i))
   end function slope
+
+  !> Return the displacement of a tool that is not pressed over the phase, mm.
+  pure function tool_motion(self, tool, start) result(motion)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+    !> Displacements of the tools at the start of the phase, `(3, n_tool)`, mm.
+    real(wp), intent(in) :: start(:, :)
+    real(wp) :: motion(3)
+
+    motion = self%move(:, tool)
+    if (.not. allocated(self%gap_other)) return
+    associate (other => self%gap_other(tool))
+      if (other > 0) motion(3) = self%gap_offset(tool) + start(3, other) + self%move(3, other) &
+          - start(3, tool)
+    end associate
+  end function tool_motion
 
   !> Return the force pressed on a tool at a progress, N.
   pure function tool_load(self, tool, progress, start, end) result(load)

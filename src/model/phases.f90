@@ -59,6 +59,8 @@ contains
     phase%name = ""
     allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%tool_load_end(3, n_tool), phase%load_end(3, n_load), source=0.0_wp)
+    allocate (phase%gap_other(n_tool), source=0)
+    allocate (phase%gap_offset(n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), source=.false.)
     allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
     allocate (phase%keeps_load(n_load), source=.true.)
@@ -78,6 +80,7 @@ contains
 
     phase = before
     phase%move = 0.0_wp
+    phase%gap_other = 0
     phase%displacement = 0.0_wp
     phase%keeps_tool_load = .true.
     phase%keeps_load = .true.
@@ -140,6 +143,13 @@ contains
       phase%active(t) = .true.
       phase%move(:, t) = spec%move(i)%vector
       if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
+    end do
+    do i = 1, size(spec%gap)
+      t = spec%gap(i)%tool
+      call stop_pressing(phase, t)
+      phase%active(t) = .true.
+      phase%gap_other(t) = spec%gap(i)%other
+      phase%direction(:, t) = [0.0_wp, 0.0_wp, 1.0_wp]
     end do
     do i = 1, size(spec%press)
       call press(phase, spec%press(i)%tool, spec%press(i)%vector)

@@ -112,7 +112,7 @@ contains
       call contact_force_increment(model, phase, system%contact, system%stiffness, &
           system%problem, self%lambda)
       where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
-      call tool_increments(self, model, phase, system)
+      call tool_increments(self, model, phase, committed%start%tool_displacement, system)
     end associate
   end subroutine predict
 
@@ -137,8 +137,9 @@ contains
       problem%contact_residual = 0.0_wp
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
-      problem%tool_prescribed = self%progress*phase%move
       do tool = 1, model%n_tool
+        problem%tool_prescribed(:, tool) = self%progress &
+            *phase%tool_motion(tool, start%tool_displacement)
         problem%tool_residual(tool) = self%progress &
             *dot_product(phase%tool_load_rate(tool, committed%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
@@ -269,16 +270,18 @@ contains
 
   !> Set the displacement of the tools: the solution for pressed ones, the prescribed motion for the
   !> others.
-  subroutine tool_increments(self, model, phase, system)
+  subroutine tool_increments(self, model, phase, start, system)
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
+    !> Displacements of the tools at the start of the phase, `(3, n_tool)`, mm.
+    real(wp), intent(in) :: start(:, :)
     type(system_t), intent(in) :: system
 
     integer :: tool, row
 
     do tool = 1, model%n_tool
-      self%tool_displacement(:, tool) = self%progress*phase%move(:, tool)
+      self%tool_displacement(:, tool) = self%progress*phase%tool_motion(tool, start)
       if (.not. phase%pressed(tool)) cycle
       row = model%tool_row(tool)
       self%tool_displacement(:, tool) = system%problem%solution(3*row - 2:3*row)

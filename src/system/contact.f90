@@ -184,6 +184,7 @@ contains
     type(hit_t) :: hit
     real(wp) :: friction
     integer :: tool
+    logical :: leaving
 
     hint = committed%hint(:, c)
     call find_nearest_tool(self, model, committed, committed, c, hint, hit)
@@ -198,7 +199,9 @@ contains
     self%normal(:, c) = hit%normal
     friction = model%tool(tool)%friction
     associate (phase => model%phase(committed%phase))
-      call set_predictor_status(self%status(c), friction, phase, tool, touching(tool), hit, &
+      leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
+          hit%normal) < 0.0_wp
+      call set_predictor_status(self%status(c), friction, phase, leaving, touching(tool), hit, &
           model%tolerance%touch)
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
@@ -207,22 +210,20 @@ contains
   end subroutine find_and_predict
 
   !> Set the status of a candidate in the predictor.
-  pure subroutine set_predictor_status(status, friction, phase, tool, touching, hit, touch)
+  pure subroutine set_predictor_status(status, friction, phase, leaving, touching, hit, touch)
     !> Committed on entry.
     integer, intent(inout) :: status
     !> Gets the coefficient of friction: 0 if the committed state has no contact force.
     real(wp), intent(inout) :: friction
     type(phase_t), intent(in) :: phase
-    integer, intent(in) :: tool
+    !> Whether the tool moves away from the candidate.
+    logical, intent(in) :: leaving
     !> Whether any candidate is in contact with the tool.
     logical, intent(in) :: touching
     type(hit_t), intent(in) :: hit
     !> Distance within which a tool without contact is touched, mm.
     real(wp), intent(in) :: touch
 
-    logical :: leaving
-
-    leaving = dot_product(phase%move(:, tool), hit%normal) < 0.0_wp
     if (.not. touching) then
       status = status_gap
       if (hit%distance <= touch .and. .not. leaving) status = status_stick

@@ -1,0 +1,43 @@
+!> Gaps between tools that phases prescribe, as displacements.
+module dd3_model_tool_gaps
+  use dd3_base_error, only : error_list_t
+  use dd3_base_kinds, only : wp
+  use dd3_contact_separation, only : offset_at_gap
+  use dd3_input_case, only : case_t
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: set_gaps
+
+contains
+
+  !> Set the displacements at which tools have the gaps of the input.
+  subroutine set_gaps(model, case, errors)
+    !> With its tools and phases.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: gap
+    logical :: found
+    integer :: i, k
+
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%gap)
+        associate (spec => case%phase(i)%gap(k))
+          gap = spec%value
+          if (spec%in_thicknesses) gap = gap*model%thickness
+          associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
+            call offset_at_gap(tool%surface, other%surface, tool%position - other%position, gap, &
+                model%phase(i)%gap_offset(spec%tool), found)
+            if (.not. found) call errors%push_input(spec%at, "no displacement along z gives this "// &
+                "gap between '"//tool%name//"' and '"//other%name//"'", &
+                "two tools whose surfaces face each other along z")
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine set_gaps
+
+end module dd3_model_tool_gaps
