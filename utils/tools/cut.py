@@ -1,5 +1,5 @@
-"""Cuts of CAD faces that close in themselves, as a fillet or a bead around a whole tool: their parts have four edges, and
-so a regular mesh."""
+"""Cuts of CAD faces that close in themselves, as a fillet or a bead around a whole tool: their parts have four edges,
+and so a regular mesh."""
 import numpy as np
 
 # Parts of the size of the box within which two planes count as one.
@@ -16,7 +16,7 @@ def is_closed(gmsh, tag):
 
 
 def planes_through(boxes, size):
-    """Return planes as (axis of the normal, coordinate): two through the middle of each box, along its shortest side."""
+    """Return planes as (axis of the normal, coordinate): two through the middle of each box along its shortest side."""
     planes = []
     for low, high in boxes:
         along = int(np.argmin(high - low))
