@@ -11,7 +11,6 @@ into a document, between the lines `<!-- table: name -->` and `<!-- end of table
 
 import argparse
 import json
-import re
 import statistics
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -20,7 +19,7 @@ from pathlib import Path
 import results
 import scripts
 from results import ROOT, read_table
-from scripts import Problem
+from scripts import Problem, put_table
 
 FOLDER = ROOT / "input_files" / "bending"
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
@@ -213,17 +212,6 @@ def fine(work):
 TABLES = {f.__name__: f for f in (stops, reasons, cutback, penalties, agreement, halved, holder, limiters, fine)}
 
 
-def write(document, tables):
-    """Write the tables into a document."""
-    text = document.read_text(encoding="utf-8")
-    for name, content in tables.items():
-        pattern = re.compile(rf"(<!-- table: {name} -->\n).*?(<!-- end of table -->)", re.DOTALL)
-        if not pattern.search(text):
-            raise Problem(f"{document}: there is no place for the table {name}")
-        text = pattern.sub(lambda found, content=content: f"{found[1]}\n{content}\n\n{found[2]}", text)
-    document.write_text(text, encoding="utf-8")
-
-
 def main():
     """Run the jobs and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -243,7 +231,8 @@ def main():
             job.result()
     tables = {name: make(options.work) for name, make in TABLES.items()}
     if options.write:
-        write(options.write, tables)
+        for name, content in tables.items():
+            put_table(options.write, name, content)
     for name, content in tables.items():
         print(f"{TABLES[name].__doc__}\n\n{content}\n")
 

@@ -5,10 +5,11 @@
     plot_sheet.py bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
     plot_sheet.py bending.dat --program build/release/dd3imp   # before a run
 
-The sheet is read from fields.vtkhdf, the tools' surfaces from the .bez files named in the job's input file
-(bending.dat in the folder of bending.out; otherwise --deck or --tool), their displacements from the results. Several
---at give several pictures below each other. Of an input file the initial state is drawn, which the program writes after
-its checks, also if a tool lies in the sheet: do the tools lie where they should?
+The sheet is read from fields.vtkhdf, the tools' displacements from the results, their surfaces from the .bez files that
+the run used. The paths of these are relative to the input file: bending.dat in the folder of bending.out, or the file
+that job.log names; otherwise give --deck or --tool. Several --at give several pictures below each other. Of an input
+file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do the
+tools lie where they should?
 """
 
 import argparse
@@ -279,7 +280,7 @@ def command_line():
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
     parser.add_argument("--mirror", action="append", default=[], choices=["x", "y", "z", "xy"],
                         help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
-    parser.add_argument("--deck", type=Path, help="input file of the job (default: in the folder that holds RUN)")
+    parser.add_argument("--deck", type=Path, help="input file of the job (default: beside RUN, or as named in its log)")
     parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
     parser.add_argument("--hide", action="append", default=[], metavar="NAME", help="tool to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
@@ -316,11 +317,7 @@ def find_tools(run, options):
     if "all" in options.hide:
         return {}
     files = {}
-    deck = options.deck
-    if deck is None:
-        folder = run.folder.resolve()
-        beside = [folder.with_suffix(ending) for ending in (".dat", ".inp", ".txt")]
-        deck = next((file for file in beside if file.is_file()), None)
+    deck = options.deck or deck_of(run.folder.resolve())
     if deck is not None:
         files = tools_of_deck(deck, run.folder / "job.log", settings_of(options))
     for item in options.tool:
@@ -333,6 +330,14 @@ def find_tools(run, options):
     if unknown:
         raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
     return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
+
+
+def deck_of(folder):
+    """Return the input file beside a folder of results, else the one that its log names; None without one."""
+    files = [folder.with_suffix(ending) for ending in (".dat", ".inp", ".txt")]
+    if (folder / "job.log").is_file():
+        files.append(Path(results.read_text(folder / "job.log").partition("\n")[0].partition(": ")[2]))
+    return next((file for file in files if file.is_file()), None)
 
 
 def is_deck(run):

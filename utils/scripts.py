@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import re
 import sys
 import time
 from pathlib import Path
@@ -79,3 +80,13 @@ def run(main):
         if not isinstance(stop.code, str):
             raise
         end(stop.code)
+
+
+def put_table(document, name, table):
+    """Put a table into a document, between the lines `<!-- table: name -->` and `<!-- end of table -->`."""
+    text = document.read_text(encoding="utf-8")
+    text, count = re.subn(rf"(<!-- table: {name} -->\n).*?(<!-- end of table -->)",
+                          lambda found: f"{found[1]}\n{table}\n\n{found[2]}", text, flags=re.DOTALL)
+    if count != 1:
+        raise Problem(f"{document}: there is no place for the table {name}")
+    document.write_text(text, encoding="utf-8")

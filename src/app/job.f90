@@ -20,6 +20,7 @@ module dd3_app_job
   use dd3_input_reader, only : read_case
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
+  use dd3_model_drawbead_report, only : drawbead_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
@@ -27,7 +28,8 @@ module dd3_app_job
   use dd3_output_fields, only : field_record_t
   use dd3_output_restart, only : read_restart
   use dd3_point_run, only : run_points
-  use dd3_process_run, only : run_model, run_start_t, run_summary_t
+  use dd3_process_job_size, only : find_job_size, job_size_t, memory_warning, size_report
+  use dd3_process_run, only : run_model, run_start_t, run_summary_t, solver_options
   implicit none
   private
   public :: run_job
@@ -63,6 +65,7 @@ contains
       if (options%initial == "" .or. .not. allocated(model%history)) return
       call set_start(start, options, case, model, error)
       if (.not. allocated(error)) call write_initial(options%initial, case, model, start, error)
+      if (allocated(error)) call write_line("dd3imp: "//error%message)
       return
     end if
     call set_start(start, options, case, model, error)
@@ -70,7 +73,7 @@ contains
       call write_line("dd3imp: "//error%message)
       exit_code = exit_input
     else if (options%check) then
-      if (.not. options%quiet) call show_checked(case, model)
+      if (.not. options%quiet) call show_checked(case, model, start)
       if (options%initial /= "") call write_initial(options%initial, case, model, start, error)
       exit_code = merge(exit_stopped, exit_end, allocated(error))
       if (allocated(error)) call write_line("dd3imp: "//error%message)
@@ -105,15 +108,23 @@ contains
   end subroutine set_start
 
   !> Print all values and warnings.
-  subroutine show_checked(case, model)
+  subroutine show_checked(case, model, start)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
+    type(run_start_t), intent(in) :: start
 
+    type(job_size_t) :: job
+    type(error_t), allocatable :: ignored
     type(text_t), allocatable :: warnings(:)
     integer :: i
 
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
-        contact_report(model)
+        contact_report(model)//drawbead_report(model)
+    if (size(case%point) == 0) then
+      call find_job_size(job, model, start%state, solver_options(start), ignored)
+      write (output_unit, '(a)', advance="no") size_report(job)
+      if (len(memory_warning(job)) > 0) write (output_unit, '(a)') memory_warning(job)
+    end if
     call unit_warnings(case, model, warnings)
     do i = 1, size(warnings)
       write (output_unit, '(a)') warnings(i)%s
@@ -176,6 +187,7 @@ contains
       if (size(case%point) > 0) then
         call run_points(case, model, start%directory, log, summary%increments, error)
       else
+        call log_size(log, model, start)
         call run_model(model, start, log, summary, error)
         call conclude(log, summary)
       end if
@@ -269,7 +281,8 @@ contains
     do i = 1, size(warnings)
       call log%say(warnings(i)%s)
     end do
-    call log%note(echo_case(case)//tool_report(model)//contact_report(model))
+    call log%note(echo_case(case)//tool_report(model)//contact_report(model)// &
+        drawbead_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle
@@ -277,6 +290,21 @@ contains
           ": its yield surface is taken though it may not be convex")
     end do
   end subroutine introduce
+
+  !> Log the size of the job, and a warning if it needs too much memory.
+  subroutine log_size(log, model, start)
+    type(log_t), intent(inout) :: log
+    type(model_t), intent(in) :: model
+    type(run_start_t), intent(in) :: start
+
+    type(job_size_t) :: job
+    type(error_t), allocatable :: error
+
+    call find_job_size(job, model, start%state, solver_options(start), error)
+    if (allocated(error)) return
+    call log%note(size_report(job))
+    if (len(memory_warning(job)) > 0) call log%say(memory_warning(job))
+  end subroutine log_size
 
   !> Return the thickness of the sheet, or its range, as text.
   pure function thickness_range(model) result(text)

@@ -6,6 +6,7 @@ module dd3_app_warnings
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_drawbead_report, only : initial_bead_lengths
   use dd3_model_element_length, only : element_length_t, excess_moment, &
       longest_known, measure_elements
   use dd3_model_held_loads, only : axis_name, find_held_loads, held_load_t
@@ -66,6 +67,7 @@ contains
     call check_held_loads(case, model, warnings)
     call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
+    call check_drawbeads(case, model, warnings)
   end subroutine unit_warnings
 
   !> Warn of an unusual thickness.
@@ -118,6 +120,23 @@ contains
       end associate
     end do
   end subroutine check_settings
+
+  !> Warn of draw-beads beside the sheet.
+  subroutine check_drawbeads(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(text_t), allocatable, intent(inout) :: warnings(:)
+
+    real(wp), allocatable :: length(:)
+    integer :: b
+
+    length = initial_bead_lengths(model)
+    do b = 1, size(length)
+      if (length(b) > 0.0_wp) cycle
+      call add(warnings, case%drawbead(b)%source%opened, "draw-bead '"//model%drawbead(b)%name// &
+          "'", "no part of its line lies on the sheet, seen along z")
+    end do
+  end subroutine check_drawbeads
 
   !> Warn of loads that supports or `displace` carry in part.
   subroutine check_held_loads(case, model, warnings)

@@ -11,7 +11,7 @@ module dd3_input_case
   private
   public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
-  public :: tool_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
+  public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
   public :: tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
   public :: motion_spec_t, pressure_spec_t
@@ -152,6 +152,21 @@ module dd3_input_case
     type(block_t) :: source
   end type tool_spec_t
 
+  !> A draw-bead.
+  type :: drawbead_spec_t
+    !> Vertices of its line in plan, x y in turn, mm; size 0 if they are in a file.
+    real(wp), allocatable :: point(:)
+    !> Path of the file of vertices, relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Largest restraining force, and force on the sheet along z, N/mm.
+    real(wp) :: force = 0.0_wp, normal = 0.0_wp
+    !> Slip path (mm) and factor on the restraining force, in pairs.
+    real(wp), allocatable :: table(:)
+    !> Position in `case%tool` of the tool that carries it; 0 for none.
+    integer :: tool = 0
+    type(block_t) :: source
+  end type drawbead_spec_t
+
   !> Settings of the contact.
   type :: contact_spec_t
     !> Penalty, N/mm.
@@ -192,6 +207,8 @@ module dd3_input_case
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
     !> Maximum predicted depth of a node inside a tool that it meets, over the thickness.
     type(limit_spec_t) :: depth
+    !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
+    type(limit_spec_t) :: unloading
     !> Minimum and maximum of the factor r on the trial increment.
     type(limit_spec_t) :: r_min = limit_spec_t(value=0.0_wp), r_max
   end type limits_spec_t
@@ -407,6 +424,7 @@ module dd3_input_case
     type(node_set_spec_t), allocatable :: set(:)
     type(material_spec_t), allocatable :: material(:)
     type(tool_spec_t), allocatable :: tool(:)
+    type(drawbead_spec_t), allocatable :: drawbead(:)
     type(boundary_spec_t), allocatable :: boundary(:)
     !> Settings before the first phase.
     type(limits_spec_t) :: limits

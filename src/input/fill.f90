@@ -1,9 +1,10 @@
 !> Fills the case from the checked blocks.
 module dd3_input_fill
+  use dd3_base_kinds, only : wp
   use dd3_base_text, only : lower_case
   use dd3_input_block, only : block_t, deck_t
-  use dd3_input_case, only : case_t, boundary_spec_t, history_spec_t, output_spec_t, &
-      solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
+  use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, &
+      output_spec_t, solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
   use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set
   use dd3_input_fill_material, only : fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
@@ -86,6 +87,12 @@ contains
     allocate (case%tool(size(at)))
     do i = 1, size(at)
       call fill_tool(case%tool(i), deck%block(at(i)))
+    end do
+    at = positions(deck, "drawbead")
+    allocate (case%drawbead(size(at)))
+    do i = 1, size(at)
+      call fill_drawbead(case%drawbead(i), deck%block(at(i)))
+      case%drawbead(i)%tool = position(deck, "tool", deck%block(at(i))%word("tool"))
     end do
     at = positions(deck, "boundary")
     allocate (case%boundary(size(at)))
@@ -197,6 +204,23 @@ contains
     tool%contact = block%word("contact")
     if (block%has("position")) tool%position = block%numbers("position")
   end subroutine fill_tool
+
+  subroutine fill_drawbead(drawbead, block)
+    type(drawbead_spec_t), intent(inout) :: drawbead
+    type(block_t), intent(in) :: block
+
+    drawbead%source = block
+    drawbead%point = block%numbers("points")
+    drawbead%file = ""
+    if (block%has("file")) drawbead%file = resolve_path(block%folder, block%word("file"))
+    drawbead%force = block%number("force")
+    drawbead%normal = block%number("normal")
+    drawbead%table = block%numbers("table")
+    if (size(drawbead%table) > 0) return
+    drawbead%table = [0.0_wp, 1.0_wp]
+    if (block%number("rise") > 0.0_wp) &
+        drawbead%table = [0.0_wp, 0.0_wp, block%number("rise"), 1.0_wp]
+  end subroutine fill_drawbead
 
   subroutine fill_boundary(boundary, block)
     type(boundary_spec_t), intent(inout) :: boundary

@@ -5,8 +5,8 @@ module dd3_input_keys
       kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, kind_other
   implicit none
   private
-  public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, contact_keys, &
-      boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, output_keys, &
+  public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
+      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, output_keys, &
       point_keys
 
   !> Bound of the numbers that must not be negative.
@@ -103,6 +103,23 @@ contains
       row("position", kind_reals, "mm", "0 0 0", "initial offset", count=3)]
   end function tool_keys
 
+  function drawbead_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("points", kind_reals, "mm", "-", "vertices of its line seen along z, x y in turn", &
+          count=0), &
+      row("file", kind_text, "", "-", "file of the vertices, x y in each line"), &
+      row("force", kind_real, "N/mm", "", "restraining force per length of the line", &
+          lower=zero), &
+      row("rise", kind_real, "mm", "0", "path across the bead over which the force rises "// &
+          "from 0", lower=zero), &
+      row("table", kind_reals, "mm", "-", "path across the bead and factor on force, in pairs "// &
+          "from 0 on, in place of rise", count=0, lower=zero), &
+      row("normal", kind_real, "N/mm", "0", "force on the sheet along z per length of the line"), &
+      row("tool", kind_name, "", "-", "tool that carries the bead and its forces", form="tool")]
+  end function drawbead_keys
+
   function contact_keys() result(key)
     type(parameter_t), allocatable :: key(:)
 
@@ -140,11 +157,13 @@ contains
           lower=zero), &
       row("depth", kind_real, "", "0.0025", "maximum predicted depth of a node inside a tool "// &
           "that it meets, over the thickness"), &
+      row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
+          "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
       row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
     do i = 1, size(key)
       key(i)%may_be_off = .true.
-      if (key(i)%name == "force_floor") cycle
+      if (key(i)%name == "force_floor" .or. key(i)%name == "unloading") cycle
       key(i)%lower = zero
       key(i)%lower_open = .true.
       if (key(i)%name /= "r_min" .and. key(i)%name /= "r_max") cycle

@@ -5,7 +5,7 @@ module dd3_input_table
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : blank_sets
   use dd3_input_keys, only : blank_keys, mesh_keys, set_keys, material_keys, tool_keys, &
-      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
+      drawbead_keys, contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
       history_keys, output_keys, point_keys
   implicit none
   private
@@ -50,6 +50,8 @@ contains
         set_keys())
     call add(table, "material", "named many required", "A material.", material_keys())
     call add(table, "tool", "named many", "A rigid tool made of Bezier patches.", tool_keys())
+    call add(table, "drawbead", "named many", "A draw-bead: a line that restrains the sheet "// &
+        "that slides across it.", drawbead_keys())
     call add(table, "contact", "once", "Settings of the contact; required if there are tools.", &
         contact_keys())
     call add(table, "boundary", "named many", "Nodes fixed in all phases.", boundary_keys())

@@ -69,6 +69,7 @@ module dd3_linalg_auto_solver
     procedure :: factor_scaled => auto_solver_factor
     procedure :: solve_scaled => auto_solver_solve
     procedure :: release => auto_solver_release
+    procedure :: factor_bytes => auto_solver_factor_bytes
   end type auto_solver_t
 
 contains
@@ -319,5 +320,14 @@ contains
     self%direct_set_up = .false.
     self%ready = by_none
   end subroutine auto_solver_release
+
+  !> Return the memory of the factors of CGS and of the complete factorisation, bytes.
+  real(wp) function auto_solver_factor_bytes(self) result(bytes)
+    class(auto_solver_t), intent(in) :: self
+
+    bytes = 0.0_wp
+    if (self%may_iterate) bytes = bytes + self%cgs%factor_bytes()
+    if (self%may_factorise) bytes = bytes + self%block%factor_bytes()
+  end function auto_solver_factor_bytes
 
 end module dd3_linalg_auto_solver

@@ -35,6 +35,7 @@ module dd3_linalg_block_lu_solver
     procedure :: setup_scaled => block_lu_solver_setup
     procedure :: factor_scaled => block_lu_solver_factor
     procedure :: solve_scaled => block_lu_solver_solve
+    procedure :: factor_bytes => block_lu_solver_factor_bytes
   end type block_lu_solver_t
 
 contains
@@ -139,11 +140,18 @@ contains
       call self%iteration%solve(matrix, self%fronts, b, x)
     end if
     report%method = "block_lu"
-    report%converged = self%iteration%converged
-    report%iterations = report%iterations + self%iteration%iterations
-    report%restarts = self%iteration%restarts
-    report%residual = self%iteration%residual
-    report%reason = self%iteration%reason
+    call self%iteration%add_to(report)
   end subroutine block_lu_solver_solve
+
+  !> Return the memory of the factors and of the workspace, bytes.
+  real(wp) function block_lu_solver_factor_bytes(self) result(bytes)
+    class(block_lu_solver_t), intent(in) :: self
+
+    if (self%by_rows) then
+      bytes = self%rows%bytes()
+    else
+      bytes = self%fronts%bytes()
+    end if
+  end function block_lu_solver_factor_bytes
 
 end module dd3_linalg_block_lu_solver

@@ -10,6 +10,7 @@ module dd3_linalg_cgs
   use dd3_linalg_matrix, only : block_matrix_t, multiply
   use dd3_linalg_preconditioner, only : preconditioner_t
   use dd3_linalg_residual, only : dot, true_residual
+  use dd3_linalg_solver, only : solver_report_t
   implicit none
   private
   public :: cgs_t
@@ -53,6 +54,7 @@ module dd3_linalg_cgs
   contains
     procedure :: setup => cgs_setup
     procedure :: solve => cgs_solve
+    procedure :: add_to => cgs_add_to
   end type cgs_t
 
 contains
@@ -215,5 +217,17 @@ contains
       shadow(i) = shadow(i) + size_of_part*(2.0_wp*real(state, wp)/real(modulus, wp) - 1.0_wp)
     end do
   end subroutine disturb
+
+  !> Add the result to the report of a solver; the iterations of one that failed before count too.
+  pure subroutine cgs_add_to(self, report)
+    class(cgs_t), intent(in) :: self
+    type(solver_report_t), intent(inout) :: report
+
+    report%converged = self%converged
+    report%iterations = report%iterations + self%iterations
+    report%restarts = self%restarts
+    report%residual = self%residual
+    report%reason = self%reason
+  end subroutine cgs_add_to
 
 end module dd3_linalg_cgs

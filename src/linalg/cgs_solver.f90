@@ -18,6 +18,7 @@ module dd3_linalg_cgs_solver
     procedure :: setup_scaled => cgs_solver_setup
     procedure :: factor_scaled => cgs_solver_factor
     procedure :: solve_scaled => cgs_solver_solve
+    procedure :: factor_bytes => cgs_solver_factor_bytes
   end type cgs_solver_t
 
 contains
@@ -72,11 +73,14 @@ contains
     type(solver_report_t), intent(inout) :: report
 
     call self%iteration%solve(matrix, self%preconditioner, b, x)
-    report%converged = self%iteration%converged
-    report%iterations = self%iteration%iterations
-    report%restarts = self%iteration%restarts
-    report%residual = self%iteration%residual
-    report%reason = self%iteration%reason
+    call self%iteration%add_to(report)
   end subroutine cgs_solver_solve
+
+  !> Return the memory of the preconditioner, bytes.
+  real(wp) function cgs_solver_factor_bytes(self) result(bytes)
+    class(cgs_solver_t), intent(in) :: self
+
+    bytes = self%preconditioner%bytes()
+  end function cgs_solver_factor_bytes
 
 end module dd3_linalg_cgs_solver

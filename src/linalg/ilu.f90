@@ -7,7 +7,7 @@
 !> earlier row then runs over contiguous numbers, and the set-up lists for each pair of rows the
 !> stretches of blocks that both have. The triangular solves read blocks.
 module dd3_linalg_ilu
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : i8, wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
@@ -42,6 +42,7 @@ module dd3_linalg_ilu
     procedure :: setup => ilu_setup
     procedure :: build => ilu_build
     procedure :: apply => ilu_apply
+    procedure :: bytes => ilu_bytes
   end type ilu_t
 
 contains
@@ -192,5 +193,13 @@ contains
           pattern%diagonal, self%block, r, z)
     end associate
   end subroutine ilu_apply
+
+  !> Return the memory of the factors, bytes; known after `setup`.
+  pure real(wp) function ilu_bytes(self) result(bytes)
+    class(ilu_t), intent(in) :: self
+
+    bytes = 8.0_wp*(real(size(self%row, kind=i8), wp) + real(size(self%block, kind=i8), wp)) &
+        + 4.0_wp*(real(size(self%stretch, kind=i8), wp) + 2.0_wp*real(size(self%stretch_start), wp))
+  end function ilu_bytes
 
 end module dd3_linalg_ilu

@@ -373,7 +373,8 @@ contains
 
     integer :: b
 
-    bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp))
+    bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp)) &
+        + 8.0_wp*(real(size(self%block), wp) + real(size(self%tree%border), wp))
     do b = 0, size(self%work) - 1
       bytes = bytes + 8.0_wp*(real(size(self%work(b)%rest, kind=i8), wp) &
           + real(size(self%work(b)%stack, kind=i8), wp))

@@ -7,7 +7,7 @@
 module dd3_linalg_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_error, only : error_t
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : i8, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
@@ -76,6 +76,8 @@ module dd3_linalg_solver
     procedure(factor_interface), deferred :: factor_scaled
     procedure(solve_interface), deferred :: solve_scaled
     procedure :: release
+    procedure, non_overridable :: bytes
+    procedure :: factor_bytes
   end type linear_solver_t
 
   abstract interface
@@ -175,6 +177,24 @@ contains
     self%scaled_x = length*self%scaled_x
     call self%system%restore_order(self%scaled_x, x)
   end subroutine solve
+
+  !> Return the memory that the solver takes, bytes; known after `setup`.
+  real(wp) function bytes(self)
+    class(linear_solver_t), intent(in) :: self
+
+    !> Bytes of a block of the copy, with its column and its position in the original.
+    real(wp), parameter :: per_block = 80.0_wp
+
+    bytes = self%factor_bytes() &
+        + per_block*real(size(self%system%matrix%column, kind=i8), wp)
+  end function bytes
+
+  !> Return the memory of the factors, bytes; 0 if it is not known before the factorisation.
+  real(wp) function factor_bytes(self)
+    class(linear_solver_t), intent(in) :: self
+
+    factor_bytes = 0.0_wp*real(len_trim(self%method), wp)
+  end function factor_bytes
 
   !> Release the factors held outside Fortran; the solver can be set up again.
   subroutine release(self)

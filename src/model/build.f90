@@ -16,6 +16,7 @@ module dd3_model_build
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
@@ -64,6 +65,8 @@ contains
     call find_candidates(model, case, mesh)
     call set_supports(model, case, mesh)
     call set_rim(model)
+    call new_drawbeads(model, case, errors)
+    if (errors%count > 0) return
     call new_phases(model, case, mesh)
     call check_loads(model, case, errors)
     call set_output(model, case, mesh)

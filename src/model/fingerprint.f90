@@ -4,6 +4,7 @@
 module dd3_model_fingerprint
   use dd3_base_digest, only : digest_t
   use dd3_base_kinds, only : wp
+  use dd3_model_drawbead, only : drawbead_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   implicit none
@@ -40,6 +41,10 @@ contains
     end do
     do i = 1, model%n_tool
       call add(fingerprint, "tool '"//model%tool(i)%name//"'", tool_digest(model, i))
+    end do
+    do i = 1, size(model%drawbead)
+      call add(fingerprint, "draw-bead '"//model%drawbead(i)%name//"'", &
+          drawbead_digest(model%drawbead(i)))
     end do
     do i = 1, min(last_phase, size(model%phase))
       call add(fingerprint, "phase '"//model%phase(i)%name//"'", phase_digest(model, i))
@@ -142,6 +147,19 @@ contains
     call digest%add(pack(model%contact_node, model%candidate(tool, :)))
     tool_digest = digest%value()
   end function tool_digest
+
+  !> Return the check sum of a draw-bead's line, law and tool.
+  integer function drawbead_digest(bead)
+    type(drawbead_t), intent(in) :: bead
+
+    type(digest_t) :: digest
+
+    call digest%add([bead%tool])
+    call digest%add([bead%normal, bead%stiffness])
+    call digest%add(reshape(bead%table, [size(bead%table)]))
+    call digest%add(reshape(bead%line, [size(bead%line)]))
+    drawbead_digest = digest%value()
+  end function drawbead_digest
 
   !> Return the check sum of what a phase does: motions, loads with their nodes, and early end. What
   !> it takes over from the model or from the phase before is left to their check sums.

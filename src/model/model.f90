@@ -5,6 +5,7 @@ module dd3_model_model
   use dd3_element_table, only : element_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
+  use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
   use dd3_model_phase, only : phase_t
@@ -93,6 +94,10 @@ module dd3_model_model
     type(load_set_t), allocatable :: load_set(:)
     !> Sets that carry a pressure in some phase.
     type(pressure_set_t), allocatable :: pressure_set(:)
+    type(drawbead_t), allocatable :: drawbead(:)
+    !> Quadrilaterals on the lower and upper faces of the sheet, on which draw-beads act: nodes of an
+    !> element, `(4, n)`.
+    integer, allocatable :: bead_face(:, :)
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)

@@ -52,6 +52,8 @@ module dd3_model_phase
     !> phase leaves unchanged, `(n_pressure)`.
     real(wp), allocatable :: pressure_end(:)
     logical, allocatable :: keeps_pressure(:)
+    !> Draw-beads that act, and those that did not in the phase before, `(n_bead)`.
+    logical, allocatable :: bead_active(:), bead_new(:)
     !> Progress and the factor on displacements, motions, loads and pressures there, `(2, n)`; not
     !> allocated if the factor is the progress.
     real(wp), allocatable :: table(:, :)

@@ -40,6 +40,7 @@ contains
       call set_displacements(case, i, mesh, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
       call set_supports(model, unloaded, led, model%phase(i))
+      call set_drawbeads(model, unloaded, before%bead_active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
@@ -65,6 +66,8 @@ contains
     allocate (phase%motion(0))
     allocate (phase%pressure_end(size(model%pressure_set)), source=0.0_wp)
     allocate (phase%keeps_pressure(size(model%pressure_set)), source=.true.)
+    allocate (phase%bead_active(size(model%drawbead)), source=.false.)
+    phase%bead_new = phase%bead_active
     phase%prescribed = model%fixed
   end subroutine new_idle_phase
 
@@ -204,6 +207,26 @@ contains
       phase%prescribed(phase%support(2, k), phase%support(1, k)) = .true.
     end do
   end subroutine set_supports
+
+  !> Set which draw-beads act: those of an active tool, and those without a tool as long as the sheet
+  !> is not unloaded.
+  pure subroutine set_drawbeads(model, unloaded, before, phase)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: unloaded
+    !> Beads that act in the phase before, `(n_bead)`.
+    logical, intent(in) :: before(:)
+    type(phase_t), intent(inout) :: phase
+
+    integer :: b
+
+    phase%bead_active = .not. unloaded
+    do b = 1, size(model%drawbead)
+      associate (tool => model%drawbead(b)%tool)
+        if (tool > 0) phase%bead_active(b) = phase%active(tool)
+      end associate
+    end do
+    phase%bead_new = phase%bead_active .and. .not. before
+  end subroutine set_drawbeads
 
   !> Set the loads of the sets that the phase names.
   subroutine set_loads(spec, model, phase)

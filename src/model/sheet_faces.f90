@@ -6,7 +6,11 @@ module dd3_model_sheet_faces
   use dd3_mesh_hexahedra, only : same_nodes
   implicit none
   private
-  public :: sheet_faces_t, new_sheet_faces, face_area, face_normal
+  public :: sheet_faces_t, new_sheet_faces, face_area, face_normal, part_of_nine
+
+  !> Quadrilaterals between neighbouring nodes of a face with 9 nodes, in the order of the table.
+  integer, parameter :: part_of_nine(4, 4) = &
+      reshape([1, 5, 9, 8, 5, 2, 6, 9, 9, 6, 3, 7, 8, 9, 7, 4], [4, 4])
 
   !> Faces that belong to one element only.
   type :: sheet_faces_t

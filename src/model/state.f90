@@ -105,10 +105,20 @@ module dd3_model_state
     real(wp), allocatable :: deepest_radius(:)
     !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
     real(wp), allocatable :: slip_path(:)
+    !> Restraining force per length of each interval of the draw-beads, N/mm, and its slip path, mm,
+    !> `(n_interval)`.
+    real(wp), allocatable :: bead_force(:), bead_path(:)
+    !> Forces of the draw-beads on the nodes, `(3, n_node)`, N; size 0 without draw-beads.
+    real(wp), allocatable :: bead_load(:, :)
+    !> Force of each draw-bead on the sheet, `(3, n_bead)`, its restraining force, `(n_bead)`, N, and
+    !> its length on the sheet, `(n_bead)`, mm.
+    real(wp), allocatable :: bead_total(:, :), bead_restraint(:), bead_length(:)
     !> Work since the start of the job, mJ: of the contact forces on the sheet by the motion of the
     !> tools, of loads and supports, of the internal forces, of the equivalent stress, of friction.
     real(wp) :: tool_work = 0.0_wp, external_work = 0.0_wp, internal_work = 0.0_wp
     real(wp) :: plastic_work = 0.0_wp, friction_work = 0.0_wp
+    !> Work dissipated by the draw-beads since the start of the job, mJ.
+    real(wp) :: bead_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   end type state_t
@@ -137,6 +147,7 @@ contains
       allocate (self%deepest_face(n_tool), source=0)
       allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
+    call new_beads(self, model)
     self%x(:, :) = model%x0
     do e = 1, model%n_element
       do p = 1, model%element%n_point
@@ -171,6 +182,22 @@ contains
       allocate (self%plastic(n_point, n), source=.false.)
     end associate
   end subroutine new_sheet
+
+  !> Allocate what belongs to draw-beads and set it to zero.
+  subroutine new_beads(self, model)
+    type(state_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    integer :: n_bead, n_interval, n_node, b
+
+    n_bead = 0
+    if (allocated(model%drawbead)) n_bead = size(model%drawbead)
+    n_node = merge(model%n_node, 0, n_bead > 0)
+    n_interval = sum([(size(model%drawbead(b)%line, 3), b=1, n_bead)])
+    allocate (self%bead_force(n_interval), self%bead_path(n_interval), source=0.0_wp)
+    allocate (self%bead_load(3, n_node), self%bead_total(3, n_bead), source=0.0_wp)
+    allocate (self%bead_restraint(n_bead), self%bead_length(n_bead), source=0.0_wp)
+  end subroutine new_beads
 
   !> Allocate the values at the start of a phase for a state and set them to zero.
   subroutine new_phase_start(self, state)

@@ -97,11 +97,18 @@ contains
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
     call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
     call visitor%reals("slip_path", size(state%slip_path), state%slip_path)
+    call visitor%reals("bead_force", size(state%bead_force), state%bead_force)
+    call visitor%reals("bead_path", size(state%bead_path), state%bead_path)
+    call visitor%reals("bead_load", size(state%bead_load), state%bead_load)
+    call visitor%reals("bead_total", size(state%bead_total), state%bead_total)
+    call visitor%reals("bead_restraint", size(state%bead_restraint), state%bead_restraint)
+    call visitor%reals("bead_length", size(state%bead_length), state%bead_length)
     call visitor%one_real("tool_work", state%tool_work)
     call visitor%one_real("external_work", state%external_work)
     call visitor%one_real("internal_work", state%internal_work)
     call visitor%one_real("plastic_work", state%plastic_work)
     call visitor%one_real("friction_work", state%friction_work)
+    call visitor%one_real("bead_work", state%bead_work)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 

@@ -8,7 +8,7 @@ module dd3_model_tool_depth
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
-  use dd3_model_sheet_faces, only : face_normal
+  use dd3_model_sheet_faces, only : face_normal, part_of_nine
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : wrong_side_depth
   implicit none
@@ -19,9 +19,6 @@ module dd3_model_tool_depth
   real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp
   real(wp), parameter :: sample_shape(4, 5) = &
       reshape([q, q, q, q, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], [4, 5])
-  !> Quadrilaterals between neighbouring nodes of a face with 9 nodes, in the order of the table.
-  integer, parameter :: part_of_nine(4, 4) = &
-      reshape([1, 5, 9, 8, 5, 2, 6, 9, 9, 6, 3, 7, 8, 9, 7, 4], [4, 4])
   !> Depth below which a tool does not enter a face, in thicknesses.
   real(wp), parameter :: slight_depth = 1.0e-3_wp
   !> Margin around a face in which closest points of its points are looked for, in diagonals.

@@ -30,6 +30,14 @@ contains
       names = names//","//trim(model%tool(i)%name)//"_area,"//trim(model%tool(i)%name)//"_pressure"
       units = units//",mm2,MPa"
     end do
+    if (allocated(model%drawbead)) then
+      do i = 1, size(model%drawbead)
+        names = names//","//model%drawbead(i)%name//"_restraint,"//model%drawbead(i)%name//"_length"
+        units = units//",N,mm"
+      end do
+      if (size(model%drawbead) > 0) names = names//",bead_work"
+      if (size(model%drawbead) > 0) units = units//",mJ"
+    end if
     do i = 1, size(energy_name)
       names = names//","//trim(energy_name(i))
       units = units//",mJ"
@@ -50,11 +58,16 @@ contains
       call table%add_real(contact(i)%area)
       call table%add_real(contact(i)%pressure)
     end do
+    do i = 1, size(state%bead_length)
+      call table%add_real(state%bead_restraint(i))
+      call table%add_real(state%bead_length(i))
+    end do
+    if (size(state%bead_length) > 0) call table%add_real(state%bead_work)
     call table%add_reals(energies(model, state))
   end subroutine add_forming_values
 
-  !> Return work and energies, mJ. The error is the work on the sheet less internal and friction
-  !> work; it vanishes with the increments and the tolerance of equilibrium.
+  !> Return work and energies, mJ. The error is the work on the sheet less internal work, friction
+  !> work and that of draw-beads; it vanishes with the increments and the tolerance of equilibrium.
   pure function energies(model, state) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -62,7 +75,8 @@ contains
 
     energy = [state%tool_work, state%external_work, state%internal_work, &
         elastic_energy(model, state), state%plastic_work, state%friction_work, &
-        state%tool_work + state%external_work - state%internal_work - state%friction_work]
+        state%tool_work + state%external_work - state%internal_work - state%friction_work &
+        - state%bead_work]
   end function energies
 
 end module dd3_output_forming_columns

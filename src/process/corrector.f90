@@ -20,8 +20,7 @@ module dd3_process_corrector
   use dd3_system_enhanced, only : enhanced_square, subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : not_held
-  use dd3_system_pressure, only : add_pressure_stiffness
-  use dd3_system_release, only : add_release_stiffness
+  use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -114,8 +113,7 @@ contains
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
         call subtract_condensed(system%enhanced, system%problem%residual)
-        call add_pressure_stiffness(system, model, trial)
-        call add_release_stiffness(system, model, trial)
+        call add_load_stiffness(system, model, trial)
         call prescribe_missed(phase%prescribed, trial, system%problem)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, verdict)

@@ -56,6 +56,7 @@ contains
     fading = (1.0_wp - state%progress)*unfaded_forces(model, state)
     call nodal_forces(model%load_set, state%load, model%contact_node, fading, force)
     force = force + (1.0_wp - state%progress)*state%start%reaction
+    if (size(state%bead_load) > 0) force = force + state%bead_load
     if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
         state%pressure, state%x, force)
   end subroutine external_forces

@@ -68,7 +68,7 @@ contains
 
     type(limiter_t), allocatable :: table(:)
 
-    table = limiter_table()
+    allocate (table, source=limiter_table())
     associate (limit => stepper%attempt%limit, limits => model%phase(state%phase)%limits)
       limit = limit_t(r=limits%r_max%value, name="r_max")
       call apply(pack(table, table%above_r_min), model, state, stepper)

@@ -13,6 +13,7 @@ module dd3_process_phase_start
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
   use dd3_process_phase_end, only : until_value
+  use dd3_system_drawbead, only : remaining_bead_load
   implicit none
   private
   public :: begin_phase, check_returns, gap_of_tool
@@ -38,6 +39,7 @@ contains
     integer :: tool
 
     call free_directions(model, number, state)
+    call release_beads(model, number, state)
     do tool = 1, model%n_tool
       if (returns(model, number, tool)) state%hint(tool, :) = hint_t()
     end do
@@ -179,6 +181,26 @@ contains
     state%start%reaction = reaction
     if (any(freed)) state%plastic = .false.
   end subroutine free_directions
+
+  !> Turn the forces of draw-beads that no longer act into fading forces.
+  subroutine release_beads(model, number, state)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: number
+    !> The state at the end of the phase before, with the fading reactions.
+    type(state_t), intent(inout) :: state
+
+    real(wp), allocatable :: remaining(:, :)
+
+    if (size(state%bead_load) == 0 .or. number == 1) return
+    if (all(model%phase(number)%bead_active .or. .not. model%phase(number - 1)%bead_active)) return
+    remaining = remaining_bead_load(model, number, state)
+    associate (reaction => state%start%reaction, phase => model%phase(number))
+      reaction = reaction + state%bead_load - remaining
+      where (phase%prescribed) reaction = 0.0_wp
+    end associate
+    state%bead_load = remaining
+    state%plastic = .false.
+  end subroutine release_beads
 
   !> Turn the contact forces of released tools into fading forces.
   subroutine release_contacts(phase, state)

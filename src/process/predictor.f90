@@ -22,8 +22,8 @@ module dd3_process_predictor
   use dd3_system_contact, only : predictor_contact
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
-  use dd3_system_pressure, only : add_pressure_stiffness
-  use dd3_system_release, only : add_release_stiffness
+  use dd3_system_drawbead, only : place_beads
+  use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -81,22 +81,22 @@ contains
     !> Gets the work of the linear solver, and a verdict on the solution.
     type(attempt_t), intent(inout) :: attempt
 
-    integer :: switch
-    logical :: switched
+    integer :: switch, switched
 
-    associate (phase => model%phase(committed%phase))
+    associate (phase => model%phase(committed%phase), &
+        unloading => model%phase(committed%phase)%limits%unloading)
       self%progress = phase%trial
       self%plastic(:, :) = committed%plastic
       call system%profile%start()
       call predictor_contact(system%contact, model, committed)
+      call place_beads(system%bead, model, committed)
       call system%profile%add(section_contact)
       call impose_trial(self, model, phase, committed, system)
       do switch = 0, most_switches
         call continuum_tangents(self, model, committed, system)
         call system%profile%add(section_material)
         call assemble_stiffness(system, model, committed)
-        call add_pressure_stiffness(system, model, committed)
-        call add_release_stiffness(system, model, committed)
+        call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
         if (attempt%verdict%outcome /= verdict_converged) return
@@ -106,7 +106,8 @@ contains
         self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, switched)
-        if (.not. switched) exit
+        if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
+        if (.not. unloading%active) exit
       end do
       call contact_force_increment(model, phase, system%contact, system%stiffness, &
           system%problem, self%lambda)
@@ -241,14 +242,15 @@ contains
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
-    logical, intent(out) :: switched
+    !> Number of these points.
+    integer, intent(out) :: switched
 
     real(wp) :: direction(6)
     integer :: e, p
 
-    switched = .false.
+    switched = 0
     !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) &
-    !$omp& private(direction, e, p) reduction(.or.: switched)
+    !$omp& private(direction, e, p) reduction(+: switched)
     do e = 1, model%n_element
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
@@ -258,7 +260,7 @@ contains
           if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
               self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
-          switched = .true.
+          switched = switched + 1
         end do
       end associate
     end do

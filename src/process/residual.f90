@@ -7,6 +7,7 @@ module dd3_process_residual
   use dd3_model_state, only : state_t
   use dd3_process_external, only : evaluate_external
   use dd3_system_contact, only : contact_work_t, evaluate_contact
+  use dd3_system_drawbead, only : evaluate_beads
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -25,10 +26,12 @@ contains
     !> Gets contact and residuals.
     type(system_t), intent(inout) :: system
 
-    integer :: c, node, tool
+    integer :: b, c, node, tool
 
     call evaluate_contact(system%contact, model, committed, trial)
-    if (any(abs(trial%pressure) > 0.0_wp) .or. any(abs(trial%start%fading) > 0.0_wp)) &
+    if (size(trial%bead_load) > 0) call evaluate_beads(system%bead, model, committed, trial)
+    if (size(trial%bead_load) > 0 .or. any(abs(trial%pressure) > 0.0_wp) &
+        .or. any(abs(trial%start%fading) > 0.0_wp)) &
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase))
@@ -44,6 +47,10 @@ contains
         if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + contact%force(:, c)
         tool = trial%fading_tool(c)
         if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + trial%fading(:, c)
+      end do
+      do b = 1, size(trial%bead_total, 2)
+        tool = model%drawbead(b)%tool
+        if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) - trial%bead_total(:, b)
       end do
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &

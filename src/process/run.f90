@@ -30,7 +30,7 @@ module dd3_process_run
   use dd3_system_system, only : new_system, system_t
   implicit none
   private
-  public :: run_model, run_start_t, run_summary_t
+  public :: run_model, run_start_t, run_summary_t, solver_options
 
   !> Smallest increment of the progress of a phase.
   real(wp), parameter :: least_progress = 1.0e-12_wp

@@ -30,6 +30,7 @@ contains
     new%plastic_work = old%plastic_work + plastic_work_increment(model, old, new)
     call add_external_work(model, old, moved, new)
     call add_contact_work(model, contact, old, moved, new)
+    if (size(new%bead_load) > 0) call add_bead_work(model, old, moved, new)
   end subroutine add_work
 
   !> Add the work of loads and of supports that move. Forces that begin to fade at the start of the
@@ -51,6 +52,31 @@ contains
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
     new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
+
+  !> Add the work of the draw-beads: that of the tools that carry them, and what they dissipate. It is
+  !> part of the work of the external forces, from which it is taken.
+  pure subroutine add_bead_work(model, old, moved, new)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: old
+    !> Displacements in the increment, `(3, n_node)`, mm.
+    real(wp), intent(in) :: moved(:, :)
+    type(state_t), intent(inout) :: new
+
+    real(wp) :: work, tool_work
+    integer :: b
+
+    work = 0.5_wp*sum((old%bead_load + new%bead_load)*moved)
+    tool_work = 0.0_wp
+    do b = 1, size(model%drawbead)
+      associate (tool => model%drawbead(b)%tool)
+        if (tool > 0) tool_work = tool_work + 0.5_wp*dot_product(old%bead_total(:, b) &
+            + new%bead_total(:, b), new%tool_displacement(:, tool) - old%tool_displacement(:, tool))
+      end associate
+    end do
+    new%external_work = new%external_work - work
+    new%tool_work = new%tool_work + tool_work
+    new%bead_work = old%bead_work + tool_work - work
+  end subroutine add_bead_work
 
   !> Add the work of the tools, the friction work and the slip.
   pure subroutine add_contact_work(model, contact, old, moved, new)

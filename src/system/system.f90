@@ -8,6 +8,7 @@ module dd3_system_system
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_element_work, only : element_work_t, new_element_work
+  use dd3_model_bead_points, only : bead_point_t
   use dd3_model_model, only : model_t
   use dd3_system_batches, only : batches_t, new_batches
   use dd3_system_contact, only : contact_work_t, new_contact_work
@@ -16,7 +17,7 @@ module dd3_system_system
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
-  public :: system_t, new_system
+  public :: system_t, new_system, new_stiffness_pattern
 
   !> Data of assembly and solution.
   type :: system_t
@@ -36,6 +37,8 @@ module dd3_system_system
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
     type(contact_work_t) :: contact
+    !> Points at which draw-beads act in the increment.
+    type(bead_point_t), allocatable :: bead(:)
     type(linear_problem_t) :: problem
     class(linear_solver_t), allocatable :: solver
     !> Time by section.
@@ -52,11 +55,9 @@ contains
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
 
-    integer, allocatable :: first(:), coupled(:)
     integer :: i
 
-    call coupled_nodes(model, first, coupled)
-    call new_pattern(self%stiffness, model%n_node, model%connectivity, first, coupled)
+    call new_stiffness_pattern(self%stiffness, model)
     call find_positions(self%stiffness, model%connectivity, self%position)
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
@@ -72,10 +73,22 @@ contains
     end do
     call new_enhanced(self%enhanced, model)
     call new_contact_work(self%contact, model%n_contact)
+    allocate (self%bead(0))
     call new_linear_problem(self%problem, model, self%stiffness%n)
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
+
+  !> Build the pattern of the stiffness, with the rows of the pressed tools.
+  subroutine new_stiffness_pattern(stiffness, model)
+    type(block_matrix_t), intent(out) :: stiffness
+    type(model_t), intent(in) :: model
+
+    integer, allocatable :: first(:), coupled(:)
+
+    call coupled_nodes(model, first, coupled)
+    call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
+  end subroutine new_stiffness_pattern
 
   !> List the nodes that the row of each pressed tool couples with: its candidates and their
   !> neighbours.

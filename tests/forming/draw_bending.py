@@ -10,13 +10,13 @@ import sys
 import numpy as np
 import studies
 from fields import Fields
-from scripts import run
+from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("draw_bending")
 DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not count, half length of the bottom, mm
 FLANGE = 36.0  # x beyond which the strip is flat at the end of the draw, mm
 HOLDERS = {"2.45 kN": -35, "19.6 kN": -280}  # N for 1 mm of the half strip
-MESHES = (88, 175, 350)
+MESHES = {"isotropic": (88, 175, 350, 700), "kinematic": (350,)}  # elements along the half strip
 SWIFT = (565.32, 0.007117, 0.2589)  # MPa, -, -
 BACK_STRESS = (30.0, 50.0)  # CX, Xsat (MPa) of Lemaitre and Chaboche
 STRAINS = (0, .002, .005, .01, .02, .03, .05, .075, .1, .15, .2, .3, .5, .8, 1.2)
@@ -90,9 +90,7 @@ def main():
     rows, lines, wanted = [], {}, 0
     for holder, force in HOLDERS.items():
         for law, hardening in (("isotropic", None), ("kinematic", kinematic())):
-            for mesh in MESHES:
-                if hardening and mesh != MESHES[1]:
-                    continue
+            for mesh in MESHES[law]:
                 wanted += 1
                 deck = DECK
                 if hardening:
@@ -111,7 +109,7 @@ def main():
                           "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        studies.put(REPORT, "shape", text)
+        put_table(REPORT, "shape", text)
         draw(lines)
     sys.exit(0 if len(rows) == wanted else 1)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The S-shaped rail: springback of its flanges and twist, by mesh.
+"""The S-shaped rail: springback of its inner flanges and twist, by mesh.
 
     rail.py --program build/release/dd3imp --work build/rail            make the runs that are missing
     rail.py --program build/release/dd3imp --work build/rail --write    and put them into docs/reports
@@ -11,11 +11,9 @@ import sys
 import numpy as np
 import studies
 from fields import Fields
-from scripts import run
+from scripts import put_table, run
 
-DECK = studies.ROOT / "input_files" / "rail" / "rail.dat"
-REPORT = studies.ROOT / "docs" / "reports" / "rail.md"
-PICTURE = studies.ROOT / "docs" / "images" / "rail.png"
+DECK, REPORT, PICTURE = studies.paths("rail")
 DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm
 OFFSET = 10.0480947162  # of the straight ends from the middle, mm
 STATION, REACH = 60.0, 8.0  # middle and half length of the piece of a straight end that is measured, mm
@@ -33,18 +31,17 @@ class Rail:
         self.shape = tuple(len(np.unique(start[:, axis].round(6))) for axis in (0, 1))
 
     def slopes(self, points, side):
-        """Return the slopes dz/dy of bottom, flange at smaller and flange at larger y of an end, degrees."""
+        """Return the slopes dz/dy of an end's bottom and of its flange on the inside of the nearer arc, degrees."""
         along = np.abs(self.drawn[:, 0] - side*STATION) < REACH
         across = self.drawn[:, 1] - side*OFFSET
-        parts = (np.abs(across) < BOTTOM, across < -FLANGE, across > FLANGE)
-        return [slope(points[along & part]) for part in parts]
+        return [slope(points[along & part]) for part in (np.abs(across) < BOTTOM, side*across < -FLANGE)]
 
     def springback(self, side):
-        """Return the rotations from the end of the draw: of the bottom, and of both flanges against it; the flanges
-        positive if they open, degrees."""
+        """Return the rotations from the end of the draw, degrees: of the bottom, and of the flange against it,
+        positive if it rises."""
         before, after = (np.array(self.slopes(points, side)) for points in (self.drawn, self.free))
-        turned = after - before
-        return turned[0], -(turned[1] - turned[0]), turned[2] - turned[0]
+        bottom, flange = after - before
+        return bottom, -side*(flange - bottom)
 
     def section(self, points):
         """Return y and z of the node line nearest to the station at larger x."""
@@ -68,10 +65,7 @@ def slope(points):
 
 def draw(rails):
     """Draw the section of an end before and after springback."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(7, 3.6), layout="constrained")
+    figure, axes = studies.new_figure(7, 3.6)
     for i, (name, rail) in enumerate(rails.items()):
         for points, style, state in ((rail.drawn, "--", "drawn"), (rail.free, "-", "free")):
             axes.plot(*rail.section(points), style, color=f"C{i}", label=f"{name}, {state}", linewidth=1.2)
@@ -90,13 +84,13 @@ def main():
             continue
         rails[name] = Rail(folder)
         right, left = (rails[name].springback(side) for side in (1, -1))
-        values = *right[1:], *left[1:], right[0], left[0], right[0] - left[0]
+        values = right[1], left[1], right[0], left[0], right[0] - left[0]
         rows.append([name, *(f"{value:.2f}" for value in values), *studies.effort(folder)])
-    text = studies.table(["mesh", "flange inside, x = 60", "outside, x = 60", "outside, x = -60", "inside, x = -60",
-                          "bottom, x = 60", "bottom, x = -60", "twist", "increments", "iterations", "seconds"], rows)
+    text = studies.table(["mesh", "flange, x = 60", "flange, x = -60", "bottom, x = 60", "bottom, x = -60", "twist",
+                          "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        studies.put(REPORT, "springback", text)
+        put_table(REPORT, "springback", text)
         draw(rails)
     sys.exit(0 if len(rails) == len(RUNS) else 1)
 

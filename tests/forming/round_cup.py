@@ -13,11 +13,9 @@ import studies
 from fields import Fields
 from plot_point import r_value
 from results import run_points
-from scripts import run
+from scripts import put_table, run
 
-FOLDER = studies.ROOT / "input_files" / "round_cup"
-REPORT = studies.ROOT / "docs" / "reports" / "round_cup.md"
-PICTURE = studies.ROOT / "docs" / "images" / "round_cup.png"
+DECK, REPORT, PICTURE = studies.paths("round_cup")
 BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall, mm
 ANGLES = np.arange(0, 91, 15)  # of the table, degrees from rolling
 LEAST = 0.05  # rise above both neighbouring valleys that makes an ear, mm
@@ -71,8 +69,8 @@ def estimate(program, material):
     A point at R in the blank comes to the wall and stretches radially by r/(1 + r) ln(R/WALL), with the r-value of
     tension along the circumference.
     """
-    text = (FOLDER / "round_cup.dat").read_text(encoding="utf-8").split("*BLANK")[0].split("*INCLUDE")[1]
-    text = f"*INCLUDE {FOLDER.parent / text.split()[0].removeprefix('../')}\n" + text.split("\n", 1)[1]
+    text = DECK.read_text(encoding="utf-8").split("*BLANK")[0].split("*INCLUDE")[1]
+    text = f"*INCLUDE {DECK.parents[1] / text.split()[0].removeprefix('../')}\n" + text.split("\n", 1)[1]
     angles = np.linspace(0, 90, 31)
     text += "".join(f"*POINT at_{i}\n  material = {material}\n  angle = {90 - angle:g}\n"
                     "  control = e11 s22 s33 s12 s23 s13\n  target = 0.1 0 0 0 0 0 steps=10\n"
@@ -85,10 +83,7 @@ def estimate(program, material):
 
 def draw(cups, estimates):
     """Draw height over angle."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    figure, axes = studies.new_figure(7, 4)
     for name, cup in cups.items():
         law = next(law for law in MATERIALS if name.startswith(law))
         style = "--" if name.endswith("12") else "-." if name.endswith("16") else "-"
@@ -114,7 +109,7 @@ def main():
     options = studies.arguments(__doc__)
     cups, efforts = {}, {}
     for name, material, divisions in RUNS:
-        folder = studies.make(options, name.replace(" ", "_"), FOLDER / "round_cup.dat",
+        folder = studies.make(options, name.replace(" ", "_"), DECK,
                               {"material": material, "divisions": divisions})
         if folder:
             cups[name], efforts[name] = Cup(folder), studies.effort(folder)
@@ -128,8 +123,8 @@ def main():
                                for name, cup in cups.items()])
     print(heights, thickness, sep="\n\n")
     if options.write:
-        studies.put(REPORT, "heights", heights)
-        studies.put(REPORT, "thickness", thickness)
+        put_table(REPORT, "heights", heights)
+        put_table(REPORT, "thickness", thickness)
         draw(cups, estimates)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import studies
 from fields import Fields
-from scripts import run
+from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("square_cup")
 ALUMINIUM = DECK.with_name("aluminium.dat")
@@ -84,8 +84,8 @@ def main():
                     cup.thickness(TRAVELS[-1]).max()]] for name, cup in cups.items()])
     print(draw_in, thickness, sep="\n\n")
     if options.write:
-        studies.put(REPORT, "draw-in", draw_in)
-        studies.put(REPORT, "thickness", thickness)
+        put_table(REPORT, "draw-in", draw_in)
+        put_table(REPORT, "thickness", thickness)
         draw(cups)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 

@@ -1,5 +1,4 @@
 """What the studies of this folder share: runs that are kept, and tables in reports. Needs the Python environment."""
-import re
 import sys
 from pathlib import Path
 
@@ -67,13 +66,3 @@ def effort(folder):
 def table(head, rows):
     """Return the lines of a table."""
     return "\n".join("| " + " | ".join(row) + " |" for row in (head, ["---"]*len(head), *rows))
-
-
-def put(report, name, text):
-    """Replace what is between the marks of a table in a report."""
-    old = report.read_text(encoding="utf-8")
-    new, count = re.subn(rf"(<!-- table: {name} -->\n).*?(<!-- end of table -->)",
-                         lambda found: f"{found[1]}\n{text}\n\n{found[2]}", old, flags=re.DOTALL)
-    if count != 1:
-        sys.exit(f"{report}: no table '{name}'")
-    report.write_text(new, encoding="utf-8")

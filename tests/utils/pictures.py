@@ -122,6 +122,10 @@ def check_inputs(program, folder):
         assert said in message, message
         assert size_of(folder / "initial.png") == (300, 200)
         (folder / "initial.png").unlink()
+    done = subprocess.run([program, "--check", "--quiet", "--initial", folder / "job.out",
+                           UTILS.parent / "tests" / "bad_input" / "tool_inside_sheet.dat"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "job.out' holds results of a run" in done.stderr, done.stderr
     assert "'no'" in call("plot_sheet.py", folder / "job.dat", "--set", "no=1", *options, expect=2)
     assert "no such program" in call("plot_sheet.py", folder / "job.dat", "--program", folder / "none", expect=2)
 
@@ -139,6 +143,10 @@ def main():
         assert "<svg" in (folder / "force.svg").read_text()
         call("plot_sheet.py", run, "--field", "stress:13", "--size", 300, 200, "--output", folder / "one.png")
         assert size_of(folder / "one.png") == (300, 200)
+        elsewhere = shutil.copytree(run, folder / "results" / "of.job")
+        (elsewhere / "job.log").write_text(LOG.replace(": job.dat", f": {folder / 'job.dat'}"))
+        call("plot_sheet.py", elsewhere, "--field", "stress:13", "--size", 300, 200, "--output", folder / "same.png")
+        assert (folder / "same.png").read_bytes() == (folder / "one.png").read_bytes()
         call("plot_sheet.py", run, "--field", "thickness", "--cells", "--at", 0, "--at", 2, "--mirror", "x", "--view",
              "front", "--size", 300, 200, "--output", folder / "two.png")
         assert size_of(folder / "two.png") == (300, 400)

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""The memory stated in job.log before a run agrees with the peak of the run within 20 %.
+
+    stated_memory.py --program build/release/dd3imp --work build/stated_memory
+"""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+INPUT = pathlib.Path(__file__).resolve().parents[3] / "input_files"
+CUP = INPUT / "square_cup" / "square_cup.dat"
+JOBS = ((INPUT / "bending" / "bending.dat", ()),
+        (INPUT / "bending" / "fine.dat", ()),
+        (CUP, ("divisions=32 32 1",)))
+ALLOWED = 0.2
+
+
+def peak(program, deck, folder, settings):
+    """Run a few increments and stop; return the peak of the resident memory, bytes."""
+    words = [program, "--quiet", "--threads", "1", "--output", folder, deck]
+    for setting in settings:
+        words += ["--set", setting]
+    with subprocess.Popen(words, stderr=subprocess.DEVNULL) as process:
+        status = folder / "status.csv"
+        until = time.monotonic() + 100
+        while time.monotonic() < until and not (status.exists() and status.read_text(encoding="utf-8").count("\n") > 4):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        _, code, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(code)
+    return 1024 * used.ru_maxrss
+
+
+def main():
+    """Run the test."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
+    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
+    options = parser.parse_args()
+    work = options.work.resolve()
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    failed = False
+    for number, (deck, settings) in enumerate(JOBS):
+        folder = work / str(number)
+        used = peak(options.program.resolve(), deck, folder, settings)
+        found = re.search(r"memory: about (\d+) MB", (folder / "job.log").read_text(encoding="utf-8"))
+        stated = 1e6 * int(found[1]) if found else 0.0
+        print(f"{deck.name} {' '.join(settings)}: stated {stated / 1e6:.0f} MB, used {used / 1e6:.0f} MB")
+        failed = failed or abs(stated / used - 1.0) > ALLOWED
+    sys.exit("FAILED: the memory stated differs by more than 20 %" if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
