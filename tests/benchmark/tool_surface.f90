@@ -134,7 +134,7 @@ contains
 
     n_row = ceiling(sqrt(real(size(uv, 2), wp)))
     do i = 1, size(uv, 2)
-      uv(:, i) = (real([modulo(i - 1, n_row), (i - 1)/n_row], wp) + 0.5_wp)/n_row
+      uv(:, i) = (real([modulo(i - 1, n_row), (i - 1)/n_row], wp) + 0.5_wp)/real(n_row, wp)
     end do
   end subroutine set_rows
 
