@@ -39,8 +39,9 @@ program benchmark_tool_surface
   end if
   print '(i0, a, f0.3, a, a, a, i0, a)', size(surface%patch), " patches: read in ", &
       seconds() - start, " s, ", memory(), "; ", count(surface%edge%patch > 0)/2, " joined edges"
-  call time_queries("near", 0.3_wp)
-  call time_queries("far", 40.0_wp)
+  call time_queries("near", 0.3_wp, ordered=.false.)
+  call time_queries("in order", 0.3_wp, ordered=.true.)
+  call time_queries("far", 40.0_wp, ordered=.false.)
 
 contains
 
@@ -86,10 +87,12 @@ contains
     control(:, :, 1) = 2.0_wp*control(:, :, 1) - 0.5_wp*(control(:, :, 0) + control(:, :, 2))
   end subroutine set_control
 
-  !> Time searches of the whole surface from random points at a height above it.
-  subroutine time_queries(name, above)
+  !> Time searches of the whole surface from points at a height above it.
+  subroutine time_queries(name, above, ordered)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: above
+    !> True for the nodes of a square grid row by row, as a run makes them; else random points.
+    logical, intent(in) :: ordered
 
     type(hint_t) :: hint
     type(hit_t) :: hit
@@ -103,6 +106,7 @@ contains
     call random_seed(put=seed)
     allocate (uv(2, n_query))
     call random_number(uv)
+    if (ordered) call set_rows(uv)
     ! A linear scan of many patches is timed with fewer queries.
     repeated = n_query
     total = 0.0_wp
@@ -120,6 +124,19 @@ contains
     print '(a8, f10.3, a, i0, a, i0, a, es22.15, a)', name, 1.0e6_wp*(seconds() - began) &
         /repeated, " us (", n_found, " of ", repeated, " found, sum ", total, ")"
   end subroutine time_queries
+
+  !> Set the points of a square grid row by row.
+  pure subroutine set_rows(uv)
+    !> u, v of the points.
+    real(wp), intent(out) :: uv(:, :)
+
+    integer :: i, n_row
+
+    n_row = ceiling(sqrt(real(size(uv, 2), wp)))
+    do i = 1, size(uv, 2)
+      uv(:, i) = (real([modulo(i - 1, n_row), (i - 1)/n_row], wp) + 0.5_wp)/real(n_row, wp)
+    end do
+  end subroutine set_rows
 
   !> Return the processor time of this run, s.
   real(wp) function seconds()

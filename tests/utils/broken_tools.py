@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests" / "utils")]
@@ -16,6 +17,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
     sys.exit(77)
 
 import numpy as np  # noqa: E402
+from tools import cad  # noqa: E402
 from tool_surfaces import (MESHES, box_distance, convert, die_triangles, make_cad, points_of, read,  # noqa: E402
                            write_stl)
 
@@ -156,6 +158,10 @@ def check_cut_cad(folder):
         for parts in (2, 5):
             path.write_bytes(data[:len(data) * parts // 6])
             assert "error: " in run_tool(path), (name, parts)
+    with mock.patch.object(cad, "MOST_ROUNDS", 1):  # too few for the whole torus, which is then cut
+        said = convert(folder / "torus.brep", folder / "torus.bez", "--tolerance", 0.05)
+        cut = convert(folder / "torus.brep", folder / "torus.bez", "--tolerance", 0.02)
+    assert "1 face," in said and "4 faces," in cut and "were cut: face 1 (Torus)" in cut, (said, cut)
     odd = folder / "dié ö.step"
     odd.write_bytes((folder / "punch.step").read_bytes())
     assert "18 faces" in run_tool(odd)

@@ -16,10 +16,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scripts import Problem
 from tools.closest import closest
+from tools.cut import cut, is_closed
 from tools.division import Division
 from tools.joints import find_joints, folded, kinks, to_chords
 from tools.limits import limited
-from tools.report import REACH, up
+from tools.report import MOST_NAMES, REACH, up
 from tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -33,6 +34,8 @@ KINK, KINK_ROUNDS = 0.5, 2
 # Processor time after which OpenCASCADE and Gmsh are given up, s: reading, sewing, and on top of each for a MB of the
 # file; a mesh of all faces. They do not end on some files.
 READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
+# Part of the largest distance above which a face that closes in itself is cut.
+WORST = 0.1
 # Points of the distance: between the nodes.
 PLACES = grid(5)
 
@@ -386,8 +389,28 @@ def read_cad(gmsh, path, options, progress):
                    + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
-    mesh_within(gmsh, path, model, max(options.tolerance, options.sew or 0.0), progress)
+    tolerance = max(options.tolerance, options.sew or 0.0)
+    mesh_within(gmsh, path, model, tolerance, progress)
+    # The worst faces: the others gain from the same cuts.
+    limit = max(tolerance, WORST * model.distance.max())
+    closed = [tag for tag, distance in zip(model.tags, model.distance) if distance > limit and is_closed(gmsh, tag)]
+    if closed:
+        cut_closed(gmsh, path, model, closed)
+        mesh_within(gmsh, path, model, tolerance, progress)
     return model
+
+
+def cut_closed(gmsh, path, model, closed):
+    """Cut faces that close in themselves; the parts keep the names."""
+    gmsh.model.mesh.clear()
+    with silence(), limited(allowed(SEW_TIME, path), f"{path}: faces that close in themselves are not cut in "
+                            f"{allowed(SEW_TIME, path):.0f} s of processor time; cut them in the CAD program"):
+        parts = cut(gmsh, model.tags, closed)
+    model.notes.append("faces that close in themselves were cut: "
+                       + ", ".join(model.names[model.tags.index(tag)] for tag in closed[:MOST_NAMES])
+                       + (f" and {len(closed) - MOST_NAMES} more" if len(closed) > MOST_NAMES else ""))
+    model.names = [name for name, part in zip(model.names, parts) for _ in part]
+    model.tags = [tag for part in parts for tag in part]
 
 
 def surface_of(model, nodes=None):

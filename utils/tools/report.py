@@ -33,7 +33,7 @@ def plural(count, word):
 
 def named(surface, faces):
     """Return the names of faces, the first few of many."""
-    names = [surface.names[face] for face in dict.fromkeys(faces)]
+    names = list(dict.fromkeys(surface.names[face] for face in faces))
     return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
 
 
