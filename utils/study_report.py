@@ -3,9 +3,8 @@
 from functools import cache
 
 from bending_tables import FIRST, Run, differences, table
-from bending_tables import write as fill
 from results import read_table, totals
-from scripts import Problem
+from scripts import Problem, put_table
 
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
 MESHES = ["a", "b"]
@@ -240,4 +239,5 @@ def write(work, document):
     programs = sorted({row["program"] for row in results.row.values()})
     tables["size"] = (f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program "
                       f"{', '.join(programs)} (the first digits of its SHA-256).")
-    fill(document, tables)
+    for name, content in tables.items():
+        put_table(document, name, content)
