@@ -34,8 +34,17 @@ MOTIONS = """*PHASE turn
 
 *PHASE springback
   free = x_max x z"""
+# Block of a draw-bead that a pressed tool carries.
+BEAD = """*DRAWBEAD bead
+  points = 60 -1  60 36
+  force = 40
+  rise = 2
+  normal = -5
+  tool = blank_holder
+
+*CONTACT"""
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;
-# fields by increments; motions and pressures along curves of progress; a linear solver that falls back.
+# fields by increments; motions and pressures along curves of progress; a draw-bead; a linear solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),
@@ -44,6 +53,7 @@ CASES = {
     "fields": ((("every 0.4 mm", "increments 1"),), ("restart=1",)),
     "solid_shell": ((("element = hex8", "element = solid_shell"),), ("restart=1",)),
     "motions": ((("*PHASE springback", MOTIONS),), ("restart=1",)),
+    "bead": ((("*CONTACT", BEAD),), ("restart=1",)),
     "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
 }
 MOST_TRIALS = 100
