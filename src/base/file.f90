@@ -4,8 +4,9 @@
 !> is then detected while all lines can still be written.
 !>
 !> Text is written in the pieces in which it is put, so that a program that is killed leaves whole
-!> lines if whole lines are put. Each flush checks that the file still has its name: a file that was
-!> removed or replaced, as with its folder, is an error.
+!> lines if whole lines are put, unless the system cuts a write at the end of a page. Each flush
+!> checks that the file still has its name: a file that was removed or replaced, as with its folder,
+!> is an error.
 module dd3_base_file
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_long, c_null_char
   use dd3_base_kinds, only : wp, i8

@@ -5,6 +5,7 @@
 module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_assembly, section_contact, section_material
+  use dd3_base_interrupt, only : interrupted
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_contact_operator, only : status_gap
@@ -86,6 +87,11 @@ contains
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction)
       do j = 1, phase%newton%iterations
+        if (interrupted()) then
+          verdict%outcome = verdict_retry
+          verdict%reason = "interrupted"
+          return
+        end if
         verdict%iterations = j
         if (j == 1) call system%threads%begin_iteration()
         if (j == 2) call system%threads%end_iteration()

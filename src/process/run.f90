@@ -180,7 +180,7 @@ contains
         end if
         if (allocated(error)) exit
         if (.not. interrupted()) cycle
-        call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
+        call set_interruption(committed, error)
         exit
       end do
       ended = .not. allocated(error)
@@ -266,6 +266,10 @@ contains
       end if
       do
         if (predicted) call try_increment(model, run%committed, run%trial, stepper)
+        if (interrupted() .and. attempt%verdict%outcome /= verdict_converged) then
+          call set_interruption(run%committed, error)
+          return
+        end if
         row = status_row(model, run%committed, stepper)
         row%seconds = wall_time() - began
         began = wall_time()
@@ -288,6 +292,14 @@ contains
       end if
     end associate
   end subroutine run_increment
+
+  !> Set the error of a run that was interrupted.
+  subroutine set_interruption(committed, error)
+    type(state_t), intent(in) :: committed
+    type(error_t), allocatable, intent(out) :: error
+
+    call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
+  end subroutine set_interruption
 
   !> Whether an increment with the present r is large enough for the phase to end.
   pure logical function makes_progress(stepper)
