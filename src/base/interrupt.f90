@@ -1,8 +1,8 @@
 !> Interruption of a run: from the keyboard (SIGINT), by the system (SIGTERM), by the end of the
 !> session (SIGHUP) or because nobody reads the output any more (SIGPIPE). The run ends after the
-!> current iteration with the results of all accepted increments. A second signal of the same kind stops it at once, but
-!> not SIGPIPE, which a run that goes on writing would receive again. The flag is a module variable
-!> because a signal handler has no other arguments.
+!> current iteration with the results of all accepted increments. A second signal of the same kind
+!> stops it at once, but not SIGPIPE, which a run that goes on writing would receive again. The flag
+!> is a module variable because a signal handler has no other arguments.
 module dd3_base_interrupt
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none

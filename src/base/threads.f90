@@ -1,5 +1,5 @@
-!> Threads (OpenMP) of the loops whose passes do not depend on one another. Every such loop asks here
-!> how many threads to take; its results must be the same bits for any number.
+!> Threads (OpenMP) of the loops whose passes do not depend on one another. Every such loop asks
+!> here how many threads to take; its results must be the same bits for any number.
 module dd3_base_threads
   !$ use omp_lib, only : omp_get_max_threads, omp_set_num_threads
   implicit none

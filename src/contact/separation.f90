@@ -10,7 +10,8 @@ module dd3_contact_separation
   private
   public :: offset_at_gap
 
-  !> Largest number of displacements until the gap is met, and the fraction of it within which it is.
+  !> Largest number of displacements until the gap is met, and the fraction of it within which it
+  !> is.
   integer, parameter :: iterations = 200
   real(wp), parameter :: met = 1.0e-9_wp
   !> Displacement that shows on which side the other surface is, mm.

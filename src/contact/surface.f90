@@ -14,9 +14,10 @@ module dd3_contact_surface
   integer, parameter :: most_pairs = 16
   !> Largest distance between coincident edges, relative to the surface's size.
   real(wp), parameter :: coincident = 1.0e-6_wp
-  !> Largest sine of the angle between the normals across a smooth edge, 0.3 degrees: a contact force
-  !> that turns by it changes by 0.52 %, about half the default tolerance of the corrector. Patches that interpolate a fillet have small kinks at all their edges; nodes at an
-  !> edge with a crease follow the edge itself.
+  !> Largest sine of the angle between the normals across a smooth edge, 0.3 degrees: a contact
+  !> force that turns by it changes by 0.52 %, about half the default tolerance of the corrector.
+  !> Patches that interpolate a fillet have small kinks at all their edges; nodes at an edge with a
+  !> crease follow the edge itself.
   real(wp), parameter :: smooth_sine = 5.236e-3_wp
   !> Largest cosine of the angle between opposite normals.
   real(wp), parameter :: opposite_cosine = -0.99_wp

@@ -14,9 +14,9 @@
 !> `centre_weight` is its weight.
 !>
 !> An element bent to the angle theta then keeps the thickness t in its middle: its directors have
-!> the length t/cos(theta/2), and the strain linear in zeta is 2 tan(theta/2) over the length in place
-!> of theta. In the increment it is multiplied by cos(theta/2)^2, the derivative of one in the other,
-!> taken from the committed configuration.
+!> the length t/cos(theta/2), and the strain linear in zeta is 2 tan(theta/2) over the length in
+!> place of theta. In the increment it is multiplied by cos(theta/2)^2, the derivative of one in the
+!> other, taken from the committed configuration.
 !>
 !> Internally the element has mid-surface positions m_A = (bottom + top)/2 and directors
 !> d_A = (top - bottom)/2 at its corners.
@@ -58,8 +58,8 @@ contains
     call set_columns(shell, mid, director, shell%trial)
   end subroutine column_geometry
 
-  !> Set the weight of the mean director in the mean thickness strain, and the factors of the bending
-  !> strains that belong to it.
+  !> Set the weight of the mean director in the mean thickness strain, and the factors of the
+  !> bending strains that belong to it.
   pure subroutine set_weights(x_initial, x_committed, shell)
     !> Positions of the nodes, mm.
     real(wp), intent(in) :: x_initial(3, 8), x_committed(3, 8)

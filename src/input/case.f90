@@ -12,9 +12,11 @@ module dd3_input_case
   private
   public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
-  public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t, limits_spec_t, limit_spec_t, newton_spec_t
+  public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
+  public :: limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, load_spec_t, until_spec_t
+  public :: tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t
+  public :: load_spec_t, until_spec_t
   public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
   public :: until_never, until_displacement, until_force

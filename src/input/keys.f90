@@ -6,8 +6,8 @@ module dd3_input_keys
   implicit none
   private
   public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
-      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, history_keys, output_keys, &
-      point_keys
+      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
+      history_keys, output_keys, point_keys
 
   !> Bound of the numbers that must not be negative.
   real(wp), parameter :: zero = 0.0_wp

@@ -160,7 +160,8 @@ contains
 
     integer :: i, n_actions
 
-    n_actions = size(phase%gap) + size(phase%move) + size(phase%press) + size(phase%displace) + size(phase%load)
+    n_actions = size(phase%gap) + size(phase%move) + size(phase%press) + size(phase%displace)
+    n_actions = n_actions + size(phase%load)
     n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
     n_actions = n_actions + size(phase%motion) + size(phase%pressure)
     if (phase%control == 0) then

@@ -1,5 +1,5 @@
-!> Contact pressure at the candidates: normal force over tributary area. The tributary area of a node
-!> is its fraction of the area of the contact faces around it.
+!> Contact pressure at the candidates: normal force over tributary area. The tributary area of a
+!> node is its fraction of the area of the contact faces around it.
 module dd3_model_contact_pressure
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap

@@ -20,8 +20,8 @@ module dd3_model_drawbead
     integer :: tool = 0
     !> Force on the sheet along z, N/mm.
     real(wp) :: normal = 0.0_wp
-    !> Slip path, mm, and limit of the restraining force there, N/mm, `(2, n)`: linear in between, and
-    !> constant after the last one.
+    !> Slip path, mm, and limit of the restraining force there, N/mm, `(2, n)`: linear in between,
+    !> and constant after the last one.
     real(wp), allocatable :: table(:, :)
     !> Ends of its intervals in plan, `(2, 2, n)`: coordinate, end, interval, mm. Each interval has
     !> one restraining force and one slip path.
@@ -86,16 +86,16 @@ contains
     length = sum(norm2(self%line(:, 2, :) - self%line(:, 1, :), dim=1))
   end function length
 
-  !> Evaluate the restraining force after a slip. Beyond the elastic slip, trial force less stiffness
-  !> times sliding is the limit at the new path: linear in each interval of the table.
+  !> Evaluate the restraining force after a slip. Beyond the elastic slip, trial force less
+  !> stiffness times sliding is the limit at the new path: linear in each interval of the table.
   pure subroutine restrain(self, start_force, start_path, slip, force, path, stiffness)
     class(drawbead_t), intent(in) :: self
     !> Force per length, N/mm, and slip path, mm, before the slip.
     real(wp), intent(in) :: start_force, start_path
     !> Displacement of the sheet across the bead, mm.
     real(wp), intent(in) :: slip
-    !> Restraining force per length against a positive slip, N/mm, slip path, mm, and derivative of the
-    !> force in the slip, N/mm2.
+    !> Restraining force per length against a positive slip, N/mm, slip path, mm, and derivative of
+    !> the force in the slip, N/mm2.
     real(wp), intent(out) :: force, path, stiffness
 
     real(wp) :: trial, limit, slope, next, slide

@@ -55,7 +55,8 @@ contains
     n = 0
     if (size(model%drawbead) > 0) then
       do f = 1, model%face%n
-        associate (bottom => model%column(1, model%face%corner(:, f)), node => model%face%node(:, f))
+        associate (bottom => model%column(1, model%face%corner(:, f)), &
+            node => model%face%node(:, f))
           if (any(bottom == cshift(bottom, 1))) cycle
           do i = 1, merge(4, 1, size(node) == 9)
             n = n + 1

@@ -60,9 +60,9 @@ contains
     if (all(on_face(node))) weight = force(node)/sum(force(node))
   end subroutine face_load_weights
 
-  !> Return the stiffness of the spring that replaces the contact of a released node, N/mm. A contact
-  !> force that only faded would be a dead load: two opposing ones deflect the sheet between them
-  !> further, and a sheet that yields collapses under loads that the tools' shape could bear.
+  !> Return the stiffness of the spring that replaces the contact of a released node, N/mm. A
+  !> contact force that only faded would be a dead load: two opposing ones deflect the sheet between
+  !> them further, and a sheet that yields collapses under loads that the tools' shape could bear.
   pure real(wp) function spring_stiffness(force, thickness)
     !> Contact force at the release, N.
     real(wp), intent(in) :: force(3)

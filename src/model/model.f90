@@ -95,8 +95,8 @@ module dd3_model_model
     !> Sets that carry a pressure in some phase.
     type(pressure_set_t), allocatable :: pressure_set(:)
     type(drawbead_t), allocatable :: drawbead(:)
-    !> Quadrilaterals on the lower and upper faces of the sheet, on which draw-beads act: nodes of an
-    !> element, `(4, n)`.
+    !> Quadrilaterals on the lower and upper faces of the sheet, on which draw-beads act: nodes of
+    !> an element, `(4, n)`.
     integer, allocatable :: bead_face(:, :)
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.

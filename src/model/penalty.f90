@@ -16,8 +16,8 @@ module dd3_model_penalty
 
 contains
 
-  !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one if there is none
-  !> in the input, or if it is reduced.
+  !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one if there is
+  !> none in the input, or if it is reduced.
   pure real(wp) function contact_penalty(model, phase, c, reduced)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase

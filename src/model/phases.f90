@@ -218,8 +218,8 @@ contains
     end do
   end subroutine set_supports
 
-  !> Set which draw-beads act: those of an active tool, and those without a tool as long as the sheet
-  !> is not unloaded.
+  !> Set which draw-beads act: those of an active tool, and those without a tool as long as the
+  !> sheet is not unloaded.
   pure subroutine set_drawbeads(model, unloaded, before, phase)
     type(model_t), intent(in) :: model
     logical, intent(in) :: unloaded

@@ -110,8 +110,8 @@ module dd3_model_state
     real(wp), allocatable :: bead_force(:), bead_path(:)
     !> Forces of the draw-beads on the nodes, `(3, n_node)`, N; size 0 without draw-beads.
     real(wp), allocatable :: bead_load(:, :)
-    !> Force of each draw-bead on the sheet, `(3, n_bead)`, its restraining force, `(n_bead)`, N, and
-    !> its length on the sheet, `(n_bead)`, mm.
+    !> Force of each draw-bead on the sheet, `(3, n_bead)`, its restraining force, `(n_bead)`, N,
+    !> and its length on the sheet, `(n_bead)`, mm.
     real(wp), allocatable :: bead_total(:, :), bead_restraint(:), bead_length(:)
     !> Work since the start of the job, mJ: of the contact forces on the sheet by the motion of the
     !> tools, of loads and supports, of the internal forces, of the equivalent stress, of friction.

@@ -64,7 +64,8 @@ contains
         do p = 1, element%n_pair
           if (any(abs(element%node(:2, a) - element%node(:2, element%pair(1, p))) > 0.5_wp)) cycle
           do e = 1, model%n_element
-            column(:, model%connectivity(a, e)) = column(:, model%connectivity(element%pair(1, p), e))
+            column(:, model%connectivity(a, e)) = &
+                column(:, model%connectivity(element%pair(1, p), e))
           end do
         end do
       end do

@@ -53,8 +53,9 @@ contains
         correction%changes = correction%changes + 1
   end subroutine record_status
 
-  !> Hold candidates whose status cycles, or release them once the iterations have converged. Changes
-  !> of status count from the last minimum of the criterion on: while it decreases, none is held.
+  !> Hold candidates whose status cycles, or release them once the iterations have converged.
+  !> Changes of status count from the last minimum of the criterion on: while it decreases, none is
+  !> held.
   subroutine update_active_set(correction, contact, tolerance, verdict, changed)
     type(correction_t), intent(inout) :: correction
     type(contact_work_t), intent(inout) :: contact

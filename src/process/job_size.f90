@@ -35,8 +35,8 @@ module dd3_process_job_size
 contains
 
   !> Find the size of a job by its symbolic factorisation, which is not made if there is too little
-  !> memory for the rest. The memory of UMFPACK, where it stands in for a solver that fails, comes on
-  !> top.
+  !> memory for the rest. The memory of UMFPACK, where it stands in for a solver that fails, comes
+  !> on top.
   subroutine find_job_size(self, model, state, options, error)
     type(job_size_t), intent(out) :: self
     type(model_t), intent(in) :: model

@@ -1,6 +1,6 @@
-!> Step of the corrector: the solution of the linear system, added to the trial state. With damping, a
-!> step with large displacement gradients in the first iterations is shortened, as is any step that
-!> inverts an element.
+!> Step of the corrector: the solution of the linear system, added to the trial state. With damping,
+!> a step with large displacement gradients in the first iterations is shortened, as is any step
+!> that inverts an element.
 module dd3_process_newton_step
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -17,9 +17,10 @@ module dd3_process_newton_step
 
   !> Largest displacement in an iteration, divided by the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Number of iterations that are damped, in which the contact status of the prediction is wrong, and
-  !> the largest difference of the displacements of two nodes of an element over their distance in
-  !> them: a strain or rotation, beyond which the status would carry the sheet far from the solution.
+  !> Number of iterations that are damped, in which the contact status of the prediction is wrong,
+  !> and the largest difference of the displacements of two nodes of an element over their distance
+  !> in them: a strain or rotation, beyond which the status would carry the sheet far from the
+  !> solution.
   integer, parameter :: damped_iterations = 2
   real(wp), parameter :: largest_gradient = 0.005_wp
   !> Factor on a step that inverts an element, and the largest number of such reductions.

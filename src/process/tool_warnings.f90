@@ -149,11 +149,12 @@ contains
   end function depth_warning
 
   !> Return the mesh with which a radius of a tool gives no warning: the depth l**2/(8R) of elements
-  !> of length l is slight, or notable neither for the thickness nor for the length. Where the tool is
-  !> curved in two directions, or along the diagonal of a face, the depth is that of a smaller radius.
+  !> of length l is slight, or notable neither for the thickness nor for the length. Where the tool
+  !> is curved in two directions, or along the diagonal of a face, the depth is that of a smaller
+  !> radius.
   function suitable_mesh(radius, radius_of_depth, thickness) result(text)
-    !> Radius of curvature, mm; huge for an edge without radius. Radius of a cylinder that enters the
-    !> elements as deep, mm.
+    !> Radius of curvature, mm; huge for an edge without radius. Radius of a cylinder that enters
+    !> the elements as deep, mm.
     real(wp), intent(in) :: radius, radius_of_depth
     real(wp), intent(in) :: thickness
     character(len=:), allocatable :: text

@@ -53,8 +53,8 @@ contains
     new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
 
-  !> Add the work of the draw-beads: that of the tools that carry them, and what they dissipate. It is
-  !> part of the work of the external forces, from which it is taken.
+  !> Add the work of the draw-beads: that of the tools that carry them, and what they dissipate. It
+  !> is part of the work of the external forces, from which it is taken.
   pure subroutine add_bead_work(model, old, moved, new)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: old

@@ -141,8 +141,8 @@ contains
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
-  !> candidates within `touch` of it stick without being pulled, unless it moves away from them. With
-  !> the active set, a gap that has closed resists without friction.
+  !> candidates within `touch` of it stick without being pulled, unless it moves away from them.
+  !> With the active set, a gap that has closed resists without friction.
   subroutine predictor_contact(self, model, committed)
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model

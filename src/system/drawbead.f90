@@ -90,8 +90,8 @@ contains
     slip = dot_product(point%across, motion)
   end function slip
 
-  !> Return the force per length of a bead on the sheet at a point, N/mm. The normal force grows over
-  !> the phase in which the bead begins to act.
+  !> Return the force per length of a bead on the sheet at a point, N/mm. The normal force grows
+  !> over the phase in which the bead begins to act.
   pure function bead_force(model, state, point, restraint) result(force)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

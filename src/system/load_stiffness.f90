@@ -1,5 +1,5 @@
-!> Stiffness of the loads that depend on the displacements: pressures, draw-beads, and the springs of
-!> released tools.
+!> Stiffness of the loads that depend on the displacements: pressures, draw-beads, and the springs
+!> of released tools.
 module dd3_system_load_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
