@@ -9,7 +9,7 @@ module dd3_process_run
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_input_case, only : solver_spec_t
-  use dd3_linalg_solver, only : solver_options_t
+  use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
@@ -74,9 +74,11 @@ contains
 
   !> Run a model from a state to the end of its last phase. The records are complete also if the run
   !> stops before.
-  subroutine run_model(model, start, log, summary, error)
+  subroutine run_model(model, start, solver, log, summary, error)
     type(model_t), intent(in) :: model
     type(run_start_t), intent(in) :: start
+    !> Linear solver, as `find_job_size` returns it; moved into the run.
+    class(linear_solver_t), allocatable, intent(inout) :: solver
     type(log_t), intent(inout) :: log
     type(run_summary_t), intent(out) :: summary
     !> Set if the run stopped before the end.
@@ -89,7 +91,7 @@ contains
     began = wall_time()
     call set_threads(start%threads)
     run%committed = start%state
-    call new_system(run%stepper%system, model, solver_options(start), error)
+    call new_system(run%stepper%system, model, solver_options(start), error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     call new_prediction(run%stepper%prediction, model)
