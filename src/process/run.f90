@@ -16,8 +16,8 @@ module dd3_process_run
   use dd3_output_records, only : records_t
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
-  use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
-      try_increment
+  use dd3_process_increment, only : accept_increment, prepare_increment, return_to_until, &
+      shrink_increment, try_increment
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
   use dd3_process_phase_start, only : begin_phase, check_returns
   use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
@@ -278,13 +278,18 @@ contains
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
             call shrink_increment(phase, stepper, again)
+        if (attempt%verdict%outcome == verdict_converged) then
+          call return_to_until(phase, run%committed, run%trial, stepper, again)
+          if (again) row%reason = "beyond the value of `until`"
+        end if
         if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
         run%summary%solver_iterations = run%summary%solver_iterations + row%solver_iterations
         if (allocated(error) .or. .not. again) exit
-        run%summary%retries = run%summary%retries + 1
+        if (attempt%verdict%outcome /= verdict_converged) &
+            run%summary%retries = run%summary%retries + 1
       end do
       if (attempt%verdict%outcome == verdict_converged) then
         call accept_increment(model, run%trial, stepper, run%committed)
