@@ -5,9 +5,10 @@
 !> Otherwise the complete factorisation and CGS are tried in turn and the one that takes less time
 !> is kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
 !> factorisations when it was slower or failed, tried again, and skipped for twice that number if
-!> that repeats; where it was faster before it may fail several times in a row. UMFPACK, which interchanges rows freely, is the
-!> last resort. MUMPS is not considered: it takes longer than the complete factorisation, see
-!> docs/reports/solvers.md, and results would depend on whether the program was built with it.
+!> that repeats; where it was faster before it may fail several times in a row. UMFPACK, which
+!> interchanges rows freely, is the last resort. MUMPS is not considered: it takes longer than the
+!> complete factorisation, see docs/reports/solvers.md, and results would depend on whether the
+!> program was built with it.
 module dd3_linalg_auto_solver
   use dd3_base_clock, only : processor_time
   use dd3_base_kinds, only : wp
