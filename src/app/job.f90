@@ -7,11 +7,13 @@ module dd3_app_job
   use dd3_app_overwrite, only : check_overwrite, result_file
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
-  use dd3_base_error, only : error_list_t, error_t, fatal_error
+  use dd3_base_error, only : error_list_t, error_t, fatal_error, share_error
   use dd3_base_file, only : make_directory, remove_file
   use dd3_base_file_system, only : folder_of, part_of, read_file
   use dd3_base_interrupt, only : watch_interrupts
+  use dd3_base_kinds, only : wp
   use dd3_base_log, only : log_t
+  use dd3_base_ranks, only : largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_text, only : text_t, to_text, slice
   use dd3_base_threads, only : most_threads
   use dd3_base_version, only : version => program_version
@@ -54,13 +56,14 @@ contains
     type(run_start_t) :: start
     type(error_list_t) :: errors
     type(error_t), allocatable :: error
+    logical :: wrong
 
     call read_case(case, options%file, options%overrides, errors)
     call new_model(model, case, errors)
     if (errors%count == 0) call check_overwrite(case, results_directory(options, case), &
         options%restart, errors)
-    if (errors%count > 0) then
-      call report_errors(errors, options%file)
+    call share_errors(errors, options%file, wrong)
+    if (wrong) then
       exit_code = exit_input
       ! The picture shows what is wrong about the place of a tool.
       if (options%initial == "" .or. .not. allocated(model%history)) return
@@ -82,6 +85,22 @@ contains
       call run_checked(options, start, case, model, exit_code)
     end if
   end subroutine run_job
+
+  !> Report the errors of the input, those of the lowest rank that has some.
+  subroutine share_errors(errors, file, wrong)
+    type(error_list_t), intent(inout) :: errors
+    character(len=*), intent(in) :: file
+    !> Whether any rank has errors.
+    logical, intent(out) :: wrong
+
+    integer :: rank, number(1)
+
+    rank = rank_of_smallest(merge(0.0_wp, 1.0_wp, errors%count > 0), 0)
+    number = errors%count
+    call largest_over_ranks(1, number)
+    wrong = number(1) > 0
+    if (this_rank() == rank .and. wrong) call report_errors(errors, file)
+  end subroutine share_errors
 
   !> Set what a run starts from: the initial state, or that of a restart file.
   subroutine set_start(start, options, case, model, error)
@@ -106,7 +125,24 @@ contains
       start%source = folder_of(options%restart)
       call read_restart(options%restart, model, start%state, error)
     end if
+    if (.not. allocated(error)) call check_ranks(case, error)
+    call share_error(error)
   end subroutine set_start
+
+  !> Check that several ranks can run the job.
+  subroutine check_ranks(case, error)
+    type(case_t), intent(in) :: case
+    type(error_t), allocatable, intent(out) :: error
+
+    if (n_ranks() == 1) return
+    if (size(case%point) > 0) then
+      call fatal_error(error, "a run of material points (*POINT) needs one process, got "// &
+          to_text(n_ranks()))
+    else if (case%solver%method /= "auto" .and. index(case%solver%method, "petsc") /= 1) then
+      call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
+          "got "//to_text(n_ranks())//"; expected auto, petsc_mumps or petsc_bicgstab")
+    end if
+  end subroutine check_ranks
 
   !> Print all values and warnings.
   subroutine show_checked(case, model, start)
@@ -120,6 +156,7 @@ contains
     type(text_t), allocatable :: warnings(:)
     integer :: i
 
+    if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
         contact_report(model)//drawbead_report(model)
     if (size(case%point) == 0) then
@@ -153,6 +190,7 @@ contains
       call fatal_error(error, "material points (*POINT) have no fields")
       return
     end if
+    if (this_rank() > 0) return
     call make_directory(directory, error)
     do i = 1, size(result_file)
       if (allocated(error)) return
@@ -182,8 +220,9 @@ contains
     call watch_interrupts()
     call log%start(options%quiet)
     call log%say("dd3imp "//version//": "//case%file)
-    call make_directory(start%directory, error)
+    if (this_rank() == 0) call make_directory(start%directory, error)
     if (.not. allocated(error)) call open_log(log, options%quiet, start, error)
+    call share_error(error)
     if (.not. allocated(error)) then
       call watch_log(log%descriptor())
       call introduce(log, case, model)
@@ -197,6 +236,7 @@ contains
       end if
       ! A run whose folder has vanished has no results.
       if (.not. allocated(error)) call log%check(error)
+      call share_error(error)
     end if
     exit_code = merge(exit_stopped, exit_end, allocated(error))
     if (allocated(error)) then
@@ -212,14 +252,21 @@ contains
     exit_code = exit_stopped
   end subroutine run_checked
 
-  !> Write a line on the error stream, which may be closed.
+  !> Write a line that all ranks know on the error stream.
   subroutine write_line(text)
+    character(len=*), intent(in) :: text
+
+    if (this_rank() == 0) call put_line(text)
+  end subroutine write_line
+
+  !> Write a line on the error stream, which may be closed.
+  subroutine put_line(text)
     character(len=*), intent(in) :: text
 
     integer :: ignored
 
     write (error_unit, '(a)', iostat=ignored) text
-  end subroutine write_line
+  end subroutine put_line
 
   !> Open job.log; after a restart it continues the log of the earlier run.
   subroutine open_log(log, quiet, start, error)
@@ -247,6 +294,7 @@ contains
     logical :: removed
     integer :: i
 
+    if (this_rank() > 0) return
     names = ""
     do i = 1, size(result_file)
       call remove_file(part_of(directory//"/"//trim(result_file(i))), removed)
@@ -351,11 +399,11 @@ contains
 
     call errors%sort()
     do i = 1, min(errors%count, most_errors)
-      call write_line(errors%item(i)%message)
+      call put_line(errors%item(i)%message)
     end do
-    if (errors%count > most_errors) call write_line("and "// &
+    if (errors%count > most_errors) call put_line("and "// &
         to_text(errors%count - most_errors)//" more errors")
-    call write_line(to_text(errors%count)//trim(merge(" error ", " errors", errors%count == 1))// &
+    call put_line(to_text(errors%count)//trim(merge(" error ", " errors", errors%count == 1))// &
         " in "//file//"; nothing was computed")
   end subroutine report_errors
 

@@ -1,12 +1,14 @@
 !> Registry of the linear solvers.
 module dd3_linalg_solver_registry
   use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_ranks, only : ranks_present
   use dd3_base_text, only : join
   use dd3_linalg_auto_solver, only : make_auto_solver
   use dd3_linalg_block_lu_solver, only : make_block_lu_solver
   use dd3_linalg_cgs_solver, only : make_cgs_solver
   use dd3_linalg_mumps_solver, only : make_mumps_solver, mumps_package
   use dd3_linalg_ordering, only : ordering_names
+  use dd3_linalg_petsc_solver, only : make_petsc_bicgstab_solver, make_petsc_mumps_solver
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
@@ -41,6 +43,8 @@ contains
                entry_t("umfpack", make_umfpack_solver), &
                entry_t("mumps", make_mumps_solver, mumps_package), &
                entry_t("auto", make_auto_solver)]
+    if (ranks_present()) entries = [entries, entry_t("petsc_mumps", make_petsc_mumps_solver), &
+        entry_t("petsc_bicgstab", make_petsc_bicgstab_solver)]
   end function registry
 
   !> Return the names of all solvers.

@@ -15,6 +15,7 @@ module dd3_process_increment
   use dd3_process_predictor, only : predict
   use dd3_process_stepper, only : stepper_t
   use dd3_process_work, only : add_work
+  use dd3_system_partition, only : share_state
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
@@ -170,6 +171,7 @@ contains
 
     real(wp) :: factor
 
+    call share_state(stepper%system%partition, trial)
     call add_work(model, stepper%system%contact, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp

@@ -5,6 +5,7 @@ module dd3_process_run
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
+  use dd3_base_ranks, only : n_ranks
   use dd3_base_text, only : text_t, to_text
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry
@@ -111,11 +112,13 @@ contains
     summary%seconds = wall_time() - began
   end subroutine run_model
 
-  !> Return the options of the linear solver.
-  pure type(solver_options_t) function solver_options(start)
+  !> Return the options of the linear solver. Several ranks need one that works on distributed
+  !> matrices.
+  type(solver_options_t) function solver_options(start)
     type(run_start_t), intent(in) :: start
 
     solver_options%method = start%solver%method
+    if (n_ranks() > 1 .and. solver_options%method == "auto") solver_options%method = "petsc_mumps"
     solver_options%ilu_level = start%solver%ilu_level
     solver_options%tolerance = start%solver%tolerance
     solver_options%iterations = start%solver%iterations
