@@ -20,6 +20,7 @@ module dd3_app_job
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
+  use dd3_linalg_solver, only : linear_solver_t
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
   use dd3_model_drawbead_report, only : drawbead_report
@@ -150,6 +151,7 @@ contains
     type(run_start_t), intent(in) :: start
 
     type(job_size_t) :: job
+    class(linear_solver_t), allocatable :: solver
     type(error_t), allocatable :: ignored
     type(text_t), allocatable :: warnings(:)
     integer :: i
@@ -158,7 +160,8 @@ contains
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
         contact_report(model)//drawbead_report(model)
     if (size(case%point) == 0) then
-      call find_job_size(job, model, start%state, solver_options(start), ignored)
+      call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
+      if (allocated(solver)) call solver%release()
       write (output_unit, '(a)', advance="no") size_report(job)
       if (len(memory_warning(job)) > 0) write (output_unit, '(a)') memory_warning(job)
     end if
@@ -210,6 +213,7 @@ contains
     integer, intent(out) :: exit_code
 
     type(log_t) :: log
+    class(linear_solver_t), allocatable :: solver
     type(run_summary_t) :: summary
     type(error_t), allocatable :: error
 
@@ -226,8 +230,8 @@ contains
       if (size(case%point) > 0) then
         call run_points(case, model, start%directory, log, summary%increments, error)
       else
-        call log_size(log, model, start)
-        call run_model(model, start, log, summary, error)
+        call log_size(log, model, start, solver)
+        call run_model(model, start, solver, log, summary, error)
         call conclude(log, summary)
       end if
       ! A run whose folder has vanished has no results.
@@ -340,15 +344,17 @@ contains
   end subroutine introduce
 
   !> Log the size of the job, and a warning if it needs too much memory.
-  subroutine log_size(log, model, start)
+  subroutine log_size(log, model, start, solver)
     type(log_t), intent(inout) :: log
     type(model_t), intent(in) :: model
     type(run_start_t), intent(in) :: start
+    !> See `find_job_size`.
+    class(linear_solver_t), allocatable, intent(out) :: solver
 
     type(job_size_t) :: job
     type(error_t), allocatable :: error
 
-    call find_job_size(job, model, start%state, solver_options(start), error)
+    call find_job_size(job, model, start%state, solver_options(start), solver, error)
     if (allocated(error)) return
     call log%note(size_report(job))
     if (len(memory_warning(job)) > 0) call log%say(memory_warning(job))

@@ -2,10 +2,12 @@
 !>
 !> The set-up counts operations. If a complete factorisation on blocks costs no more than an
 !> incomplete one with a few iterations, as on all sheets of some thousand elements, it is taken.
-!> Otherwise CGS and the complete factorisation are tried in turn and the one that takes less time
+!> Otherwise the complete factorisation and CGS are tried in turn and the one that takes less time
 !> is kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
 !> factorisations when it was slower or failed several times in a row, tried again, and skipped for
-!> twice that number if that repeats. UMFPACK, which interchanges rows freely, is the last resort.
+!> twice that number if it is slower or fails again. UMFPACK, which interchanges rows freely, is the
+!> last resort. MUMPS is not considered: it takes longer than the complete factorisation, see
+!> docs/reports/solvers.md, and results would depend on whether the program was built with it.
 module dd3_linalg_auto_solver
   use dd3_base_clock, only : processor_time
   use dd3_base_kinds, only : wp
@@ -27,7 +29,7 @@ module dd3_linalg_auto_solver
   integer, parameter :: memory_failures = 1, memory_rest = 2, memory_next_rest = 3, memory_time = 4
   !> Number of these entries.
   integer, parameter :: memory_size = 4
-  !> Consecutive failures that start a rest.
+  !> Consecutive failures that start a rest, unless CGS was slower or failed so before.
   integer, parameter :: failures_allowed = 3
   !> Shortest and longest rest, in factorisations.
   integer, parameter :: first_rest = 20, longest_rest = 320
@@ -38,6 +40,8 @@ module dd3_linalg_auto_solver
   real(wp), parameter :: products_per_block = 4.0_wp
   !> Time of a block product, s, if the choice must not depend on the clock.
   real(wp), parameter :: product_time = 9.0e-9_wp
+  !> Largest time in `memory`, also that of a complete factorisation that has always failed, us.
+  integer, parameter :: longest_time = 1000000000
   !> Largest cost of CGS, divided by that of the complete factorisation, and fewest iterations.
   real(wp), parameter :: largest_cost = 2.0_wp
   integer, parameter :: least_iterations = 20
@@ -150,11 +154,11 @@ contains
     self%ready = by_none
     self%failure_recorded = .false.
     self%reason = ""
-    if (self%may_iterate .and. self%memory(memory_rest) == 0) then
+    if (self%may_iterate .and. self%memory(memory_rest) == 0 .and. is_timed(self)) then
       call self%cgs%factor_scaled(matrix, verdict)
       if (verdict%outcome == verdict_converged) self%ready = by_cgs
       if (self%ready == by_none) call record_failure(self, verdict%reason)
-    else if (self%may_iterate) then
+    else if (self%may_iterate .and. self%memory(memory_rest) > 0) then
       self%memory(memory_rest) = self%memory(memory_rest) - 1
       if (self%memory(memory_failures) > 0) self%reason = "CGS skipped after "// &
           to_text(self%memory(memory_failures))//" failures in a row"
@@ -166,6 +170,13 @@ contains
     self%seconds = processor_time() - began
     self%method = name_of(self%ready)
   end subroutine auto_solver_factor
+
+  !> Whether the time of the complete factorisation is known, if there is one beside CGS.
+  pure logical function is_timed(self)
+    class(auto_solver_t), intent(in) :: self
+
+    is_timed = self%memory(memory_time) > 0 .or. .not. self%may_factorise
+  end function is_timed
 
   !> Return the name of a solver in the registry.
   pure function name_of(ready) result(name)
@@ -185,6 +196,8 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     if (self%may_factorise) then
+      if (self%may_iterate .and. self%memory(memory_time) == 0) &
+          self%memory(memory_time) = longest_time
       call self%block%factor_scaled(matrix, verdict)
       self%ready = by_block
       if (verdict%outcome == verdict_converged) return
@@ -214,7 +227,8 @@ contains
     if (self%failure_recorded) return
     self%failure_recorded = .true.
     self%memory(memory_failures) = self%memory(memory_failures) + 1
-    if (self%memory(memory_failures) < failures_allowed) return
+    if (self%memory(memory_failures) < failures_allowed &
+        .and. self%memory(memory_next_rest) == first_rest) return
     call start_rest(self)
     self%news = "linear solver: CGS skipped for "//to_text(self%memory(memory_rest))// &
         " factorisations: "//reason
@@ -266,8 +280,7 @@ contains
     if (self%ready == by_none) report%reason = verdict%reason
   end subroutine auto_solver_solve
 
-  !> Skip CGS for a while if it took longer than the complete factorisation, or once if that has not
-  !> been measured yet.
+  !> Skip CGS for a while if it took longer than the complete factorisation.
   subroutine compare_times(self, measured, iterations)
     type(auto_solver_t), intent(inout) :: self
     !> Time of a solution by CGS, s, and its iterations.
@@ -283,8 +296,6 @@ contains
     other = 1.0e-6_wp*real(self%memory(memory_time), wp)
     if (.not. self%may_factorise) then
       self%memory(memory_next_rest) = first_rest
-    else if (self%memory(memory_time) == 0) then
-      self%memory(memory_rest) = 1
     else if (seconds > other) then
       call start_rest(self)
       self%news = "linear solver: "//trim(self%block%description)//" for "// &
@@ -308,7 +319,7 @@ contains
     if (.not. self%may_iterate) return
     seconds = measured
     if (self%options%reproducible) seconds = product_time*self%block%products
-    self%memory(memory_time) = max(1, nint(min(1.0e6_wp*seconds, 1.0e9_wp)))
+    self%memory(memory_time) = max(1, nint(min(1.0e6_wp*seconds, real(longest_time, wp))))
   end subroutine keep_time
 
   !> Free UMFPACK's factors.

@@ -12,7 +12,7 @@ module dd3_model_build
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
   use dd3_input_known_name, only : check_known_name
-  use dd3_linalg_solver_registry, only : solver_names
+  use dd3_linalg_solver_registry, only : missing_package, solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
@@ -135,16 +135,21 @@ contains
     call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
   end subroutine check_mesh_file
 
-  !> Report a linear solver that is not in the registry.
+  !> Report a linear solver that is not in the registry or not in this build.
   subroutine check_solver(case, errors)
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
 
+    character(len=:), allocatable :: package
     integer :: position
 
     if (case%solver%method == "") return
     call check_known_name(case%solver%method, case%solver%method_at, "linear solver", &
         solver_names(), position, errors)
+    package = missing_package(case%solver%method)
+    if (package /= "") call errors%push_input(case%solver%method_at, "the program was built "// &
+        "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
+        "built where the package "//package//" is installed")
   end subroutine check_solver
 
   !> Join the lines of the title.

@@ -12,7 +12,7 @@ module dd3_process_phase_warnings
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
-  use dd3_process_phase_end, only : until_met, until_value
+  use dd3_process_phase_end, only : until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
   implicit none
   private
@@ -35,25 +35,33 @@ contains
         " (`free` frees them)"
   end function kept_note
 
-  !> Return a warning if a phase with an early end went on to its end; empty otherwise.
+  !> Return a warning if a phase with an early end went on to its end, or beyond the value that should
+  !> end it; empty otherwise.
   function until_warning(phase, state) result(text)
     type(phase_t), intent(in) :: phase
     !> State at the end of the phase.
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    character(len=:), allocatable :: quantity, unit
+    character(len=:), allocatable :: quantity, unit, fault
+    real(wp) :: excess
 
     text = ""
     if (phase%until%tool == 0) return
-    if (until_met(phase, state)) return
+    fault = "without meeting"
+    if (until_met(phase, state)) then
+      excess = abs(until_value(phase, state)) - phase%until%value
+      if (.not. state%start%until_from_below) excess = -excess
+      if (excess <= until_tolerance(phase)*phase%until%value) return
+      fault = "beyond"
+    end if
     quantity = "displacement"
     unit = " mm"
     if (phase%until%kind == until_force) then
       quantity = "force"
       unit = " N"
     end if
-    text = "warning: phase '"//phase%name//"' ended without meeting its `until`: the "//quantity// &
+    text = "warning: phase '"//phase%name//"' ended "//fault//" its `until`: the "//quantity// &
         " is "//to_text(abs(until_value(phase, state)), 4)//unit//", not "// &
         to_text(phase%until%value)//unit
   end function until_warning

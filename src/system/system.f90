@@ -51,13 +51,15 @@ module dd3_system_system
 
 contains
 
-  !> Build the patterns, allocate the work arrays and set up the solver.
-  subroutine new_system(self, model, options, error)
+  !> Build the patterns, allocate the work arrays and set up the solver, if it is not yet.
+  subroutine new_system(self, model, options, error, solver)
     type(system_t), intent(out) :: self
     type(model_t), intent(in) :: model
     type(solver_options_t), intent(in) :: options
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
+    !> Solver of these options, set up for the pattern of the stiffness; moved to the system.
+    class(linear_solver_t), allocatable, intent(inout), optional :: solver
 
     integer :: i
 
@@ -81,6 +83,8 @@ contains
     call new_contact_work(self%contact, model%n_contact)
     allocate (self%bead(0))
     call new_linear_problem(self%problem, model, self%stiffness%n)
+    if (present(solver)) call move_alloc(solver, self%solver)
+    if (allocated(self%solver)) return
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
