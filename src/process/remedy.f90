@@ -46,7 +46,8 @@ contains
         remedy = memory_remedy
       else if (begins(reason, "linear solver")) then
         remedy = solver_remedy
-        if (begins(attempt%solver%solver, "umfpack")) remedy = support_remedy
+        if (begins(attempt%solver%solver, "umfpack") .or. index(reason, "singular") > 0) &
+            remedy = support_remedy
       else if (committed%increment == 0 .and. begins(reason, "an iteration moved")) then
         remedy = support_remedy
       else if (.not. phase%newton%cutback) then
