@@ -58,7 +58,8 @@ contains
     type(solver_options_t), intent(in) :: options
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
-    !> Solver of these options, set up for the pattern of the stiffness; moved to the system.
+    !> Solver of these options, set up for the pattern of the stiffness; moved to the system unless
+    !> the rows are divided among ranks.
     class(linear_solver_t), allocatable, intent(inout), optional :: solver
 
     integer :: i
@@ -83,7 +84,7 @@ contains
     call new_contact_work(self%contact, model%n_contact)
     allocate (self%bead(0))
     call new_linear_problem(self%problem, model, self%stiffness%n)
-    if (present(solver)) call move_alloc(solver, self%solver)
+    if (present(solver) .and. .not. self%partition%divided) call move_alloc(solver, self%solver)
     if (allocated(self%solver)) return
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
