@@ -150,7 +150,7 @@ contains
     package = missing_package(case%solver%method)
     if (package /= "") call errors%push_input(case%solver%method_at, "the program was built "// &
         "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
-        "built where the package "//package//" is installed")
+        "built with the package "//package)
   end subroutine check_solver
 
   !> Join the lines of the title.

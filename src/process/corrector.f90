@@ -7,7 +7,7 @@ module dd3_process_corrector
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_interrupt, only : interrupted
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -100,6 +100,8 @@ contains
         if (verdict%outcome /= verdict_converged) return
         call record_status(correction, system%contact, j)
         call check_convergence(model, trial, system, attempt)
+        call system%partition%check_agreement(verdict%norm, verdict)
+        if (verdict%outcome == verdict_impossible) return
         if (verdict%outcome == verdict_converged &
             .or. (j > 1 .and. verdict%norm < settled*phase%newton%tolerance)) then
           call balance_tools(model, committed, trial, system, moved)
