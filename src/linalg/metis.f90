@@ -1,6 +1,7 @@
 !> Ordering by nested dissection (Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998; METIS 5), and
 !> partition of the graph of a matrix. The library is part of the program where SuiteSparse's
-!> CHOLMOD, which UMFPACK uses, was built with it: its procedures are looked up by name in the running program.
+!> CHOLMOD, which UMFPACK uses, was built with it: its procedures are looked up by name in the
+!> running program.
 module dd3_linalg_metis
   use, intrinsic :: iso_c_binding, only : c_int, c_ptr, c_funptr, c_null_ptr, c_associated, &
       c_f_procpointer

@@ -47,7 +47,7 @@ contains
     integer :: i, rank
 
     order = [integer ::]
-    do rank = 0, n_ranks() - 1
+    do rank = 0, maxval(matrix%owner)
       order = [order, pack([(i, i=1, matrix%n)], matrix%owner == rank)]
     end do
   end function order_by_owner

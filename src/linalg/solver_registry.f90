@@ -1,14 +1,14 @@
 !> Registry of the linear solvers.
 module dd3_linalg_solver_registry
   use dd3_base_error, only : error_t, fatal_error
-  use dd3_base_ranks, only : ranks_present
   use dd3_base_text, only : join
   use dd3_linalg_auto_solver, only : make_auto_solver
   use dd3_linalg_block_lu_solver, only : make_block_lu_solver
   use dd3_linalg_cgs_solver, only : make_cgs_solver
   use dd3_linalg_mumps_solver, only : make_mumps_solver, mumps_package
   use dd3_linalg_ordering, only : ordering_names
-  use dd3_linalg_petsc_solver, only : make_petsc_bicgstab_solver, make_petsc_mumps_solver
+  use dd3_linalg_petsc_solver, only : make_petsc_bicgstab_solver, make_petsc_mumps_solver, &
+      petsc_package
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
@@ -25,11 +25,11 @@ module dd3_linalg_solver_registry
   end interface
 
   !> One row: name, as written in the input, constructor, and the Debian package of the library that
-  !> the program was built without; empty if it has it or needs none.
+  !> the program was built without, with the preset that takes it; empty if it has it or needs none.
   type :: entry_t
     character(len=16) :: name = ""
     procedure(constructor_interface), pointer, nopass :: make => null()
-    character(len=16) :: package = ""
+    character(len=40) :: package = ""
   end type entry_t
 
 contains
@@ -42,9 +42,9 @@ contains
                entry_t("block_lu", make_block_lu_solver), &
                entry_t("umfpack", make_umfpack_solver), &
                entry_t("mumps", make_mumps_solver, mumps_package), &
+               entry_t("petsc_mumps", make_petsc_mumps_solver, petsc_package()), &
+               entry_t("petsc_bicgstab", make_petsc_bicgstab_solver, petsc_package()), &
                entry_t("auto", make_auto_solver)]
-    if (ranks_present()) entries = [entries, entry_t("petsc_mumps", make_petsc_mumps_solver), &
-        entry_t("petsc_bicgstab", make_petsc_bicgstab_solver)]
   end function registry
 
   !> Return the names of all solvers.
@@ -67,8 +67,8 @@ contains
     names = pack(entries%name, entries%package == "")
   end function present_solvers
 
-  !> Return the Debian package without which this build lacks a solver; empty if it lacks none, or
-  !> for an unknown name.
+  !> Return the Debian package, with the preset, without which this build lacks a solver; empty if
+  !> it lacks none, or for an unknown name.
   function missing_package(name) result(package)
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: package
@@ -100,7 +100,7 @@ contains
           //join(solver_names(), ", "))
     else if (entries(i)%package /= "") then
       call fatal_error(error, "the program was built without the linear solver "// &
-          trim(options%method)//"; its package is "//trim(entries(i)%package))
+          trim(options%method)//"; it needs the package "//trim(entries(i)%package))
     else if (all(ordering_names /= options%ordering)) then
       call fatal_error(error, "unknown ordering "//trim(options%ordering)//"; known: " &
           //join(ordering_names, ", "))

@@ -28,6 +28,7 @@ module dd3_process_run
   use dd3_process_tool_observation, only : observe_tools
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
+  use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system, system_t
   implicit none
   private
@@ -95,6 +96,8 @@ contains
     call new_system(run%stepper%system, model, solver_options(start), error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
+    if (run%stepper%system%partition%divided) &
+        call log%note(partition_report(run%stepper%system%partition))
     call new_prediction(run%stepper%prediction, model)
     call open_records(run, model, start, log, error)
     if (.not. allocated(error)) then

@@ -4,14 +4,15 @@
 module dd3_system_partition
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_integers, broadcast_reals, broadcast_text, &
-      rank_of_smallest, sum_over_ranks, this_rank
-  use dd3_base_verdict, only : verdict_t, verdict_converged
+      largest_over_ranks, n_ranks, rank_of_smallest, sum_over_ranks, this_rank
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: partition_t, new_partition, share_state, share_verdict
+  public :: partition_t, new_partition, partition_report, share_state, share_verdict
 
   !> Partition of the work.
   type :: partition_t
@@ -23,6 +24,7 @@ module dd3_system_partition
   contains
     procedure :: share_nodes
     procedure :: share_elements
+    procedure :: check_agreement
   end type partition_t
 
 contains
@@ -45,6 +47,24 @@ contains
       self%own_element(e) = self%own_row(model%connectivity(1, e))
     end do
   end subroutine new_partition
+
+  !> Return the numbers of elements of the ranks as text.
+  function partition_report(self) result(text)
+    type(partition_t), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    real(wp), allocatable :: counts(:)
+    integer :: i
+
+    allocate (counts(n_ranks()), source=0.0_wp)
+    counts(this_rank() + 1) = real(count(self%evaluated), wp)
+    call sum_over_ranks(size(counts), counts)
+    text = to_text(n_ranks())//" ranks, which evaluate of "//to_text(size(self%evaluated))// &
+        " elements"
+    do i = 1, size(counts)
+      text = text//" "//to_text(nint(counts(i)))
+    end do
+  end function partition_report
 
   !> Give all ranks the values at the nodes, each from the rank that holds its row.
   subroutine share_nodes(self, values)
@@ -83,6 +103,27 @@ contains
     end do
     call sum_over_ranks(size(values), values)
   end subroutine share
+
+  !> Check that all ranks have the same value, to the bit: they have evaluated the contact of their
+  !> copies of the same positions, and processors of different kinds can differ.
+  subroutine check_agreement(self, value, verdict)
+    class(partition_t), intent(in) :: self
+    real(wp), intent(in) :: value
+    !> Impossible if they differ; unchanged otherwise.
+    type(verdict_t), intent(inout) :: verdict
+
+    real(wp) :: first(1)
+    integer :: differs(1)
+
+    if (.not. self%divided) return
+    first = value
+    call broadcast_reals(0, 1, first)
+    differs = merge(1, 0, abs(value - first(1)) > 0.0_wp)
+    call largest_over_ranks(1, differs)
+    if (differs(1) == 0) return
+    verdict%outcome = verdict_impossible
+    verdict%reason = "the processes disagree about the contact: machines with different processors"
+  end subroutine check_agreement
 
   !> Give all ranks the state at the integration points of all elements.
   subroutine share_state(self, state)
