@@ -147,7 +147,7 @@ contains
       spent(2) = processor_time() - began
       total = total + spent
       least = min(least, spent)
-      if (sum(total) > merge(40.0_wp, 0.5_wp, varies)) exit
+      if (sum(total) > merge(40.0_wp, 2.0_wp, varies)) exit
       if (varies .and. round == auto_rounds) exit
     end do
     if (varies) least = total/real(min(round, most_rounds), wp)
