@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw the deformed sheet between its tools, coloured by a field. No display is needed.
+"""Draw the deformed sheet between its tools, coloured by a field, and its draw-beads. No display is needed.
 
     plot_sheet.py bending.out
     plot_sheet.py bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
@@ -26,6 +26,7 @@ import matplotlib  # noqa: E402
 import numpy as np  # noqa: E402
 import pyvista as pv  # noqa: E402
 import results  # noqa: E402
+from beads import beads_of_deck, draw_beads  # noqa: E402
 from fields import Fields, text_of  # noqa: E402
 from scripts import Problem  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkLogger  # noqa: E402
@@ -48,7 +49,11 @@ TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 
 class Run(Fields):
-    """A run: the sheet at its steps, and the tools' displacements."""
+    """A run: the sheet at its steps, the tools' displacements, and the lines of the draw-beads to draw."""
+
+    def __init__(self, run):
+        super().__init__(run)
+        self.beads = {}
 
     def step_at(self, travel):
         """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
@@ -92,23 +97,9 @@ class Run(Fields):
 
 
 def tools_of_deck(deck, log, settings):
-    """Return the surfaces' files by the tools' names in small letters.
-
-    The values are those that a run used: from its log, the folders of relative paths from the input file. Without a log
-    they are those of the input file with the settings of --set.
-    """
-    tools = tools_in(results.read_deck(deck, settings))
-    used = tools_in(results.read_echo(results.read_text(log), deck.parent)) if log.is_file() else []
-    if len(used) == len(tools):
-        for tool, written in zip(used, tools):
-            tool.folder = written.folder
-        tools = used
+    """Return the surfaces' files by the tools' names in small letters, as a run used them."""
+    tools = results.run_blocks(deck, log, settings, lambda block: block.keyword == "tool" and block.value("patches"))
     return {tool.name.lower(): tool.folder / tool.value("patches").strip("\"'") for tool in tools}
-
-
-def tools_in(blocks):
-    """Return the blocks of the tools."""
-    return [block for block in blocks if block.keyword == "tool" and block.value("patches")]
 
 
 def settings_of(options):
@@ -196,6 +187,8 @@ def draw(plotter, run, step, options, tools, limits, box):
                              opacity=options.tool_opacity, smooth_shading=False, ambient=0.2)
         for part in reflected(edges, options.mirror):
             plotter.add_mesh(part.translate(behind), color="#444444", line_width=1.5)
+    towards = 0.006 * diagonal(box) * eye(options)[0]
+    draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, options.mirror))
     aim(plotter, box, options)
     text = plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
     text.prop.SetBackgroundColor(1, 1, 1)
@@ -282,7 +275,8 @@ def command_line():
                         help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
     parser.add_argument("--deck", type=Path, help="input file of the job (default: beside RUN, or as named in its log)")
     parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
-    parser.add_argument("--hide", action="append", default=[], metavar="NAME", help="tool to leave out, or 'all'")
+    parser.add_argument("--hide", action="append", default=[], metavar="NAME",
+                        help="tool or draw-bead to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
     parser.add_argument("--no-edges", action="store_true", help="leave out the elements' edges")
     parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
@@ -313,22 +307,24 @@ def arguments(words=None):
 
 
 def find_tools(run, options):
-    """Return the patches of the tools to draw."""
+    """Return the patches of the tools to draw, and set the lines of the draw-beads."""
     if "all" in options.hide:
         return {}
     files = {}
     deck = options.deck or deck_of(run.folder.resolve())
     if deck is not None:
         files = tools_of_deck(deck, run.folder / "job.log", settings_of(options))
+        run.beads = beads_of_deck(deck, run.folder / "job.log", settings_of(options))
     for item in options.tool:
         name, _, file = item.partition("=")
         files[name.lower()] = Path(file)
     if not files:
         print("no input file in the folder of the results: the tools are not drawn (see --deck)", file=sys.stderr)
     options.hide = [name.lower() for name in options.hide]
-    unknown = [name for name in options.hide if name not in files]
+    unknown = [name for name in options.hide if name not in files and name not in run.beads]
     if unknown:
-        raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join(files) or 'none'}")
+        raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join([*files, *run.beads]) or 'none'}")
+    run.beads = {name: line for name, line in run.beads.items() if name not in options.hide}
     return {name: read_patches(file) for name, file in files.items() if name not in options.hide}
 
 

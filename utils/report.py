@@ -181,6 +181,27 @@ def add_force(report):
     report.add(f"Forces in phase {history.phase[-1]}", report.figure("force", figure, "tool forces over displacement"))
 
 
+def add_beads(report):
+    """Add the restraining forces of the draw-beads over the travel, and their lengths on the sheet."""
+    history = report.history
+    beads = [name.removesuffix("_restraint") for name in history.names if name.endswith("_restraint")]
+    if not beads:
+        return
+    along = "travel" if np.ptp(history.column("travel")) > 0 else "increment"
+    figure, axes = plt.subplots(figsize=(8, 3.5), layout="constrained")
+    rows = []
+    for bead in beads:
+        force, length = (report.whole * history.column(f"{bead}_{name}") for name in ("restraint", "length"))
+        axes.plot(history.column(along), force / 1000, label=bead.replace("_", " "))
+        rows.append((bead, f"at most {force.max() / 1000:.4g} kN, at the end {force[-1] / 1000:.4g} kN; on the sheet "
+                     f"{length.max():.4g} mm at most, {length[-1]:.4g} mm at the end"))
+    axes.set(xlabel="travel (mm)" if along == "travel" else along,
+             ylabel="restraining force (kN)" + (", whole part" if report.whole > 1 else ""))
+    axes.grid(True, color="0.9")
+    axes.legend(frameon=False)
+    report.add("Draw-beads", report.figure("beads", figure, "restraining forces of the draw-beads") + table(rows))
+
+
 def find_curve(report):
     """Return the forming limit curve, or None without an exponent."""
     options = report.options
@@ -375,7 +396,7 @@ def arguments():
 def main():
     options = arguments()
     report = Report(options)
-    steps = (add_pictures, add_limit_diagram, add_sections, add_outline, add_force, add_warnings, add_statistics,
+    steps = (add_pictures, add_limit_diagram, add_sections, add_outline, add_force, add_beads, add_warnings, add_statistics,
              add_setup)
     progress = scripts.Progress("report")
     for number, step in enumerate(steps):

@@ -190,6 +190,21 @@ def read_echo(log, folder):
     return blocks_of((without_comment(line), folder) for line in echo_in(log)[1])
 
 
+def run_blocks(deck, log, settings, chosen):
+    """Return the blocks that `chosen` accepts with the values that a run used.
+
+    They are those of its log, the folders of relative paths from the input file. Without a log they are those of the
+    input file with the settings of --set.
+    """
+    written = list(filter(chosen, read_deck(deck, settings)))
+    used = list(filter(chosen, read_echo(read_text(log), deck.parent))) if log.is_file() else []
+    if len(used) != len(written):
+        return written
+    for block, original in zip(used, written):
+        block.folder = original.folder
+    return used
+
+
 def blocks_of(lines, settings=None):
     """Return the blocks of lines with their folders, the parameters put in."""
     settings = {name.lower(): value for name, value in (settings or {}).items()}

@@ -1,23 +1,23 @@
 !> Polynomial and rational Bézier patches of any degree, and their derivatives.
 !>
-!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. The Bernstein polynomials
-!> are computed by the triangular recurrence B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1), which adds
-!> only positive numbers within the patch and is stable for any degree. Derivatives are differences
-!> of the polynomials of the next lower degrees; rational patches are evaluated in homogeneous
-!> coordinates with the quotient rule.
-!> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 5, 13, 14; Piegl and
-!> Tiller, The NURBS Book, 2nd ed. (1997), algorithm A1.3 and section 4.5.
+!> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. Rational patches are
+!> evaluated in homogeneous coordinates with the quotient rule.
+!> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapters 4, 13, 14; Piegl and
+!> Tiller, The NURBS Book, 2nd ed. (1997), section 4.5.
 module dd3_contact_bezier
   use dd3_base_kinds, only : wp
+  use dd3_contact_bernstein, only : bernstein, bernstein_values, largest_degree
   implicit none
   private
   public :: patch_t, new_patch, evaluate, evaluate_relative, position_at, normal_at, unit_normal
-  public :: largest_degree, n_sample
+  public :: edge_points, largest_degree, n_sample
 
-  !> Largest degree of a patch in u or v.
-  integer, parameter :: largest_degree = 25
-  !> Intervals in u and v of the grid of stored points.
+  !> Largest number of intervals in u and v of the grid of stored points.
   integer, parameter :: n_sample = 8
+  !> Largest degree of a patch with a coarser grid, and its largest distance from the surface,
+  !> relative to the spacing along the shorter side: an arc of 9 degrees per interval.
+  integer, parameter :: largest_coarse_degree = 3
+  real(wp), parameter :: largest_coarse_distance = 0.02_wp
   !> Below this |S_u x S_v|, relative to the patch's size squared, the normal is undefined.
   real(wp), parameter :: degenerate_area = 1.0e-9_wp
 
@@ -29,19 +29,25 @@ module dd3_contact_bezier
     logical :: rational = .false.
     !> True for a parallelogram: degrees 1 and 1, no twist.
     logical :: flat = .false.
-    !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
-    real(wp), allocatable :: control(:, :, :)
+    !> Intervals in u and v of the grid of stored points: 2, 4 or `n_sample`, by the curvature.
+    integer :: n_interval = n_sample
+    !> Centre of the bounding box, mm.
+    real(wp) :: centre(3) = 0.0_wp
+    !> Diagonal of the bounding box, mm.
+    real(wp) :: size = 0.0_wp
     !> Control points relative to `centre`, multiplied by their weights, and the weights,
     !> `(4, 0:degree(1), 0:degree(2))`.
     real(wp), allocatable :: homogeneous(:, :, :)
-    !> Points on a regular grid of parameters, relative to `centre`, mm; not allocated if flat.
+    !> Points on a regular grid of parameters, `(3, 0:n_interval, 0:n_interval)`, relative to
+    !> `centre`, mm; not allocated if flat.
     real(wp), allocatable :: sample(:, :, :)
-    !> Centre of the bounding box, mm.
-    real(wp) :: centre(3) = 0.0_wp
+    !> Bound of the distance of a point interpolated in a grid coarser than `n_sample` from that of
+    !> equal parameters, mm; 0 otherwise.
+    real(wp) :: grid_error = 0.0_wp
+    !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
+    real(wp), allocatable :: control(:, :, :)
     !> Bounding box of the control points, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
-    !> Diagonal of the bounding box, mm.
-    real(wp) :: size = 0.0_wp
     !> Lengths of the parameter lines at 0, 1/2 and 1 of the other parameter: along u, along v, mm.
     real(wp) :: length(3, 2) = 0.0_wp
     !> Smaller of the mean lengths in u and v, mm.
@@ -97,7 +103,8 @@ contains
     type(patch_t), intent(inout) :: self
 
     real(wp) :: point(3, 0:n_sample, 0:n_sample)
-    integer :: i
+    real(wp) :: distance
+    integer :: i, step
 
     call set_grid(self, point)
     do i = 1, 3
@@ -106,9 +113,16 @@ contains
     end do
     self%shorter_side = min(mean(self%length(:, 1)), mean(self%length(:, 2)))
     if (self%flat) return
-    allocate (self%sample(3, 0:n_sample, 0:n_sample))
+    do while (all(self%degree <= largest_coarse_degree) .and. self%n_interval > 2)
+      distance = largest_coarse_distance*self%shorter_side/real(self%n_interval/2, wp)
+      if (coarse_distance(point, self%n_interval/2) > distance) exit
+      self%n_interval = self%n_interval/2
+      self%grid_error = 2.0_wp*distance
+    end do
+    allocate (self%sample(3, 0:self%n_interval, 0:self%n_interval))
+    step = n_sample/self%n_interval
     do i = 1, 3
-      self%sample(i, :, :) = point(i, :, :) - self%centre(i)
+      self%sample(i, :, :) = point(i, ::step, ::step) - self%centre(i)
     end do
 
   contains
@@ -120,6 +134,33 @@ contains
     end function mean
 
   end subroutine measure
+
+  !> Return the largest distance of the middles of the edges and cells of a coarser grid from the
+  !> points of equal parameters, mm.
+  pure real(wp) function coarse_distance(point, n) result(distance)
+    !> `(3, 0:n_sample, 0:n_sample)`, mm.
+    real(wp), intent(in) :: point(:, 0:, 0:)
+    !> Intervals of the coarser grid.
+    integer, intent(in) :: n
+
+    real(wp) :: chord(3)
+    integer :: i, j, a, b, half
+
+    distance = 0.0_wp
+    half = n_sample/(2*n)
+    do j = 0, 2*n
+      b = modulo(j, 2)
+      do i = 0, 2*n
+        a = modulo(i, 2)
+        if (a + b == 0) cycle
+        chord = 0.25_wp*(point(:, half*(i - a), half*(j - b)) &
+            + point(:, half*(i + a), half*(j - b)) + point(:, half*(i - a), half*(j + b)) &
+            + point(:, half*(i + a), half*(j + b)))
+        distance = max(distance, sum((point(:, half*i, half*j) - chord)**2))
+      end do
+    end do
+    distance = sqrt(distance)
+  end function coarse_distance
 
   !> Evaluate the points on a regular grid of parameters.
   pure subroutine set_grid(self, point)
@@ -183,6 +224,36 @@ contains
     point = point + self%centre
   end subroutine evaluate
 
+  !> Evaluate the first derivatives of the patch.
+  pure subroutine evaluate_tangents(self, u, v, first)
+    type(patch_t), intent(in) :: self
+    real(wp), intent(in) :: u, v
+    !> S_u, S_v, mm.
+    real(wp), intent(out) :: first(3, 2)
+
+    real(wp) :: bu(0:largest_degree, 0:2), bv(0:largest_degree, 0:2), row(4, 0:1), sums(4, 0:2)
+    integer :: i, j
+
+    call bernstein(self%degree(1), u, bu)
+    call bernstein(self%degree(2), v, bv)
+    sums = 0.0_wp
+    do j = 0, self%degree(2)
+      row = 0.0_wp
+      do i = 0, self%degree(1)
+        row(:, 0) = row(:, 0) + bu(i, 0)*self%homogeneous(:, i, j)
+        row(:, 1) = row(:, 1) + bu(i, 1)*self%homogeneous(:, i, j)
+      end do
+      sums(:, 0) = sums(:, 0) + bv(j, 0)*row(:, 0)
+      sums(:, 1) = sums(:, 1) + bv(j, 0)*row(:, 1)
+      sums(:, 2) = sums(:, 2) + bv(j, 1)*row(:, 0)
+    end do
+    first = sums(1:3, 1:2)
+    if (.not. self%rational) return
+    do i = 1, 2
+      first(:, i) = 1.0_wp/sums(4, 0)*(first(:, i) - sums(4, i)*(1.0_wp/sums(4, 0)*sums(1:3, 0)))
+    end do
+  end subroutine evaluate_tangents
+
   !> Kernel: evaluate a point relative to the patch's centre, with derivatives.
   pure subroutine evaluate_relative(m, n, rational, homogeneous, u, v, point, first, second)
     !> Degrees.
@@ -245,68 +316,6 @@ contains
     second(:, 3) = inverse*(second(:, 3) - w(1)*first(:, 2) - w(2)*first(:, 1) - w(5)*point)
   end subroutine quotient_rule
 
-  !> Evaluate the Bernstein polynomials of a degree and their first two derivatives.
-  pure subroutine bernstein(degree, t, b)
-    !> At least 1.
-    integer, intent(in) :: degree
-    real(wp), intent(in) :: t
-    !> Values, first and second derivatives in `b(0:degree, 0:2)`.
-    real(wp), intent(out) :: b(0:largest_degree, 0:2)
-
-    real(wp) :: s, factor
-    integer :: k, i
-
-    s = 1.0_wp - t
-    if (degree == 1) then
-      b(0, :) = [s, -1.0_wp, 0.0_wp]
-      b(1, :) = [t, 1.0_wp, 0.0_wp]
-      return
-    end if
-    b(0, 0) = 1.0_wp
-    do k = 1, degree
-      if (k == degree - 1) b(0:k - 1, 2) = b(0:k - 1, 0)
-      if (k == degree) b(0:k - 1, 1) = b(0:k - 1, 0)
-      b(k, 0) = t*b(k - 1, 0)
-      do i = k - 1, 1, -1
-        b(i, 0) = s*b(i, 0) + t*b(i - 1, 0)
-      end do
-      b(0, 0) = s*b(0, 0)
-    end do
-    factor = real(degree, wp)
-    b(degree, 1) = factor*b(degree - 1, 1)
-    do i = degree - 1, 1, -1
-      b(i, 1) = factor*(b(i - 1, 1) - b(i, 1))
-    end do
-    b(0, 1) = -factor*b(0, 1)
-    factor = real(degree*(degree - 1), wp)
-    b(degree - 1:degree, 2) = 0.0_wp
-    do i = degree, 2, -1
-      b(i, 2) = factor*(b(i, 2) - 2.0_wp*b(i - 1, 2) + b(i - 2, 2))
-    end do
-    b(1, 2) = factor*(b(1, 2) - 2.0_wp*b(0, 2))
-    b(0, 2) = factor*b(0, 2)
-  end subroutine bernstein
-
-  !> Evaluate the Bernstein polynomials of a degree.
-  pure subroutine bernstein_values(degree, t, b)
-    !> At least 1.
-    integer, intent(in) :: degree
-    real(wp), intent(in) :: t
-    !> `b(0:degree)`.
-    real(wp), intent(out) :: b(0:largest_degree)
-
-    integer :: k, i
-
-    b(0) = 1.0_wp
-    do k = 1, degree
-      b(k) = t*b(k - 1)
-      do i = k - 1, 1, -1
-        b(i) = (1.0_wp - t)*b(i) + t*b(i - 1)
-      end do
-      b(0) = (1.0_wp - t)*b(0)
-    end do
-  end subroutine bernstein_values
-
   !> Return a point of the patch, mm.
   pure function position_at(self, u, v) result(point)
     type(patch_t), intent(in) :: self
@@ -318,6 +327,37 @@ contains
     call evaluate(self, u, v, point, first, second)
   end function position_at
 
+  !> Return points of an edge, mm.
+  pure function edge_points(self, k, t) result(point)
+    type(patch_t), intent(in) :: self
+    !> Edge 1: u = 0, 2: u = 1, 3: v = 0, 4: v = 1.
+    integer, intent(in) :: k
+    !> Parameters.
+    real(wp), intent(in) :: t(:)
+    real(wp) :: point(3, size(t))
+
+    real(wp) :: b(0:largest_degree), row(4, 0:largest_degree), p(4)
+    integer :: i, s, degree
+
+    degree = self%degree(merge(2, 1, k <= 2))
+    do i = 0, degree
+      select case (k)
+      case (1, 2)
+        row(:, i) = self%homogeneous(:, (k - 1)*self%degree(1), i)
+      case default
+        row(:, i) = self%homogeneous(:, i, (k - 3)*self%degree(2))
+      end select
+    end do
+    do s = 1, size(t)
+      call bernstein_values(degree, t(s), b)
+      p = 0.0_wp
+      do i = 0, degree
+        p = p + b(i)*row(:, i)
+      end do
+      point(:, s) = p(:3)/p(4) + self%centre
+    end do
+  end function edge_points
+
   !> Return the unit normal S_u x S_v, at a degenerate point that of a near one towards the centre.
   pure subroutine normal_at(self, u, v, normal, regular)
     type(patch_t), intent(in) :: self
@@ -327,12 +367,12 @@ contains
     !> False if no near point has a normal.
     logical, intent(out) :: regular
 
-    real(wp) :: point(3), first(3, 2), second(3, 3), step
+    real(wp) :: first(3, 2), step
     integer :: i
 
     step = 0.0_wp
     do i = 1, 4
-      call evaluate(self, u + step*(0.5_wp - u), v + step*(0.5_wp - v), point, first, second)
+      call evaluate_tangents(self, u + step*(0.5_wp - u), v + step*(0.5_wp - v), first)
       call unit_normal(self, first, normal, regular)
       if (regular) return
       step = max(1.0e-6_wp, 30.0_wp*step)

@@ -18,10 +18,11 @@ module dd3_contact_box_tree
   type :: box_tree_t
     !> Number of the box at each place.
     integer, allocatable :: number(:)
-    !> Corners of the box at each place, `(3, n)`, mm.
-    real(wp), allocatable :: lower(:, :), upper(:, :)
-    !> Corners of the common box of each node, `(3, n_node)`, mm.
-    real(wp), allocatable :: node_lower(:, :), node_upper(:, :)
+    !> Lower and upper corner of the box at each place, `(3, 2, n)`, mm.
+    real(wp), allocatable :: box(:, :, :)
+    !> Lower and upper corner of the common box of each node, `(3, 2, n_node)`, mm; those of
+    !> siblings, which a walk compares, are side by side.
+    real(wp), allocatable :: node_box(:, :, :)
   end type box_tree_t
 
   !> A node with its places.
@@ -56,10 +57,10 @@ contains
       n_node = 2*n_node + 1
     end do
     self%number = [(i, i=1, n)]
-    allocate (self%node_lower(3, n_node), self%node_upper(3, n_node))
+    allocate (self%node_box(3, 2, n_node), self%box(3, 2, n))
     call divide(self, lower, upper, 1, 1, n)
-    self%lower = lower(:, self%number)
-    self%upper = upper(:, self%number)
+    self%box(:, 1, :) = lower(:, self%number)
+    self%box(:, 2, :) = upper(:, self%number)
   end subroutine new_box_tree
 
   !> Set the box of a node, and divide its places.
@@ -71,10 +72,10 @@ contains
     integer :: axis, middle
 
     associate (number => self%number(first:last))
-      self%node_lower(:, node) = minval(lower(:, number), dim=2)
-      self%node_upper(:, node) = maxval(upper(:, number), dim=2)
+      self%node_box(:, 1, node) = minval(lower(:, number), dim=2)
+      self%node_box(:, 2, node) = maxval(upper(:, number), dim=2)
       if (last - first < leaf_size) return
-      axis = maxloc(self%node_upper(:, node) - self%node_lower(:, node), dim=1)
+      axis = maxloc(self%node_box(:, 2, node) - self%node_box(:, 1, node), dim=1)
       number = number(ascending(lower(axis, number) + upper(axis, number)))
     end associate
     middle = (first + last)/2
@@ -100,7 +101,7 @@ contains
     integer, intent(in) :: node
     real(wp), intent(in) :: x(3)
 
-    node_distance = box_distance(tree%node_lower(:, node), tree%node_upper(:, node), x)
+    node_distance = box_distance(tree%node_box(:, 1, node), tree%node_box(:, 2, node), x)
   end function node_distance
 
   !> Start a walk at the root.
@@ -142,12 +143,31 @@ contains
       half(1) = range_t(2*now%node, now%first, middle, node_distance(tree, 2*now%node, walk%x))
       half(2) = range_t(2*now%node + 1, middle + 1, now%last, &
           node_distance(tree, 2*now%node + 1, walk%x))
-      nearer = merge(1, 2, half(1)%distance <= half(2)%distance)
+      nearer = merge(1, 2, half(1)%distance < half(2)%distance)
+      if (abs(half(1)%distance - half(2)%distance) <= 0.0_wp) &
+          nearer = nearer_centre(tree, 2*now%node, walk%x)
       walk%stack(walk%depth + 1) = half(3 - nearer)
       walk%stack(walk%depth + 2) = half(nearer)
       walk%depth = walk%depth + 2
     end do
   end subroutine next_leaf
+
+  !> Return 1 or 2 for the one of two sibling nodes whose centre is nearer to a point.
+  pure integer function nearer_centre(tree, first, x) result(nearer)
+    type(box_tree_t), intent(in) :: tree
+    !> First of the siblings.
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(3)
+
+    real(wp) :: square(2)
+    integer :: i
+
+    do i = 1, 2
+      square(i) = sum((tree%node_box(:, 1, first + i - 1) + tree%node_box(:, 2, first + i - 1) &
+          - 2.0_wp*x)**2)
+    end do
+    nearer = merge(1, 2, square(1) <= square(2))
+  end function nearer_centre
 
   !> Return a lower bound, at most a tenth too small, of the distance of a point from all boxes that
   !> are farther than a limit, mm; a huge value if there is none. The exact distance takes ten times
@@ -167,7 +187,7 @@ contains
       call next_leaf(walk, tree, slack*nearest, first, last)
       if (last < first) exit
       do i = first, last
-        distance = box_distance(tree%lower(:, i), tree%upper(:, i), x)
+        distance = box_distance(tree%box(:, 1, i), tree%box(:, 2, i), x)
         if (distance > limit) nearest = min(nearest, distance)
       end do
     end do
@@ -192,7 +212,7 @@ contains
       first = stack(2, depth)
       last = stack(3, depth)
       depth = depth - 1
-      if (is_apart(tree%node_lower(:, node), tree%node_upper(:, node))) cycle
+      if (is_apart(tree%node_box(:, 1, node), tree%node_box(:, 2, node))) cycle
       if (last - first >= leaf_size) then
         middle = (first + last)/2
         stack(:, depth + 1) = [2*node, first, middle]
@@ -201,7 +221,7 @@ contains
         cycle
       end if
       do i = first, last
-        if (is_apart(tree%lower(:, i), tree%upper(:, i))) cycle
+        if (is_apart(tree%box(:, 1, i), tree%box(:, 2, i))) cycle
         if (n == size(found)) number = [number, found]
         if (n == size(found)) n = 0
         n = n + 1

@@ -10,8 +10,8 @@ module dd3_contact_curvature
 
 contains
 
-  !> Return the smallest convex radius of curvature near a point, from the stored grid of the
-  !> patches, mm; huge if the surface is not convex there.
+  !> Return the smallest convex radius of curvature near a point, from a grid of points on each
+  !> patch, mm; huge if the surface is not convex there.
   pure real(wp) function smallest_radius(surface, x, distance) result(radius)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: x(3)
@@ -19,7 +19,7 @@ contains
     !> at the spacing of its grid.
     real(wp), intent(in) :: distance
 
-    real(wp) :: largest, range
+    real(wp) :: largest, range, point(3), curvature
     integer :: k, i, j
 
     largest = 0.0_wp
@@ -30,8 +30,8 @@ contains
         if (any(patch%lower > x + range .or. patch%upper < x - range)) cycle
         do j = 0, n_sample
           do i = 0, n_sample
-            if (sum((patch%centre + patch%sample(:, i, j) - x)**2) > range**2) cycle
-            largest = max(largest, convex_curvature(patch, real([i, j], wp)/n_sample))
+            call convex_curvature(patch, real([i, j], wp)/n_sample, point, curvature)
+            if (sum((point - x)**2) <= range**2) largest = max(largest, curvature)
           end do
         end do
       end associate
@@ -40,12 +40,13 @@ contains
     if (largest*surface%size > epsilon(1.0_wp)**0.5_wp) radius = 1.0_wp/largest
   end function smallest_radius
 
-  !> Return the largest principal curvature, positive if convex, 1/mm; 0 at a pole.
-  pure real(wp) function convex_curvature(patch, uv) result(curvature)
+  !> Evaluate a point and its largest principal curvature, positive if convex, 1/mm; 0 at a pole.
+  pure subroutine convex_curvature(patch, uv, point, curvature)
     type(patch_t), intent(in) :: patch
     real(wp), intent(in) :: uv(2)
+    real(wp), intent(out) :: point(3), curvature
 
-    real(wp) :: point(3), first(3, 2), second(3, 3), normal(3), a(3), b(3), determinant, mean, gauss
+    real(wp) :: first(3, 2), second(3, 3), normal(3), a(3), b(3), determinant, mean, gauss
     logical :: regular
 
     curvature = 0.0_wp
@@ -58,6 +59,6 @@ contains
     mean = 0.5_wp*(a(1)*b(2) + a(2)*b(1) - 2.0_wp*a(3)*b(3))/determinant
     gauss = (b(1)*b(2) - b(3)**2)/determinant
     curvature = mean + sqrt(max(mean**2 - gauss, 0.0_wp))
-  end function convex_curvature
+  end subroutine convex_curvature
 
 end module dd3_contact_curvature

@@ -5,6 +5,7 @@ module dd3_contact_global_search
   use dd3_contact_box_tree, only : box_distance, box_walk_t, leaf_size, nearest_beyond, next_leaf, &
       start_walk
   use dd3_contact_hit, only : hit_t, new_hit
+  use dd3_contact_oriented_box, only : oriented_distance
   use dd3_contact_project, only : project_globally
   use dd3_contact_projection, only : projection_t
   use dd3_contact_surface, only : surface_t
@@ -79,7 +80,8 @@ contains
     type(box_walk_t) :: walk
     type(ties_t) :: ties
     type(candidate_t) :: candidate
-    real(wp) :: radius, margin, box(leaf_size)
+    type(tie_t) :: tie
+    real(wp) :: radius, margin, near(leaf_size)
     integer :: i, first, last
 
     radius = max(query%search_distance, query%depth)
@@ -92,23 +94,25 @@ contains
     do
       call next_leaf(walk, surface%tree, min(radius, best + margin), first, last)
       if (last < first) exit
-      box(:last - first + 1) = [(box_distance(surface%tree%lower(:, i), &
-          surface%tree%upper(:, i), query%x), i=first, last)]
+      near = huge(1.0_wp)
+      do i = first, last
+        near(i - first + 1) = oriented_distance(surface%box(i), query%x)
+      end do
       do
-        i = minloc(box(:last - first + 1), dim=1)
-        if (box(i) > min(radius, best + margin)) exit
-        associate (k => surface%tree%number(first + i - 1))
-          call examine(surface, query, k, min(radius, best + margin), candidate)
-          clearance = min(clearance, candidate%near)
-          if (candidate%accepted) call add_tie(ties, tie_t(k, box(i), candidate%near, &
-              candidate%distance), min(best, candidate%distance) + margin, ok)
-        end associate
-        box(i) = huge(1.0_wp)
+        i = minloc(near, dim=1)
+        if (near(i) > min(radius, best + margin) + margin) exit
+        near(i) = huge(1.0_wp)
+        call examine_place(surface, query, first + i - 1, min(radius, best + margin), candidate, &
+            tie)
+        clearance = min(clearance, candidate%near)
+        if (.not. candidate%accepted) cycle
+        call add_tie(ties, tie, min(best, candidate%distance) + margin, ok)
         if (.not. ok) return
-        if (.not. candidate%accepted .or. candidate%distance >= best) cycle
+        if (candidate%distance >= best) cycle
         best = candidate%distance
         hit = candidate%hit
       end do
+      clearance = min(clearance, minval(near))
     end do
     if (best < huge(1.0_wp)) then
       call decide(surface, query, radius, ties, best, hit)
@@ -116,6 +120,27 @@ contains
       clearance = min(clearance, nearest_beyond(surface%tree, query%x, radius))
     end if
   end subroutine search_tree
+
+  !> Project on the patch at a place of the tree, if its box is near enough.
+  pure subroutine examine_place(surface, query, place, limit, candidate, tie)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    integer, intent(in) :: place
+    !> Largest distance of interest, mm.
+    real(wp), intent(in) :: limit
+    type(candidate_t), intent(inout) :: candidate
+    !> Only set if the candidate is accepted.
+    type(tie_t), intent(inout) :: tie
+
+    associate (tree => surface%tree)
+      tie%box = box_distance(tree%box(:, 1, place), tree%box(:, 2, place), query%x)
+      candidate%accepted = tie%box <= limit
+      candidate%near = tie%box
+      if (.not. candidate%accepted) return
+      call examine(surface, query, tree%number(place), limit, candidate)
+      tie = tie_t(tree%number(place), tie%box, candidate%near, candidate%distance)
+    end associate
+  end subroutine examine_place
 
   !> Project on a patch.
   pure subroutine examine(surface, query, k, limit, candidate)

@@ -67,7 +67,7 @@ contains
 
     type(projection_t) :: other
     real(wp) :: square(0:n_sample, 0:n_sample), relative(3), cell
-    integer :: i, j, start(2)
+    integer :: i, j, n, start(2)
 
     projection%uv = 0.5_wp
     if (patch%flat) then
@@ -75,22 +75,23 @@ contains
       return
     end if
     relative = x - patch%centre
-    do j = 0, n_sample
-      do i = 0, n_sample
+    n = patch%n_interval
+    do j = 0, n
+      do i = 0, n
         square(i, j) = sum((patch%sample(:, i, j) - relative)**2)
       end do
     end do
-    start = minloc(square) - 1
-    projection%uv = real(start, wp)/n_sample
+    start = minloc(square(:n, :n)) - 1
+    projection%uv = real(start, wp)/n
     call project(patch, x, lower, upper, projection)
-    cell = patch%size/n_sample
-    do j = 0, n_sample
-      do i = 0, n_sample
+    cell = patch%size/n
+    do j = 0, n
+      do i = 0, n
         if (all(abs([i, j] - start) <= 1)) cycle
         if (square(i, j) > (projection%distance + cell)**2) cycle
-        if (any(square(max(i - 1, 0):min(i + 1, n_sample), max(j - 1, 0):min(j + 1, n_sample)) &
+        if (any(square(max(i - 1, 0):min(i + 1, n), max(j - 1, 0):min(j + 1, n)) &
             < square(i, j))) cycle
-        other%uv = real([i, j], wp)/n_sample
+        other%uv = real([i, j], wp)/n
         call project(patch, x, lower, upper, other)
         if (other%distance < projection%distance) projection = other
       end do

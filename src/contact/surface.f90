@@ -2,15 +2,17 @@
 module dd3_contact_surface
   use dd3_base_kinds, only : wp
   use dd3_base_near_points, only : near_pairs
-  use dd3_contact_bezier, only : patch_t, position_at, normal_at
+  use dd3_contact_bezier, only : edge_points, normal_at, patch_t
   use dd3_contact_box_tree, only : box_tree_t, new_box_tree
+  use dd3_contact_oriented_box, only : new_oriented_box, oriented_box_t
   implicit none
   private
   public :: surface_t, edge_t, new_surface, join_patches, edge_parameters, edge_number, coincident
 
   !> Parameters at which two edges are compared.
   real(wp), parameter :: compared(5) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
-  !> Largest mean number of pairs of an edge that are compared.
+  !> Number of pairs of edges whose middles coincide, per edge, at which the search for neighbours
+  !> ends: only patches that lie on one another, dozens at a place, have more.
   integer, parameter :: most_pairs = 16
   !> Largest distance between coincident edges, relative to the surface's size.
   real(wp), parameter :: coincident = 1.0e-6_wp
@@ -50,8 +52,13 @@ module dd3_contact_surface
     type(patch_t), allocatable :: patch(:)
     !> Edges, `edge(4, n_patch)`.
     type(edge_t), allocatable :: edge(:, :)
+    !> Two patches at the place of most edges if the search for neighbours ended early, so that
+    !> edges have no neighbour though there is one; 0 otherwise.
+    integer :: crowded(2) = 0
     !> Bounding boxes of the patches.
     type(box_tree_t) :: tree
+    !> Oriented bounding boxes of the patches, in the order of the tree.
+    type(oriented_box_t), allocatable :: box(:)
     !> Bounding box, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Diagonal of the bounding box, mm.
@@ -78,12 +85,15 @@ contains
     real(wp) :: lower(3, size(self%patch)), upper(3, size(self%patch))
     integer :: i, k
 
-    allocate (self%edge(4, size(self%patch)))
+    allocate (self%edge(4, size(self%patch)), self%box(size(self%patch)))
     do i = 1, size(self%patch)
       lower(:, i) = self%patch(i)%lower
       upper(:, i) = self%patch(i)%upper
     end do
     call new_box_tree(self%tree, lower, upper)
+    do i = 1, size(self%patch)
+      call new_oriented_box(self%box(i), self%patch(self%tree%number(i)))
+    end do
     self%lower = minval(lower, dim=2)
     self%upper = maxval(upper, dim=2)
     self%size = sqrt(sum((self%upper - self%lower)**2))
@@ -143,6 +153,8 @@ contains
           [0.5_wp])
     end do
     call near_pairs(middle, tolerance, most_pairs*size(edge), pair)
+    if (size(pair, 2) > 0 .and. size(pair, 2) == most_pairs*size(edge)) &
+        self%crowded = (edge(most_frequent(pair, size(edge))) + 3)/4
     do p = 1, size(pair, 2)
       i = (edge(pair(:, p)) + 3)/4
       k = modulo(edge(pair(:, p)) - 1, 4) + 1
@@ -153,22 +165,22 @@ contains
     end do
   end subroutine find_neighbours
 
-  !> Return points of edge k, mm.
-  pure function edge_points(patch, k, t) result(point)
-    type(patch_t), intent(in) :: patch
-    integer, intent(in) :: k
-    !> Parameters.
-    real(wp), intent(in) :: t(:)
-    real(wp) :: point(3, size(t))
+  !> Return the pair of the number that occurs most often.
+  pure function most_frequent(pair, largest)
+    integer, intent(in) :: pair(:, :)
+    !> Largest number that may occur.
+    integer, intent(in) :: largest
+    integer :: most_frequent(2)
 
-    real(wp) :: uv(2)
-    integer :: s
+    integer :: frequency(largest), p
 
-    do s = 1, size(t)
-      uv = edge_parameters(k, t(s))
-      point(:, s) = position_at(patch, uv(1), uv(2))
+    frequency = 0
+    do p = 1, size(pair, 2)
+      frequency(pair(:, p)) = frequency(pair(:, p)) + 1
     end do
-  end function edge_points
+    most_frequent = pair(:, maxloc(merge(1, 0, any(pair == maxloc(frequency, dim=1), dim=1)), &
+        dim=1))
+  end function most_frequent
 
   !> Compare the points of two edges, forwards and backwards.
   pure subroutine compare_edges(a, b, tolerance, same, reversed)

@@ -6,11 +6,12 @@
 module dd3_input_bezier_file
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, error_list_t, location_t
-  use dd3_base_text, only : text_t, newline, to_text, same_name
+  use dd3_base_text, only : newline, to_text, same_name
   use dd3_input_block, only : token_t
+  use dd3_input_decimal, only : is_blank, scan_real
   use dd3_input_number, only : parse_real, parse_integer
   use dd3_input_number_check, only : not_a_number
-  use dd3_input_text_file, only : read_lines
+  use dd3_input_text_file, only : next_line, read_text
   use dd3_input_token, only : line_t, token_list_t, place, split_line
   implicit none
   private
@@ -72,11 +73,11 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(reading_t) :: self
-    type(text_t), allocatable :: line(:)
+    character(len=:), allocatable :: text
     type(error_t), allocatable :: error
-    integer :: i
+    integer :: number, next, first, last
 
-    call read_lines(file, line, error)
+    call read_text(file, text, error)
     if (allocated(error)) then
       allocate (patches(0))
       call errors%push_input(location, "cannot read the tool surface '"//file//"': "// &
@@ -86,9 +87,12 @@ contains
     self%file = file
     self%largest_degree = largest_degree
     allocate (self%patch(4))
-    do i = 1, size(line)
-      call read_line(self, i, line(i)%s)
-      if (self%errors%count > most_errors) exit
+    number = 0
+    next = 1
+    do while (next <= len(text) .and. self%errors%count <= most_errors)
+      call next_line(text, next, first, last)
+      number = number + 1
+      call read_line(self, number, text(first:last))
     end do
     if (self%errors%count <= most_errors) call close_patch(self)
     if (self%n_begun == 0 .and. self%errors%count == 0) then
@@ -172,38 +176,25 @@ contains
     logical, intent(out) :: ok
 
     real(wp) :: value(4)
-    integer :: i, n, first, last
+    integer :: i, n, next
 
     ok = .false.
     if (self%n_read >= size(self%current%point, 2)) return
     n = merge(4, 3, self%current%rational)
-    last = 0
+    next = 1
     do i = 1, n
-      do first = last + 1, len(text)
-        if (.not. is_blank(text(first:first))) exit
-      end do
-      do last = first, len(text)
-        if (is_blank(text(last:last))) exit
-      end do
-      ok = last > first
+      call scan_real(text, next, value(i), ok)
       if (.not. ok) return
-      call parse_real(text(first:last - 1), value(i), ok)
-      ok = ok .and. in_range(value(i), i)
+      ok = in_range(value(i), i)
       if (.not. ok) return
     end do
-    do i = last, len(text)
-      ok = is_blank(text(i:i))
+    do next = next, len(text)
+      ok = is_blank(text(next:next))
       if (.not. ok) return
     end do
     self%n_read = self%n_read + 1
     self%current%point(:n, self%n_read) = value(:n)
   end subroutine read_plain_point
-
-  pure logical function is_blank(letter)
-    character(len=1), intent(in) :: letter
-
-    is_blank = letter == " " .or. letter == achar(9) .or. letter == achar(12)
-  end function is_blank
 
   !> Whether a component of a point is in its range.
   pure logical function in_range(value, i)

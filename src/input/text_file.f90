@@ -5,7 +5,7 @@ module dd3_input_text_file
   use dd3_base_text, only : text_t, to_text
   implicit none
   private
-  public :: read_lines, resolve_path, folder_of
+  public :: read_lines, read_text, next_line, resolve_path, folder_of
 
   !> Maximum size of an input file, bytes.
   integer(i8), parameter :: largest_file = 200000000
@@ -20,14 +20,56 @@ contains
     !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
-    character(len=:), allocatable :: content
+    character(len=:), allocatable :: text
+    integer :: first, last, next, pass, n
 
-    call read_content(path, content, error)
+    call read_text(path, text, error)
     if (allocated(error)) return
-    call blank_no_break_spaces(content)
-    call split_lines(content, line)
-    call refuse_control_characters(line, error)
+    do pass = 1, 2
+      n = 0
+      next = 1
+      do while (next <= len(text))
+        call next_line(text, next, first, last)
+        n = n + 1
+        if (pass == 2) line(n)%s = text(first:last)
+      end do
+      if (pass == 1) allocate (line(n))
+    end do
   end subroutine read_lines
+
+  !> Read the text of a file, without a UTF-8 byte order mark, for `next_line`.
+  subroutine read_text(path, text, error)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: text
+    !> Set if the file cannot be read.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=*), parameter :: mark = char(239)//char(187)//char(191)
+
+    call read_content(path, text, error)
+    if (allocated(error)) return
+    call blank_no_break_spaces(text)
+    if (text(:min(len(mark), len(text))) == mark) text = text(len(mark) + 1:)
+    call refuse_control_characters(text, error)
+  end subroutine read_text
+
+  !> Find the line that begins at `next`; lines end at LF, CR LF or CR.
+  pure subroutine next_line(text, next, first, last)
+    character(len=*), intent(in) :: text
+    !> At most the length of the text on entry; the first character behind the line end on return.
+    integer, intent(inout) :: next
+    !> First and last character of the line; last < first if it is empty.
+    integer, intent(out) :: first, last
+
+    first = next
+    do next = first, len(text)
+      if (text(next:next) == achar(10) .or. text(next:next) == achar(13)) exit
+    end do
+    last = next - 1
+    next = next + 1
+    if (next > len(text)) return
+    if (text(next - 1:next) == achar(13)//achar(10)) next = next + 1
+  end subroutine next_line
 
   !> Read all bytes of a file.
   subroutine read_content(path, content, error)
@@ -82,52 +124,31 @@ contains
     end do
   end subroutine blank_no_break_spaces
 
-  !> Split a text into lines at LF, CR LF or CR; a UTF-8 byte order mark is skipped.
-  pure subroutine split_lines(content, line)
-    character(len=*), intent(in) :: content
-    type(text_t), allocatable, intent(out) :: line(:)
-
-    character(len=*), parameter :: mark = char(239)//char(187)//char(191)
-    integer :: start, next, pass, n
-
-    do pass = 1, 2
-      n = 0
-      start = 1
-      if (len(content) >= 3) then
-        if (content(:3) == mark) start = 4
-      end if
-      do while (start <= len(content))
-        do next = start, len(content)
-          if (content(next:next) == achar(10) .or. content(next:next) == achar(13)) exit
-        end do
-        n = n + 1
-        if (pass == 2) line(n)%s = content(start:next - 1)
-        start = next + 1
-        if (start > len(content)) exit
-        if (content(start - 1:start) == achar(13)//achar(10)) start = start + 1
-      end do
-      if (pass == 1) allocate (line(n))
-    end do
-  end subroutine split_lines
-
-  !> Report the first control character other than tab and form feed.
-  pure subroutine refuse_control_characters(line, error)
-    type(text_t), intent(in) :: line(:)
+  !> Report the first control character other than line ends, tab and form feed.
+  pure subroutine refuse_control_characters(text, error)
+    character(len=*), intent(in) :: text
     type(error_t), allocatable, intent(out) :: error
 
     character(len=2) :: hex
-    integer :: i, j, byte
+    integer :: i, byte, number, next, first, last
 
-    do i = 1, size(line)
-      do j = 1, len(line(i)%s)
-        byte = ichar(line(i)%s(j:j))
-        if ((byte < 32 .and. byte /= 9 .and. byte /= 12) .or. byte == 127) then
-          write (hex, '(z2.2)') byte
-          allocate (error)
-          error%message = "not a text file: byte 0x"//hex//" in line "//to_text(i)
-          return
-        end if
+    do i = 1, len(text)
+      byte = ichar(text(i:i))
+      if (byte < 32) then
+        if (byte == 10 .or. byte == 13 .or. byte == 9 .or. byte == 12) cycle
+      else if (byte /= 127) then
+        cycle
+      end if
+      number = 0
+      next = 1
+      do while (next <= i)
+        call next_line(text, next, first, last)
+        number = number + 1
       end do
+      write (hex, '(z2.2)') byte
+      allocate (error)
+      error%message = "not a text file: byte 0x"//hex//" in line "//to_text(number)
+      return
     end do
   end subroutine refuse_control_characters
 

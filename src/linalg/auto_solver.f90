@@ -4,10 +4,11 @@
 !> incomplete one with a few iterations, as on all sheets of some thousand elements, it is taken.
 !> Otherwise the complete factorisation and CGS are tried in turn and the one that takes less time
 !> is kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
-!> factorisations when it was slower or failed several times in a row, tried again, and skipped for
-!> twice that number if it is slower or fails again. UMFPACK, which interchanges rows freely, is the
-!> last resort. MUMPS is not considered: it takes longer than the complete factorisation, see
-!> docs/reports/solvers.md, and results would depend on whether the program was built with it.
+!> factorisations when it was slower or failed, tried again, and skipped for twice that number if
+!> that repeats; where it was faster before it may fail several times in a row. UMFPACK, which
+!> interchanges rows freely, is the last resort. MUMPS is not considered: it takes longer than the
+!> complete factorisation, see docs/reports/solvers.md, and results would depend on whether the
+!> program was built with it.
 module dd3_linalg_auto_solver
   use dd3_base_clock, only : processor_time
   use dd3_base_kinds, only : wp
@@ -25,11 +26,12 @@ module dd3_linalg_auto_solver
       memory_time
 
   !> Entries of `memory`: consecutive failures of CGS, factorisations for which it is still skipped,
-  !> length of the next such rest, and the time of the complete factorisation with its solution, us.
+  !> length of the next such rest, 0 while CGS is faster or alone, and the time of the complete
+  !> factorisation with its solution, us.
   integer, parameter :: memory_failures = 1, memory_rest = 2, memory_next_rest = 3, memory_time = 4
   !> Number of these entries.
   integer, parameter :: memory_size = 4
-  !> Consecutive failures that start a rest, unless CGS was slower or failed so before.
+  !> Consecutive failures that start a rest while CGS is faster or alone.
   integer, parameter :: failures_allowed = 3
   !> Shortest and longest rest, in factorisations.
   integer, parameter :: first_rest = 20, longest_rest = 320
@@ -43,7 +45,7 @@ module dd3_linalg_auto_solver
   !> Largest time in `memory`, also that of a complete factorisation that has always failed, us.
   integer, parameter :: longest_time = 1000000000
   !> Largest cost of CGS, divided by that of the complete factorisation, and fewest iterations.
-  real(wp), parameter :: largest_cost = 2.0_wp
+  real(wp), parameter :: largest_cost = 1.5_wp
   integer, parameter :: least_iterations = 20
   !> What solves with the present matrix.
   integer, parameter :: by_none = 0, by_cgs = 1, by_block = 2, by_direct = 3
@@ -110,7 +112,7 @@ contains
     self%may_iterate = self%block%by_rows .or. .not. outright
     self%may_factorise = .not. (self%block%by_rows .and. outright)
     if (.not. outright) options%iterations = min(options%iterations, max(least_iterations, &
-        int(largest_cost*self%block%products/self%iteration_products)))
+        int((largest_cost*self%block%products - self%setup_products)/self%iteration_products)))
     if (.not. self%may_factorise) options%ilu_level = matrix%n
     call new_cgs_solver(self%cgs, options)
     if (self%may_iterate) call self%cgs%setup_scaled(matrix)
@@ -126,7 +128,7 @@ contains
     end if
     self%description = trim(self%description)//"; UMFPACK to fall back on"
     allocate (self%memory(memory_size), source=0)
-    self%memory(memory_next_rest) = first_rest
+    if (self%may_factorise) self%memory(memory_next_rest) = first_rest
   end subroutine auto_solver_setup
 
   !> Count the operations of CGS.
@@ -160,8 +162,8 @@ contains
       if (self%ready == by_none) call record_failure(self, verdict%reason)
     else if (self%may_iterate .and. self%memory(memory_rest) > 0) then
       self%memory(memory_rest) = self%memory(memory_rest) - 1
-      if (self%memory(memory_failures) > 0) self%reason = "CGS skipped after "// &
-          to_text(self%memory(memory_failures))//" failures in a row"
+      if (self%memory(memory_failures) > 0) self%reason = "CGS skipped; failures "// &
+          "in a row: "//to_text(self%memory(memory_failures))
     end if
     if (self%ready == by_none) then
       began = processor_time()
@@ -228,7 +230,7 @@ contains
     self%failure_recorded = .true.
     self%memory(memory_failures) = self%memory(memory_failures) + 1
     if (self%memory(memory_failures) < failures_allowed &
-        .and. self%memory(memory_next_rest) == first_rest) return
+        .and. self%memory(memory_next_rest) == 0) return
     call start_rest(self)
     self%news = "linear solver: CGS skipped for "//to_text(self%memory(memory_rest))// &
         " factorisations: "//reason
@@ -238,8 +240,8 @@ contains
   subroutine start_rest(self)
     type(auto_solver_t), intent(inout) :: self
 
-    self%memory(memory_rest) = self%memory(memory_next_rest)
-    self%memory(memory_next_rest) = min(2*self%memory(memory_next_rest), longest_rest)
+    self%memory(memory_rest) = max(self%memory(memory_next_rest), first_rest)
+    self%memory(memory_next_rest) = min(2*self%memory(memory_rest), longest_rest)
   end subroutine start_rest
 
   !> Solve; a solver that fails is replaced by the next one.
@@ -295,7 +297,7 @@ contains
         + real(iterations, wp)*self%iteration_products)
     other = 1.0e-6_wp*real(self%memory(memory_time), wp)
     if (.not. self%may_factorise) then
-      self%memory(memory_next_rest) = first_rest
+      self%memory(memory_next_rest) = 0
     else if (seconds > other) then
       call start_rest(self)
       self%news = "linear solver: "//trim(self%block%description)//" for "// &
@@ -305,7 +307,7 @@ contains
       if (self%memory(memory_next_rest) > first_rest) self%news = "linear solver: CGS, "// &
           to_text(seconds, 3)//" s; "//trim(self%block%description)//" took "//to_text(other, 3)// &
           " s"
-      self%memory(memory_next_rest) = first_rest
+      self%memory(memory_next_rest) = 0
     end if
   end subroutine compare_times
 

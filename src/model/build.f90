@@ -24,9 +24,10 @@ module dd3_model_build
   use dd3_model_outward_normals, only : find_contact_faces
   use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
-  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
   use dd3_model_rim, only : set_rim
   use dd3_model_sheet_faces, only : new_sheet_faces
+  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_gaps, only : set_gaps
@@ -373,8 +374,8 @@ contains
     end do
   end subroutine check_start
 
-  !> Report the first phase in which the sheet is free to move as a rigid body and no tool is
-  !> active.
+  !> Report the first phase in which the sheet, or a part of it, is free to move as a rigid body and
+  !> no tool is active.
   subroutine check_supports(model, case, errors)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
@@ -383,18 +384,21 @@ contains
 
     type(rigid_motion_t) :: body
     character(len=:), allocatable :: motion
-    integer :: i
+    integer :: part(model%n_node), i, k
 
+    part = parts_of_nodes(model%connectivity, model%n_node)
     do i = 1, size(model%phase)
       if (any(model%phase(i)%active)) cycle
-      call new_rigid_motion(body, model%x0)
-      call body%hold_prescribed(model%x0, model%phase(i)%prescribed)
-      motion = body%free_motion()
-      if (len(motion) == 0) cycle
-      call errors%push_input(case%phase(i)%source%opened, "nothing holds the sheet in phase '"// &
-          case%phase(i)%source%called()//"': it is free to "//motion, &
-          "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
-      return
+      do k = 1, maxval(part)
+        call new_supported_part(body, model%x0, model%phase(i)%prescribed, part == k)
+        motion = body%free_motion()
+        if (len(motion) == 0) cycle
+        call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &
+            part_name(part, k)//" in phase '"//case%phase(i)%source%called()// &
+            "': it is free to "//motion, &
+            "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
+        return
+      end do
     end do
   end subroutine check_supports
 

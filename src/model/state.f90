@@ -113,6 +113,8 @@ module dd3_model_state
     !> Force of each draw-bead on the sheet, `(3, n_bead)`, its restraining force, `(n_bead)`, N,
     !> and its length on the sheet, `(n_bead)`, mm.
     real(wp), allocatable :: bead_total(:, :), bead_restraint(:), bead_length(:)
+    !> Fraction of the normal force of each draw-bead at the start of the phase, `(n_bead)`.
+    real(wp), allocatable :: bead_normal(:)
     !> Work since the start of the job, mJ: of the contact forces on the sheet by the motion of the
     !> tools, of loads and supports, of the internal forces, of the equivalent stress, of friction.
     real(wp) :: tool_work = 0.0_wp, external_work = 0.0_wp, internal_work = 0.0_wp
@@ -197,6 +199,7 @@ contains
     allocate (self%bead_force(n_interval), self%bead_path(n_interval), source=0.0_wp)
     allocate (self%bead_load(3, n_node), self%bead_total(3, n_bead), source=0.0_wp)
     allocate (self%bead_restraint(n_bead), self%bead_length(n_bead), source=0.0_wp)
+    allocate (self%bead_normal(n_bead), source=0.0_wp)
   end subroutine new_beads
 
   !> Allocate the values at the start of a phase for a state and set them to zero.

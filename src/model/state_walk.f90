@@ -103,6 +103,7 @@ contains
     call visitor%reals("bead_total", size(state%bead_total), state%bead_total)
     call visitor%reals("bead_restraint", size(state%bead_restraint), state%bead_restraint)
     call visitor%reals("bead_length", size(state%bead_length), state%bead_length)
+    call visitor%reals("bead_normal", size(state%bead_normal), state%bead_normal)
     call visitor%one_real("tool_work", state%tool_work)
     call visitor%one_real("external_work", state%external_work)
     call visitor%one_real("internal_work", state%internal_work)

@@ -3,7 +3,7 @@
 !> Measured both ways: points of the faces inside the tool, and points of the tool behind the faces.
 module dd3_model_tool_depth
   use dd3_base_kinds, only : wp
-  use dd3_contact_bezier, only : n_sample, normal_at, patch_t
+  use dd3_contact_bezier, only : n_sample, normal_at, patch_t, position_at
   use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_linalg_tensor, only : cross
@@ -235,8 +235,11 @@ contains
           if (patch%flat .and. mod(i, n_sample) > 0 .and. mod(j, n_sample) > 0) cycle
           point = stored_point(patch, i, j)
           depth = face%height - dot_product(face%normal, point)
-          if (depth <= self%depth) cycle
-          if (any(point < face%lower .or. point > face%upper)) cycle
+          if (depth + patch%grid_error <= self%depth) cycle
+          if (any(point + patch%grid_error < face%lower &
+              .or. point - patch%grid_error > face%upper)) cycle
+          if (patch%grid_error > 0.0_wp) &
+              point = position_at(patch, real(i, wp)/n_sample, real(j, wp)/n_sample)
           call locate(face, point, depth)
           if (depth <= self%depth .or. depth > face%search_depth) cycle
           if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
@@ -249,18 +252,30 @@ contains
     end associate
   end subroutine probe_patch
 
-  !> Return a point of the stored grid of a patch, mm.
+  !> Return a point of the grid of a patch, mm; interpolated if the stored grid is coarser.
   pure function stored_point(patch, i, j) result(point)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: i, j
     real(wp) :: point(3)
 
+    real(wp) :: a, b
+    integer :: k, l, step
+
     if (patch%flat) then
       point = patch%control(:, 0, 0) &
           + real(i, wp)/n_sample*(patch%control(:, 1, 0) - patch%control(:, 0, 0)) &
           + real(j, wp)/n_sample*(patch%control(:, 0, 1) - patch%control(:, 0, 0))
-    else
+    else if (patch%n_interval == n_sample) then
       point = patch%centre + patch%sample(:, i, j)
+    else
+      step = n_sample/patch%n_interval
+      k = min(i/step, patch%n_interval - 1)
+      l = min(j/step, patch%n_interval - 1)
+      a = real(i, wp)/real(step, wp) - real(k, wp)
+      b = real(j, wp)/real(step, wp) - real(l, wp)
+      point = patch%centre &
+          + (1.0_wp - b)*((1.0_wp - a)*patch%sample(:, k, l) + a*patch%sample(:, k + 1, l)) &
+          + b*((1.0_wp - a)*patch%sample(:, k, l + 1) + a*patch%sample(:, k + 1, l + 1))
     end if
   end function stored_point
 

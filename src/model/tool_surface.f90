@@ -51,6 +51,7 @@ contains
     end do
     if (found%count == 0) then
       call join_patches(surface)
+      call check_crowding(surface, patches, found)
       call check_orientation(surface, patches, found)
     end if
     call push_file_errors(errors, found, location)
@@ -91,6 +92,20 @@ contains
     end do
     is_degenerate = .false.
   end function is_degenerate
+
+  !> Report a place with so many patches that not all neighbours were found.
+  subroutine check_crowding(surface, patches, errors)
+    type(surface_t), intent(in) :: surface
+    type(patch_spec_t), intent(in) :: patches(:)
+    type(error_list_t), intent(inout) :: errors
+
+    associate (two => surface%crowded)
+      if (two(1) == 0) return
+      call errors%push_input(patches(maxval(two))%at, "dozens of patches lie at the same place, "// &
+          "among them "//to_text(patches(minval(two))%number)//" and "// &
+          to_text(patches(maxval(two))%number), "each part of the surface once")
+    end associate
+  end subroutine check_crowding
 
   !> Report adjacent patches with opposite normals.
   subroutine check_orientation(surface, patches, errors)

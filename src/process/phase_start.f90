@@ -13,7 +13,7 @@ module dd3_process_phase_start
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
   use dd3_process_phase_end, only : until_value
-  use dd3_system_drawbead, only : remaining_bead_load
+  use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   implicit none
   private
   public :: begin_phase, check_returns, gap_of_tool
@@ -40,6 +40,8 @@ contains
 
     call free_directions(model, number, state)
     call release_beads(model, number, state)
+    state%bead_normal = normal_fraction(state)
+    where (model%phase(number)%bead_new) state%bead_normal = 0.0_wp
     do tool = 1, model%n_tool
       if (returns(model, number, tool)) state%hint(tool, :) = hint_t()
     end do

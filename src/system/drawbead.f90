@@ -1,7 +1,8 @@
 !> Forces of the draw-beads on the nodes and their stiffness. The points of a bead are found in the
 !> committed state and keep their place in the material for the increment, so that the restraining
 !> force depends on the displacements through the slip alone. The next increment finds new points;
-!> each interval passes on the means of force and slip path over its points.
+!> each interval passes on the means of force and slip path over its points. An interval beside the
+!> sheet has no force and keeps its slip path.
 module dd3_system_drawbead
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of
@@ -10,7 +11,8 @@ module dd3_system_drawbead
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: place_beads, evaluate_beads, add_bead_stiffness, remaining_bead_load
+  public :: place_beads, evaluate_beads, add_bead_stiffness, remaining_bead_load, &
+      normal_fraction
 
 contains
 
@@ -45,10 +47,11 @@ contains
     !> Gets forces, path and lengths.
     type(state_t), intent(inout) :: trial
 
-    real(wp) :: weight(size(trial%bead_force)), force, path
+    real(wp) :: weight(size(trial%bead_force)), fraction(size(trial%bead_normal)), force, path
     integer :: p, b
 
     weight = 0.0_wp
+    fraction = normal_fraction(trial)
     trial%bead_force = 0.0_wp
     trial%bead_path = 0.0_wp
     trial%bead_load = 0.0_wp
@@ -58,7 +61,8 @@ contains
       associate (i => point(p)%interval, bead => model%drawbead(point(p)%bead))
         call bead%restrain(committed%bead_force(i), committed%bead_path(i), &
             slip(point(p), bead%tool, committed, trial), force, path, point(p)%stiffness)
-        call add_load(point(p), bead_force(model, trial, point(p), force), trial)
+        call add_load(point(p), bead_force(point(p), force, &
+            fraction(point(p)%bead)*bead%normal), trial)
         weight(i) = weight(i) + point(p)%weight
         trial%bead_force(i) = trial%bead_force(i) + point(p)%weight*force
         trial%bead_path(i) = trial%bead_path(i) + point(p)%weight*path
@@ -72,6 +76,12 @@ contains
     end where
     do b = 1, size(trial%bead_length)
       trial%bead_length(b) = covered_length(point, b)
+      if (.not. model%phase(trial%phase)%bead_active(b)) cycle
+      associate (bead => model%drawbead(b))
+        do p = bead%offset + 1, bead%offset + size(bead%line, 3)
+          if (weight(p) <= 0.0_wp) trial%bead_path(p) = committed%bead_path(p)
+        end do
+      end associate
     end do
   end subroutine evaluate_beads
 
@@ -90,19 +100,24 @@ contains
     slip = dot_product(point%across, motion)
   end function slip
 
-  !> Return the force per length of a bead on the sheet at a point, N/mm. The normal force grows
-  !> over the phase in which the bead begins to act.
-  pure function bead_force(model, state, point, restraint) result(force)
-    type(model_t), intent(in) :: model
+  !> Return the fraction of the normal force of each draw-bead that acts: it grows to 1 over the
+  !> phase in which the bead begins to act and, if that ended early, over the next one.
+  pure function normal_fraction(state) result(fraction)
     type(state_t), intent(in) :: state
+    real(wp) :: fraction(size(state%bead_normal))
+
+    fraction = state%bead_normal + (1.0_wp - state%bead_normal)*state%progress
+  end function normal_fraction
+
+  !> Return the force per length of a bead on the sheet at a point, N/mm.
+  pure function bead_force(point, restraint, normal) result(force)
     type(bead_point_t), intent(in) :: point
-    !> Restraining force, N/mm.
-    real(wp), intent(in) :: restraint
+    !> Restraining and normal force, N/mm.
+    real(wp), intent(in) :: restraint, normal
     real(wp) :: force(3)
 
     force = -restraint*point%direction
-    force(3) = force(3) + model%drawbead(point%bead)%normal &
-        *merge(state%progress, 1.0_wp, model%phase(state%phase)%bead_new(point%bead))
+    force(3) = force(3) + normal
   end function bead_force
 
   !> Add the force at a point to those of the nodes and of its bead.

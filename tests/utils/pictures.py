@@ -18,7 +18,11 @@ if any(importlib.util.find_spec(name) is None for name in ("h5py", "matplotlib",
     sys.exit(77)
 
 import h5py  # noqa: E402
+import matplotlib.image  # noqa: E402
 import numpy as np  # noqa: E402
+
+sys.path.insert(0, str(UTILS))
+from beads import draped  # noqa: E402
 
 HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-
 increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts
@@ -113,6 +117,24 @@ def check_packages(run, folder):
     assert pathless.returncode == 2 and pathless.stderr.startswith("error: no package"), pathless.stderr
 
 
+def check_beads(run, folder):
+    """Check that the line of a draw-bead is drawn on the sheet, and that it can be left out."""
+    (folder / "bead.txt").write_text("-0.5 0.5   # x y\n1.5 0.5\n")
+    log = run / "job.log"
+    log.write_text(LOG.replace("linear solver", '*DRAWBEAD rib\n  file = "bead.txt"\nlinear solver'))
+    (folder / "job.dat").write_text(DECK + "*DRAWBEAD rib\n  file = bead.txt\n")
+    options = ("--field", "thickness", "--cells", "--view", "top", "--hide", "punch", "--size", 300, 200, "--output")
+    for hidden in ((), ("--hide", "rib")):
+        call("plot_sheet.py", run, *hidden, *options, folder / "bead.png")
+        red, green, blue = np.moveaxis(matplotlib.image.imread(folder / "bead.png")[..., :3], 2, 0)
+        count = np.count_nonzero((red > 0.6) & (green < 0.4) & (blue < 0.4))
+        assert (count > 300) != bool(hidden), count
+    curve = draped(np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, 0.9]]), np.array([[0, 0, 0], [1, 1, 2.0]]))
+    assert np.ptp(curve.points, axis=0)[:2].tolist() == [1.0, 0.4] and set(curve.points[:, 2]) == {2.0}
+    log.write_text(LOG)
+    (folder / "job.dat").write_text(DECK)
+
+
 def check_inputs(program, folder):
     """Check pictures of the initial state: of a job, and of one with a tool in its sheet."""
     options = ("--program", program, "--size", 300, 200, "--output", folder / "initial.png")
@@ -153,6 +175,7 @@ def main():
         assert "no field 'strain'" in call("plot_sheet.py", run, "--field", "strain", expect=2)
         assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=2)
         assert "No such file" in call("plot_force.py", folder / "none.out", expect=2)
+        check_beads(run, folder)
         check_refusals(run, folder)
         check_inputs(program, folder)
     print("pictures drawn")

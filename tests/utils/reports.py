@@ -24,11 +24,11 @@ from forming_limit import ZONES, keeler_brazier, read_curve  # noqa: E402
 PARTS = [(20.0, 0.0), (5 * math.radians(80), math.radians(80)), (40.0, 0.4), (5 * math.radians(75), -math.radians(75)),
          (20.0, 0.0)]
 ENDS = np.concatenate(([0.0], np.cumsum([part[0] for part in PARTS])))
-HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-,mm2,MPa,mJ,mJ,mJ,mJ
+HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-,mm2,MPa,mJ,mJ,mJ,mJ,N,mm
 increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts,punch_area,\
-punch_pressure,tool_work,external_work,friction_work,energy_error
-0,draw,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0
-1,draw,2,1,0,0,-2,0,0,2500,4,10,250,5000,0,100,5
+punch_pressure,tool_work,external_work,friction_work,energy_error,rib_restraint,rib_length
+0,draw,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0
+1,draw,2,1,0,0,-2,0,0,2500,4,10,250,5000,0,100,5,300,10
 """
 STATUS = "phase,travel,outcome,iterations,solver_iterations,limiter\ndraw,2,accepted,5,0,rotation\n"
 LOG = """dd3imp 0.1.0: job.dat
@@ -147,13 +147,14 @@ def check_report(run, folder):
     call("report.py", run, "--mirror", "x", "y", "--output", folder / "report")
     text = (folder / "report" / "report.html").read_text()
     for title in ("Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
-                  "Outline and draw-in", "Forces in phase draw", "Warnings", "Run", "Set-up"):
+                  "Outline and draw-in", "Forces in phase draw", "Draw-beads", "Warnings", "Run", "Set-up"):
         assert f"<h2>{title}</h2>" in text, title
     assert "A profile &amp; its &lt;report&gt;" in text and "warning: the mesh is coarse" in text
     assert "Keeler-Brazier" not in text and "10 kN, 250 MPa" in text and "0.1 %" in text
     assert all(source.startswith("data:image/png") for source in re.findall(r'src="([^"]{20})', text))
+    assert "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most" in text
     assert not re.search(r"(href|url)\b", text)
-    for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force"):
+    for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force", "beads"):
         assert (folder / "report" / f"{name}.png").read_bytes()[:4] == b"\x89PNG", name
     (folder / "bad.csv").write_text("0 0.3\n0.1 a\n")
     assert "bad.csv:2: error: expected minor" in call("report.py", run, "--curve", folder / "bad.csv", "--output",

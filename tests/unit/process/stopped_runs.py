@@ -88,6 +88,19 @@ def free_sheet(program, directory):
     check("supports that stop rigid motion" in output, f"the remedy is another one:\n{output}")
 
 
+def led_into_tool(program, directory):
+    """Test nodes that `displace` leads into a tool: the message names the cause, a node and the tool."""
+    text = BETWEEN.read_text(encoding="utf-8")
+    for name in ("table.bez", "ram.bez"):
+        text = text.replace(name, str(BETWEEN.with_name(name)))
+    deck = directory.with_suffix(".dat")
+    deck.write_text(text[:text.index("*PHASE")] + "*PHASE lift\n  control = load\n  trial = 0.5\n"
+                    "  displace = z_max z 3\n", encoding="utf-8")
+    output = run(program, directory, deck)
+    check("a prescribed motion leads a node" in output, f"the reason is another one:\n{output}")
+    check(", tool ram; try first" in output, f"the tool is not named:\n{output}")
+
+
 def small_disk(program, directory):
     """Test a limit of the file size reached in the middle of a phase; what is known of the tools is said."""
     output = run(program, directory, BEGINNING,
@@ -178,8 +191,8 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, free_sheet, small_disk, full_disk, full_device, no_directory, next_to_old,
-                 interrupted):
+    for test in (no_convergence, inside_out, free_sheet, led_into_tool, small_disk, full_disk, full_device,
+                 no_directory, next_to_old, interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
