@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds and runs all tests except those labelled slow; the last line is `N passed, N failed`.
 #
-#   utils/run_tests.sh          the optimised build, and the debug build (bounds checks, floating-point traps)
+#   utils/run_tests.sh          the optimised build, the debug build (bounds checks, floating-point traps) and, where
+#                               PETSc is installed, the build for several processes
 #   utils/run_tests.sh --slow   also the slow cases
 #
 # JOBS=<n> sets the number of parallel tests and compilers (default: the number of cores).
@@ -56,6 +57,9 @@ finish() {
 utils/install_needed.sh || { failed=1; finish; }
 build release && run_tests release
 build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
+if pkg-config --exists PETSc; then
+  build petsc && run_tests petsc
+fi
 if [ "${1:-}" = --slow ]; then
   run_tests slow
 fi

@@ -72,7 +72,8 @@ contains
     if (allocated(error)) length = len(error%message)
     call broadcast_integers(rank, 1, length)
     if (length(1) < 0) return
-    text = repeat(" ", length(1))
+    allocate (character(len=length(1)) :: text)
+    text(:) = ""
     if (this_rank() == rank) text = error%message
     call broadcast_text(rank, text)
     call fatal_error(error, text)
