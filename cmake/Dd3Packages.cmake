@@ -1,4 +1,4 @@
-# Find the required libraries, or name the package to install.
+# Find the required libraries, or name the package to install; and the optional ones.
 function(dd3_missing what package)
   message(FATAL_ERROR "${what} was not found. On Debian or Ubuntu: apt-get install ${package}")
 endfunction()
@@ -22,6 +22,26 @@ set(HDF5_PREFER_PARALLEL OFF)
 find_package(HDF5 QUIET COMPONENTS C Fortran HL)
 if(NOT HDF5_FOUND)
   dd3_missing("HDF5 with its Fortran interface" "libhdf5-dev")
+endif()
+
+# Optional. The sequential MUMPS contains procedures with the names of MPI's.
+option(DD3_MUMPS "Use the sequential MUMPS if it is installed" ON)
+set(mumps_packages "")
+set(mumps_generated "cmake/absent/mumps_library.f90")
+set(mumps_except src/linalg/mumps_library.f90)
+if(DD3_MUMPS AND DD3_PETSC)
+  message(STATUS "MUMPS: not in a program with MPI, whose procedures the sequential library replaces")
+elseif(DD3_MUMPS)
+  find_package(MUMPS QUIET)
+  if(MUMPS_FOUND)
+    set(mumps_packages MUMPS::dmumps)
+    set(mumps_generated "")
+    set(mumps_except "")
+    set_source_files_properties(src/linalg/mumps_library.f90 PROPERTIES COMPILE_OPTIONS "-I${MUMPS_INCLUDE_DIR}")
+    message(STATUS "MUMPS ${MUMPS_DMUMPS}")
+  else()
+    message(STATUS "MUMPS was not found; it is optional. On Debian or Ubuntu: apt-get install libmumps-seq-dev")
+  endif()
 endif()
 
 message(STATUS "LAPACK ${LAPACK_LIBRARIES}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the
-# utilities. Needs root only if a package is missing.
+# utilities. Needs root only if a package is missing. Not installed: libmumps-seq-dev, the optional linear solver.
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv

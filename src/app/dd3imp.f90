@@ -8,6 +8,7 @@ program dd3imp
   use dd3_app_memory, only : end_program, watch_memory
   use dd3_app_one_blas_thread, only : use_one_blas_thread_if_limited
   use dd3_base_error, only : error_t
+  use dd3_base_ranks, only : end_ranks, start_ranks, this_rank
   implicit none
 
   type(options_t) :: options
@@ -16,8 +17,11 @@ program dd3imp
 
   call use_one_blas_thread_if_limited()
   call watch_memory()
+  call start_ranks()
   call read_command_line(options, error)
-  if (allocated(error)) then
+  if (this_rank() > 0 .and. (allocated(error) .or. options%version .or. options%help)) then
+    exit_code = merge(exit_usage, exit_end, allocated(error))
+  else if (allocated(error)) then
     write (error_unit, '(a)', iostat=ignored) "dd3imp: "//error%message
     write (error_unit, '(a)', advance="no", iostat=ignored) usage_text()
     exit_code = exit_usage
@@ -30,6 +34,7 @@ program dd3imp
     call run_job(options, exit_code)
   end if
   flush (error_unit, iostat=ignored)
+  call end_ranks()
   call end_program(exit_code)
 
 end program dd3imp

@@ -7,17 +7,20 @@ module dd3_app_job
   use dd3_app_overwrite, only : check_overwrite, result_file
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
-  use dd3_base_error, only : error_list_t, error_t, fatal_error
+  use dd3_base_error, only : error_list_t, error_t, fatal_error, share_error
   use dd3_base_file, only : make_directory, remove_file
   use dd3_base_file_system, only : folder_of, part_of, read_file
   use dd3_base_interrupt, only : watch_interrupts
+  use dd3_base_kinds, only : wp
   use dd3_base_log, only : log_t
+  use dd3_base_ranks, only : largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_text, only : text_t, to_text, slice
   use dd3_base_threads, only : most_threads
   use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
+  use dd3_linalg_solver, only : linear_solver_t
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
   use dd3_model_drawbead_report, only : drawbead_report
@@ -53,13 +56,14 @@ contains
     type(run_start_t) :: start
     type(error_list_t) :: errors
     type(error_t), allocatable :: error
+    logical :: wrong
 
     call read_case(case, options%file, options%overrides, errors)
     call new_model(model, case, errors)
     if (errors%count == 0) call check_overwrite(case, results_directory(options, case), &
         options%restart, errors)
-    if (errors%count > 0) then
-      call report_errors(errors, options%file)
+    call share_errors(errors, options%file, wrong)
+    if (wrong) then
       exit_code = exit_input
       ! The picture shows what is wrong about the place of a tool.
       if (options%initial == "" .or. .not. allocated(model%history)) return
@@ -81,6 +85,22 @@ contains
       call run_checked(options, start, case, model, exit_code)
     end if
   end subroutine run_job
+
+  !> Report the errors of the input, those of the lowest rank that has some.
+  subroutine share_errors(errors, file, wrong)
+    type(error_list_t), intent(inout) :: errors
+    character(len=*), intent(in) :: file
+    !> Whether any rank has errors.
+    logical, intent(out) :: wrong
+
+    integer :: rank, number(1)
+
+    rank = rank_of_smallest(merge(0.0_wp, 1.0_wp, errors%count > 0), 0)
+    number = errors%count
+    call largest_over_ranks(1, number)
+    wrong = number(1) > 0
+    if (this_rank() == rank .and. wrong) call report_errors(errors, file)
+  end subroutine share_errors
 
   !> Set what a run starts from: the initial state, or that of a restart file.
   subroutine set_start(start, options, case, model, error)
@@ -105,7 +125,24 @@ contains
       start%source = folder_of(options%restart)
       call read_restart(options%restart, model, start%state, error)
     end if
+    if (.not. allocated(error)) call check_ranks(case, error)
+    call share_error(error)
   end subroutine set_start
+
+  !> Check that several ranks can run the job.
+  subroutine check_ranks(case, error)
+    type(case_t), intent(in) :: case
+    type(error_t), allocatable, intent(out) :: error
+
+    if (n_ranks() == 1) return
+    if (size(case%point) > 0) then
+      call fatal_error(error, "a run of material points (*POINT) needs one process, got "// &
+          to_text(n_ranks()))
+    else if (case%solver%method /= "auto" .and. index(case%solver%method, "petsc") /= 1) then
+      call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
+          "got "//to_text(n_ranks())//"; expected auto, petsc_mumps or petsc_bicgstab")
+    end if
+  end subroutine check_ranks
 
   !> Print all values and warnings.
   subroutine show_checked(case, model, start)
@@ -114,14 +151,17 @@ contains
     type(run_start_t), intent(in) :: start
 
     type(job_size_t) :: job
+    class(linear_solver_t), allocatable :: solver
     type(error_t), allocatable :: ignored
     type(text_t), allocatable :: warnings(:)
     integer :: i
 
+    if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
         contact_report(model)//drawbead_report(model)
     if (size(case%point) == 0) then
-      call find_job_size(job, model, start%state, solver_options(start), ignored)
+      call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
+      if (allocated(solver)) call solver%release()
       write (output_unit, '(a)', advance="no") size_report(job)
       if (len(memory_warning(job)) > 0) write (output_unit, '(a)') memory_warning(job)
     end if
@@ -150,6 +190,7 @@ contains
       call fatal_error(error, "material points (*POINT) have no fields")
       return
     end if
+    if (this_rank() > 0) return
     call make_directory(directory, error)
     do i = 1, size(result_file)
       if (allocated(error)) return
@@ -172,14 +213,16 @@ contains
     integer, intent(out) :: exit_code
 
     type(log_t) :: log
+    class(linear_solver_t), allocatable :: solver
     type(run_summary_t) :: summary
     type(error_t), allocatable :: error
 
     call watch_interrupts()
     call log%start(options%quiet)
     call log%say("dd3imp "//version//": "//case%file)
-    call make_directory(start%directory, error)
+    if (this_rank() == 0) call make_directory(start%directory, error)
     if (.not. allocated(error)) call open_log(log, options%quiet, start, error)
+    call share_error(error)
     if (.not. allocated(error)) then
       call watch_log(log%descriptor())
       call introduce(log, case, model)
@@ -187,12 +230,13 @@ contains
       if (size(case%point) > 0) then
         call run_points(case, model, start%directory, log, summary%increments, error)
       else
-        call log_size(log, model, start)
-        call run_model(model, start, log, summary, error)
+        call log_size(log, model, start, solver)
+        call run_model(model, start, solver, log, summary, error)
         call conclude(log, summary)
       end if
       ! A run whose folder has vanished has no results.
       if (.not. allocated(error)) call log%check(error)
+      call share_error(error)
     end if
     exit_code = merge(exit_stopped, exit_end, allocated(error))
     if (allocated(error)) then
@@ -208,14 +252,21 @@ contains
     exit_code = exit_stopped
   end subroutine run_checked
 
-  !> Write a line on the error stream, which may be closed.
+  !> Write a line that all ranks know on the error stream.
   subroutine write_line(text)
+    character(len=*), intent(in) :: text
+
+    if (this_rank() == 0) call put_line(text)
+  end subroutine write_line
+
+  !> Write a line on the error stream, which may be closed.
+  subroutine put_line(text)
     character(len=*), intent(in) :: text
 
     integer :: ignored
 
     write (error_unit, '(a)', iostat=ignored) text
-  end subroutine write_line
+  end subroutine put_line
 
   !> Open job.log; after a restart it continues the log of the earlier run.
   subroutine open_log(log, quiet, start, error)
@@ -243,6 +294,7 @@ contains
     logical :: removed
     integer :: i
 
+    if (this_rank() > 0) return
     names = ""
     do i = 1, size(result_file)
       call remove_file(part_of(directory//"/"//trim(result_file(i))), removed)
@@ -292,15 +344,17 @@ contains
   end subroutine introduce
 
   !> Log the size of the job, and a warning if it needs too much memory.
-  subroutine log_size(log, model, start)
+  subroutine log_size(log, model, start, solver)
     type(log_t), intent(inout) :: log
     type(model_t), intent(in) :: model
     type(run_start_t), intent(in) :: start
+    !> See `find_job_size`.
+    class(linear_solver_t), allocatable, intent(out) :: solver
 
     type(job_size_t) :: job
     type(error_t), allocatable :: error
 
-    call find_job_size(job, model, start%state, solver_options(start), error)
+    call find_job_size(job, model, start%state, solver_options(start), solver, error)
     if (allocated(error)) return
     call log%note(size_report(job))
     if (len(memory_warning(job)) > 0) call log%say(memory_warning(job))
@@ -345,11 +399,11 @@ contains
 
     call errors%sort()
     do i = 1, min(errors%count, most_errors)
-      call write_line(errors%item(i)%message)
+      call put_line(errors%item(i)%message)
     end do
-    if (errors%count > most_errors) call write_line("and "// &
+    if (errors%count > most_errors) call put_line("and "// &
         to_text(errors%count - most_errors)//" more errors")
-    call write_line(to_text(errors%count)//trim(merge(" error ", " errors", errors%count == 1))// &
+    call put_line(to_text(errors%count)//trim(merge(" error ", " errors", errors%count == 1))// &
         " in "//file//"; nothing was computed")
   end subroutine report_errors
 

@@ -4,7 +4,7 @@ module dd3_app_registry_help
   use dd3_base_text, only : join, newline, same_name
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_table, only : element_t
-  use dd3_linalg_solver_registry, only : solver_names
+  use dd3_linalg_solver_registry, only : missing_package, solver_names
   implicit none
   private
   public :: help_elements, help_registry
@@ -39,12 +39,27 @@ contains
 
     text = ""
     if (same_name(topic, "element")) text = "elements:"//newline//help_elements()
-    if (same_name(topic, "method")) text = "linear solvers: "//join(solver_names(), " ")//newline
+    if (same_name(topic, "method")) text = help_solvers()
     name = element_names()
     do i = 1, size(name)
       if (same_name(name(i), topic)) text = line(name(i))
     end do
   end function help_registry
+
+  !> Return the names of the linear solvers, and the packages of those that this build lacks.
+  function help_solvers() result(text)
+    character(len=:), allocatable :: text
+
+    character(len=16), allocatable :: name(:)
+    integer :: i
+
+    name = solver_names()
+    text = "linear solvers: "//join(name, " ")//newline
+    do i = 1, size(name)
+      if (missing_package(name(i)) /= "") text = text//"not in this build: "//trim(name(i))// &
+          " (package "//missing_package(name(i))//")"//newline
+    end do
+  end function help_solvers
 
   !> Return name and title of an element in one line.
   function line(name)

@@ -1,11 +1,13 @@
 !> Set-up errors as values: passed to the caller, collected in a list, and reported together.
 module dd3_base_error
-  use dd3_base_kinds, only : i8
+  use dd3_base_kinds, only : i8, wp
+  use dd3_base_ranks, only : broadcast_integers, broadcast_text, n_ranks, rank_of_smallest, &
+      this_rank
   use dd3_base_text, only : newline, same_name, slice
   implicit none
   private
   public :: most_kept, location_t, error_t, error_list_t, fatal_error, input_error, as_written, &
-      keep_first
+      keep_first, share_error
 
   !> Location of a piece of input.
   type :: location_t
@@ -56,6 +58,25 @@ contains
     allocate (error)
     error%message = message
   end subroutine fatal_error
+
+  !> Give all ranks the error of the lowest rank that has one.
+  subroutine share_error(error)
+    type(error_t), allocatable, intent(inout) :: error
+
+    character(len=:), allocatable :: text
+    integer :: length(1), rank
+
+    if (n_ranks() == 1) return
+    rank = rank_of_smallest(merge(0.0_wp, 1.0_wp, allocated(error)), 0)
+    length = -1
+    if (allocated(error)) length = len(error%message)
+    call broadcast_integers(rank, 1, length)
+    if (length(1) < 0) return
+    text = repeat(" ", length(1))
+    if (this_rank() == rank) text = error%message
+    call broadcast_text(rank, text)
+    call fatal_error(error, text)
+  end subroutine share_error
 
   !> Return a name with the upper and lower case of the input; unchanged if the input has another
   !> text at this location.

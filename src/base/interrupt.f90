@@ -5,6 +5,7 @@
 !> is a module variable because a signal handler has no other arguments.
 module dd3_base_interrupt
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+  use dd3_base_ranks, only : largest_over_ranks
   implicit none
   private
   public :: watch_interrupts, interrupted, interruption
@@ -53,9 +54,14 @@ contains
         previous = c_signal(number, transfer(ignore, c_null_funptr))
   end subroutine watch_unless_ignored
 
-  !> Whether a signal was received.
+  !> Whether a signal was received, by any rank; all of them must ask.
   logical function interrupted()
-    interrupted = caught /= 0
+    integer :: number(1)
+
+    number = int(caught)
+    call largest_over_ranks(1, number)
+    if (caught == 0) caught = int(number(1), c_int)
+    interrupted = number(1) /= 0
   end function interrupted
 
   !> Return what interrupted the run, for messages.

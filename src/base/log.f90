@@ -1,9 +1,10 @@
 !> Log of a run, on the screen and in job.log. On a terminal, a status line is rewritten in place;
-!> it is cleared before anything else is written.
+!> it is cleared before anything else is written. Of several ranks only the first writes.
 module dd3_base_log
   use, intrinsic :: iso_c_binding, only : c_int
   use dd3_base_error, only : error_t, keep_first
   use dd3_base_file, only : file_t, standard_output
+  use dd3_base_ranks, only : this_rank
   use dd3_base_text, only : newline
   implicit none
   private
@@ -56,13 +57,13 @@ contains
     character(len=16) :: kind
     integer :: status
 
-    self%quiet = quiet
+    self%quiet = this_rank() > 0 .or. quiet
     self%held = ""
     self%live_length = 0
     call self%screen%attach(int(standard_output, c_int), "screen")
     call get_environment_variable("TERM", kind, status=status)
     self%terminal = posix_isatty(int(standard_output, c_int)) == 1
-    if (quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
+    if (self%quiet .or. kind == "dumb" .or. kind == "") self%terminal = .false.
   end subroutine log_start
 
   !> Open job.log, locked against other runs, and write the lines kept for it.
@@ -76,6 +77,7 @@ contains
     !> Log of an earlier run that is continued.
     character(len=*), intent(in), optional :: earlier
 
+    if (this_rank() > 0) return
     if (.not. allocated(self%held)) call self%start(quiet)
     self%quiet = quiet
     call self%file%create(path, error, locked=.true.)
@@ -111,6 +113,7 @@ contains
 
     type(error_t), allocatable :: error, late
 
+    if (this_rank() > 0) return
     if (self%file%descriptor < 0) then
       if (.not. allocated(self%held)) call self%start(self%quiet)
       self%held = self%held//text//newline

@@ -13,7 +13,7 @@ module dd3_element_log_strain
   use dd3_linalg_tensor, only : symmetric_eigen
   implicit none
   private
-  public :: element_strain, polar_increment, rotate_axes, stretch_of_green
+  public :: element_strain, polar_increment, polar_rotation, rotate_axes, stretch_of_green
 
   !> Largest Frobenius norm of e for the series.
   real(wp), parameter :: series_limit = 0.03_wp
@@ -48,8 +48,44 @@ contains
     real(wp), intent(out) :: strain(6)
     real(wp), intent(out) :: rotation(3, 3)
 
-    real(wp) :: green(6), h(3, 3), inverse_stretch(6)
+    real(wp) :: green(6), inverse_stretch(6)
     logical :: positive
+
+    green = green_of(f)
+    if (is_small(green)) then
+      call small_stretch(green, strain, inverse_stretch)
+    else
+      call large_stretch(matmul(transpose(f), f), strain, inverse_stretch, positive)
+    end if
+    call multiply(f, inverse_stretch, rotation)
+  end subroutine polar_increment
+
+  !> Return R of F = R U, det F > 0.
+  pure function polar_rotation(f) result(rotation)
+    !> Deformation gradient.
+    real(wp), intent(in) :: f(3, 3)
+    real(wp) :: rotation(3, 3)
+
+    real(wp) :: green(6), x(6), y(6), yy(6), strain(6), inverse_stretch(6)
+    logical :: positive
+
+    green = green_of(f)
+    if (is_small(green)) then
+      call powers_of_tanh(green, x, y, yy)
+      call inverse_series(x, y, yy, inverse_stretch)
+    else
+      call large_stretch(matmul(transpose(f), f), strain, inverse_stretch, positive)
+    end if
+    call multiply(f, inverse_stretch, rotation)
+  end function polar_rotation
+
+  !> Return (F^T F - I)/2, plain components 11 22 33 23 31 12.
+  pure function green_of(f) result(green)
+    !> Deformation gradient.
+    real(wp), intent(in) :: f(3, 3)
+    real(wp) :: green(6)
+
+    real(wp) :: h(3, 3)
     integer :: i
 
     h = f
@@ -62,13 +98,7 @@ contains
     green(4) = 0.5_wp*(h(2, 3) + h(3, 2) + h(1, 2)*h(1, 3) + h(2, 2)*h(2, 3) + h(3, 2)*h(3, 3))
     green(5) = 0.5_wp*(h(3, 1) + h(1, 3) + h(1, 3)*h(1, 1) + h(2, 3)*h(2, 1) + h(3, 3)*h(3, 1))
     green(6) = 0.5_wp*(h(1, 2) + h(2, 1) + h(1, 1)*h(1, 2) + h(2, 1)*h(2, 2) + h(3, 1)*h(3, 2))
-    if (is_small(green)) then
-      call small_stretch(green, strain, inverse_stretch)
-    else
-      call large_stretch(matmul(transpose(f), f), strain, inverse_stretch, positive)
-    end if
-    call multiply(f, inverse_stretch, rotation)
-  end subroutine polar_increment
+  end function green_of
 
   !> Evaluate ln U and U^-1 of a Green strain that need not belong to a deformation gradient.
   pure subroutine stretch_of_green(green, strain, inverse_stretch, positive)
@@ -113,7 +143,26 @@ contains
     !> U^-1, plain components.
     real(wp), intent(out) :: inverse_stretch(6)
 
-    real(wp) :: s(6), x(6), y(6), yy(6), inner(6), det
+    real(wp) :: s(6), x(6), y(6), yy(6), inner(6)
+
+    call powers_of_tanh(green, x, y, yy)
+    inner = y/7.0_wp + yy/9.0_wp
+    inner(1:3) = inner(1:3) + 0.2_wp
+    call product_of(yy, inner, s)
+    s = s + y/3.0_wp
+    s(1:3) = s(1:3) + 1.0_wp
+    call product_of(x, s, strain)
+    call inverse_series(x, y, yy, inverse_stretch)
+  end subroutine small_stretch
+
+  !> Evaluate X = e (I+e)^-1, X^2 and X^4.
+  pure subroutine powers_of_tanh(green, x, y, yy)
+    !> Green strain e, plain components.
+    real(wp), intent(in) :: green(6)
+    !> Plain components.
+    real(wp), intent(out) :: x(6), y(6), yy(6)
+
+    real(wp) :: s(6), inner(6), det
 
     s = green
     s(1:3) = s(1:3) + 1.0_wp
@@ -124,12 +173,17 @@ contains
     call product_of(green, inner, x)
     call product_of(x, x, y)
     call product_of(y, y, yy)
-    inner = y/7.0_wp + yy/9.0_wp
-    inner(1:3) = inner(1:3) + 0.2_wp
-    call product_of(yy, inner, s)
-    s = s + y/3.0_wp
-    s(1:3) = s(1:3) + 1.0_wp
-    call product_of(x, s, strain)
+  end subroutine powers_of_tanh
+
+  !> Evaluate U^-1 = sqrt((I-X)/(I+X)).
+  pure subroutine inverse_series(x, y, yy, inverse_stretch)
+    !> X, X^2 and X^4, plain components.
+    real(wp), intent(in) :: x(6), y(6), yy(6)
+    !> Plain components.
+    real(wp), intent(out) :: inverse_stretch(6)
+
+    real(wp) :: s(6), inner(6)
+
     inner = (5.0_wp/16.0_wp)*y + (35.0_wp/128.0_wp)*yy
     inner(1:3) = inner(1:3) + 0.375_wp
     call product_of(yy, inner, s)
@@ -137,7 +191,7 @@ contains
     s(1:3) = s(1:3) + 1.0_wp
     call product_of(x, s, inner)
     inverse_stretch = s - inner
-  end subroutine small_stretch
+  end subroutine inverse_series
 
   !> Evaluate ln U and U^-1 from the eigenvalues of C = U^2.
   pure subroutine large_stretch(c, strain, inverse_stretch, positive)

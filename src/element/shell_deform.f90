@@ -13,7 +13,7 @@
 module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
-  use dd3_element_log_strain, only : polar_increment, rotate_axes, stretch_of_green
+  use dd3_element_log_strain, only : polar_rotation, rotate_axes, stretch_of_green
   use dd3_element_shell_strain, only : column_geometry, set_weights, natural_rates, &
       natural_strains
   use dd3_element_shell_work, only : columns_t, n_column, n_natural, plane_point, shell_work_t
@@ -104,7 +104,7 @@ contains
     type(element_work_t), intent(inout) :: work
     type(verdict_t), intent(inout) :: verdict
 
-    real(wp) :: base(3, 3), normal(3), deformation(3, 3), rotation(3, 3), jacobian, trial_jacobian
+    real(wp) :: base(3, 3), normal(3), deformation(3, 3), jacobian, trial_jacobian
     real(wp) :: green(6), strain(6), inverse_stretch(6)
     logical :: positive
     integer :: i
@@ -134,8 +134,7 @@ contains
       end do
       shell%normal(:, p) = symmetric_times(inverse_stretch, normal)
     end associate
-    call polar_increment(deformation, strain, rotation)
-    call rotate_axes(rotation, axes, work%rotation(:, :, p))
+    call rotate_axes(polar_rotation(deformation), axes, work%rotation(:, :, p))
   end subroutine deform_point
 
   !> Evaluate the contravariant base of the committed configuration at a point, and the compatible

@@ -36,17 +36,17 @@ module dd3_element_work
     real(wp), allocatable :: stress(:, :)
     !> d stress/d strain, MPa, material frame, set by the caller: `tangent(6,6,n_point)`.
     real(wp), allocatable :: tangent(:, :, :)
-    !> Parameters of the enhanced strain in this increment, set by the caller: `(n_enhanced)`.
+    !> Parameters of the enhanced strain in this increment, mm2, set by the caller: `(n_enhanced)`.
     real(wp), allocatable :: enhanced(:)
     !> Internal forces, N: `force(3,n_node)`.
     real(wp), allocatable :: force(:, :)
-    !> Forces conjugate to the enhanced parameters, N mm, zero in equilibrium: `(n_enhanced)`.
+    !> Forces conjugate to the enhanced parameters, N/mm, zero in equilibrium: `(n_enhanced)`.
     real(wp), allocatable :: enhanced_force(:)
     !> d force/d displacement, N/mm: `stiffness(3,3,n_node,n_node)`; the 3x3 block of row node a and
     !> column node b is `stiffness(:,:,b,a)`. Enhanced parameters are condensed: they follow the
     !> displacement as -(enhanced_offset + enhanced_gain : du).
     real(wp), allocatable :: stiffness(:, :, :, :)
-    !> Set with the stiffness: `(n_enhanced)` and `(n_enhanced,3,n_node)`, 1/mm.
+    !> Set with the stiffness: `(n_enhanced)`, mm2, and `(n_enhanced,3,n_node)`, mm.
     real(wp), allocatable :: enhanced_offset(:), enhanced_gain(:, :, :)
     !> Nodal forces, N, that vanish with the enhanced parameters' own: to be subtracted from the
     !> internal forces beside the condensed stiffness, `(3,n_node)`.

@@ -155,7 +155,7 @@ contains
           count=3), &
       row("force_floor", kind_real, "", "0.1", "floor beta of the reference contact force", &
           lower=zero), &
-      row("depth", kind_real, "", "0.0025", "maximum predicted depth of a node inside a tool "// &
+      row("depth", kind_real, "", "0.01", "maximum predicted depth of a node inside a tool "// &
           "that it meets, over the thickness"), &
       row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
           "unload in a prediction that is not repeated", lower=zero), &

@@ -92,6 +92,9 @@ contains
       end do
       where (motion == pressed) motion = held
     end if
+    do i = 1, size(phase%gap)
+      call check_other_tool(case, phase%gap(i), motion, phase%gap%tool, errors)
+    end do
     ! A moved tool is held in a later phase that does not name it.
     do i = 1, size(motion)
       if (motion(i) == moved .and. .not. named(i)) motion(i) = held
@@ -125,6 +128,29 @@ contains
     if (.not. gap%value > 0.0_wp) call errors%push_input(gap%at, "the gap is not positive", &
         "a number > 0")
   end subroutine check_gap
+
+  !> Check that the motion of the tool from which another one has a gap is known beforehand.
+  subroutine check_other_tool(case, gap, motion, led, errors)
+    type(case_t), intent(in) :: case
+    type(tool_gap_t), intent(in) :: gap
+    !> Motion of each tool, and the tools that the phase leads to a gap.
+    integer, intent(in) :: motion(:), led(:)
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: reason
+
+    if (gap%tool == gap%other) return
+    if (motion(gap%other) == pressed) then
+      reason = "is pressed"
+    else if (any(led == gap%other)) then
+      reason = "is led to a gap itself"
+    else
+      return
+    end if
+    call errors%push_input(gap%at, "the gap is not known beforehand, as '"// &
+        case%tool(gap%other)%source%called()//"' "//reason//" in this phase", &
+        "a gap from a tool that is held or moved")
+  end subroutine check_other_tool
 
   !> Check the force on a tool: it is not zero at first, and keeps its direction while the tool is
   !> pressed.

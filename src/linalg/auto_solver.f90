@@ -2,10 +2,13 @@
 !>
 !> The set-up counts operations. If a complete factorisation on blocks costs no more than an
 !> incomplete one with a few iterations, as on all sheets of some thousand elements, it is taken.
-!> Otherwise CGS and the complete factorisation are tried in turn and the one that takes less time
+!> Otherwise the complete factorisation and CGS are tried in turn and the one that takes less time
 !> is kept: CGS, whose cost grows as contact and plasticity spread, is skipped for a number of
-!> factorisations when it was slower or failed several times in a row, tried again, and skipped for
-!> twice that number if that repeats. UMFPACK, which interchanges rows freely, is the last resort.
+!> factorisations when it was slower or failed, tried again, and skipped for twice that number if
+!> that repeats; where it was faster before it may fail several times in a row. UMFPACK, which
+!> interchanges rows freely, is the last resort. MUMPS is not considered: it takes longer than the
+!> complete factorisation, see docs/reports/solvers.md, and results would depend on whether the
+!> program was built with it.
 module dd3_linalg_auto_solver
   use dd3_base_clock, only : processor_time
   use dd3_base_kinds, only : wp
@@ -23,11 +26,12 @@ module dd3_linalg_auto_solver
       memory_time
 
   !> Entries of `memory`: consecutive failures of CGS, factorisations for which it is still skipped,
-  !> length of the next such rest, and the time of the complete factorisation with its solution, us.
+  !> length of the next such rest, 0 while CGS is faster or alone, and the time of the complete
+  !> factorisation with its solution, us.
   integer, parameter :: memory_failures = 1, memory_rest = 2, memory_next_rest = 3, memory_time = 4
   !> Number of these entries.
   integer, parameter :: memory_size = 4
-  !> Consecutive failures that start a rest.
+  !> Consecutive failures that start a rest while CGS is faster or alone.
   integer, parameter :: failures_allowed = 3
   !> Shortest and longest rest, in factorisations.
   integer, parameter :: first_rest = 20, longest_rest = 320
@@ -38,8 +42,10 @@ module dd3_linalg_auto_solver
   real(wp), parameter :: products_per_block = 4.0_wp
   !> Time of a block product, s, if the choice must not depend on the clock.
   real(wp), parameter :: product_time = 9.0e-9_wp
+  !> Largest time in `memory`, also that of a complete factorisation that has always failed, us.
+  integer, parameter :: longest_time = 1000000000
   !> Largest cost of CGS, divided by that of the complete factorisation, and fewest iterations.
-  real(wp), parameter :: largest_cost = 2.0_wp
+  real(wp), parameter :: largest_cost = 1.5_wp
   integer, parameter :: least_iterations = 20
   !> What solves with the present matrix.
   integer, parameter :: by_none = 0, by_cgs = 1, by_block = 2, by_direct = 3
@@ -106,7 +112,7 @@ contains
     self%may_iterate = self%block%by_rows .or. .not. outright
     self%may_factorise = .not. (self%block%by_rows .and. outright)
     if (.not. outright) options%iterations = min(options%iterations, max(least_iterations, &
-        int(largest_cost*self%block%products/self%iteration_products)))
+        int((largest_cost*self%block%products - self%setup_products)/self%iteration_products)))
     if (.not. self%may_factorise) options%ilu_level = matrix%n
     call new_cgs_solver(self%cgs, options)
     if (self%may_iterate) call self%cgs%setup_scaled(matrix)
@@ -122,7 +128,7 @@ contains
     end if
     self%description = trim(self%description)//"; UMFPACK to fall back on"
     allocate (self%memory(memory_size), source=0)
-    self%memory(memory_next_rest) = first_rest
+    if (self%may_factorise) self%memory(memory_next_rest) = first_rest
   end subroutine auto_solver_setup
 
   !> Count the operations of CGS.
@@ -150,14 +156,14 @@ contains
     self%ready = by_none
     self%failure_recorded = .false.
     self%reason = ""
-    if (self%may_iterate .and. self%memory(memory_rest) == 0) then
+    if (self%may_iterate .and. self%memory(memory_rest) == 0 .and. is_timed(self)) then
       call self%cgs%factor_scaled(matrix, verdict)
       if (verdict%outcome == verdict_converged) self%ready = by_cgs
       if (self%ready == by_none) call record_failure(self, verdict%reason)
-    else if (self%may_iterate) then
+    else if (self%may_iterate .and. self%memory(memory_rest) > 0) then
       self%memory(memory_rest) = self%memory(memory_rest) - 1
-      if (self%memory(memory_failures) > 0) self%reason = "CGS skipped after "// &
-          to_text(self%memory(memory_failures))//" failures in a row"
+      if (self%memory(memory_failures) > 0) self%reason = "CGS skipped; failures "// &
+          "in a row: "//to_text(self%memory(memory_failures))
     end if
     if (self%ready == by_none) then
       began = processor_time()
@@ -166,6 +172,13 @@ contains
     self%seconds = processor_time() - began
     self%method = name_of(self%ready)
   end subroutine auto_solver_factor
+
+  !> Whether the time of the complete factorisation is known, if there is one beside CGS.
+  pure logical function is_timed(self)
+    class(auto_solver_t), intent(in) :: self
+
+    is_timed = self%memory(memory_time) > 0 .or. .not. self%may_factorise
+  end function is_timed
 
   !> Return the name of a solver in the registry.
   pure function name_of(ready) result(name)
@@ -185,6 +198,8 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     if (self%may_factorise) then
+      if (self%may_iterate .and. self%memory(memory_time) == 0) &
+          self%memory(memory_time) = longest_time
       call self%block%factor_scaled(matrix, verdict)
       self%ready = by_block
       if (verdict%outcome == verdict_converged) return
@@ -214,7 +229,8 @@ contains
     if (self%failure_recorded) return
     self%failure_recorded = .true.
     self%memory(memory_failures) = self%memory(memory_failures) + 1
-    if (self%memory(memory_failures) < failures_allowed) return
+    if (self%memory(memory_failures) < failures_allowed &
+        .and. self%memory(memory_next_rest) == 0) return
     call start_rest(self)
     self%news = "linear solver: CGS skipped for "//to_text(self%memory(memory_rest))// &
         " factorisations: "//reason
@@ -224,8 +240,8 @@ contains
   subroutine start_rest(self)
     type(auto_solver_t), intent(inout) :: self
 
-    self%memory(memory_rest) = self%memory(memory_next_rest)
-    self%memory(memory_next_rest) = min(2*self%memory(memory_next_rest), longest_rest)
+    self%memory(memory_rest) = max(self%memory(memory_next_rest), first_rest)
+    self%memory(memory_next_rest) = min(2*self%memory(memory_rest), longest_rest)
   end subroutine start_rest
 
   !> Solve; a solver that fails is replaced by the next one.
@@ -266,8 +282,7 @@ contains
     if (self%ready == by_none) report%reason = verdict%reason
   end subroutine auto_solver_solve
 
-  !> Skip CGS for a while if it took longer than the complete factorisation, or once if that has not
-  !> been measured yet.
+  !> Skip CGS for a while if it took longer than the complete factorisation.
   subroutine compare_times(self, measured, iterations)
     type(auto_solver_t), intent(inout) :: self
     !> Time of a solution by CGS, s, and its iterations.
@@ -282,9 +297,7 @@ contains
         + real(iterations, wp)*self%iteration_products)
     other = 1.0e-6_wp*real(self%memory(memory_time), wp)
     if (.not. self%may_factorise) then
-      self%memory(memory_next_rest) = first_rest
-    else if (self%memory(memory_time) == 0) then
-      self%memory(memory_rest) = 1
+      self%memory(memory_next_rest) = 0
     else if (seconds > other) then
       call start_rest(self)
       self%news = "linear solver: "//trim(self%block%description)//" for "// &
@@ -294,7 +307,7 @@ contains
       if (self%memory(memory_next_rest) > first_rest) self%news = "linear solver: CGS, "// &
           to_text(seconds, 3)//" s; "//trim(self%block%description)//" took "//to_text(other, 3)// &
           " s"
-      self%memory(memory_next_rest) = first_rest
+      self%memory(memory_next_rest) = 0
     end if
   end subroutine compare_times
 
@@ -308,7 +321,7 @@ contains
     if (.not. self%may_iterate) return
     seconds = measured
     if (self%options%reproducible) seconds = product_time*self%block%products
-    self%memory(memory_time) = max(1, nint(min(1.0e6_wp*seconds, 1.0e9_wp)))
+    self%memory(memory_time) = max(1, nint(min(1.0e6_wp*seconds, real(longest_time, wp))))
   end subroutine keep_time
 
   !> Free UMFPACK's factors.

@@ -14,7 +14,7 @@ module dd3_linalg_front_tree
   use dd3_linalg_ordering_cost, only : factor_cost
   implicit none
   private
-  public :: front_tree_t, new_front_tree, rows_of
+  public :: front_tree_t, choose_ordering, new_front_tree, rows_of
 
   !> Fronts in postorder. The pivots of front f are the rows `first(f)` to `first(f + 1) - 1` of the
   !> new numbering; its border are the later rows that they are coupled with.

@@ -18,6 +18,8 @@ module dd3_linalg_matrix
     integer, allocatable :: diagonal(:)
     !> Blocks: row component, column component, block, `(3, 3, :)`.
     real(wp), allocatable :: value(:, :, :)
+    !> Rank that holds the values of each block row, `(n)`; not allocated if this rank holds all.
+    integer, allocatable :: owner(:)
   end type block_matrix_t
 
   !> Several lists in one array: list i is `item(start(i):start(i + 1) - 1)`.

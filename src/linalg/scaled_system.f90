@@ -3,9 +3,11 @@
 module dd3_linalg_scaled_system
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_partition, only : own_rows
   implicit none
   private
   public :: scaled_system_t
@@ -20,6 +22,8 @@ module dd3_linalg_scaled_system
     real(wp), allocatable :: scale(:, :)
     !> Position in the original of each block of the copy.
     integer, allocatable :: source(:)
+    !> First and last block row of the copy that this rank holds.
+    integer :: first = 1, last = 0
   contains
     procedure :: setup => scaled_system_setup
     procedure :: fill => scaled_system_fill
@@ -41,6 +45,7 @@ contains
 
     n = matrix%n
     self%order = order
+    if (allocated(matrix%owner)) self%matrix%owner = matrix%owner(order)
     allocate (rank(n), self%source(size(matrix%column)), self%scale(3, n))
     allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n))
     allocate (self%matrix%column(size(matrix%column)), self%matrix%value(3, 3, size(matrix%column)))
@@ -61,6 +66,7 @@ contains
       self%matrix%diagonal(i) = first - 1 + findloc(self%matrix%column(first:next - 1), i, dim=1)
     end do
     self%matrix%row_start(n + 1) = next
+    call own_rows(self%matrix, self%first, self%last)
   end subroutine scaled_system_setup
 
   !> Sort items in ascending order of their keys (insertion sort).
@@ -94,9 +100,10 @@ contains
     integer :: bad_row
 
     associate (copy => self%matrix)
-      call scale_rows(copy%n, size(copy%column), copy%row_start, self%source, matrix%value, &
-          copy%value, self%scale, bad_row)
+      call scale_rows(copy%n, size(copy%column), self%first, self%last, copy%row_start, &
+          self%source, matrix%value, copy%value, self%scale, bad_row)
     end associate
+    if (allocated(matrix%owner)) call share_scale(self, bad_row)
     verdict%outcome = verdict_converged
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
@@ -105,9 +112,27 @@ contains
         //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 
+  !> Give all ranks the factors of all rows, and the first bad row.
+  subroutine share_scale(self, bad_row)
+    class(scaled_system_t), intent(inout) :: self
+    !> Among the rows of this rank on entry, among all on return; 0 if there is none.
+    integer, intent(inout) :: bad_row
+
+    integer :: left(1)
+
+    self%scale(:, :self%first - 1) = 0.0_wp
+    self%scale(:, self%last + 1:) = 0.0_wp
+    call sum_over_ranks(size(self%scale), self%scale)
+    left = 0
+    if (bad_row > 0) left = self%matrix%n + 1 - bad_row
+    call largest_over_ranks(1, left)
+    bad_row = 0
+    if (left(1) > 0) bad_row = self%matrix%n + 1 - left(1)
+  end subroutine share_scale
+
   !> Kernel: copy and scale blocks up to the first bad row; see `scaled_system_t` for the arrays.
-  pure subroutine scale_rows(n, n_block, row_start, source, from, to, scale, bad_row)
-    integer, intent(in) :: n, n_block, row_start(n + 1), source(n_block)
+  pure subroutine scale_rows(n, n_block, first, last, row_start, source, from, to, scale, bad_row)
+    integer, intent(in) :: n, n_block, first, last, row_start(n + 1), source(n_block)
     !> Blocks of the original and of the copy.
     real(wp), intent(in) :: from(3, 3, n_block)
     real(wp), intent(inout) :: to(3, 3, n_block), scale(3, n)
@@ -117,7 +142,7 @@ contains
     real(wp) :: a(3), b(3), c(3)
     integer :: i, k, m
 
-    do i = 1, n
+    do i = first, last
       a = 0.0_wp
       b = 0.0_wp
       c = 0.0_wp

@@ -11,6 +11,7 @@ module dd3_linalg_solver
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
+  use dd3_linalg_partition, only : order_by_owner
   use dd3_linalg_residual, only : dot
   use dd3_linalg_scaled_system, only : scaled_system_t
   implicit none
@@ -125,8 +126,12 @@ contains
     integer, allocatable :: order(:)
 
     call self%release()
-    call find_ordering(trim(self%options%ordering), matrix, order, error)
-    if (allocated(error)) call find_ordering("none", matrix, order, error)
+    if (allocated(matrix%owner)) then
+      order = order_by_owner(matrix)
+    else
+      call find_ordering(trim(self%options%ordering), matrix, order, error)
+      if (allocated(error)) call find_ordering("none", matrix, order, error)
+    end if
     call self%system%setup(matrix, order)
     if (allocated(self%memory)) deallocate (self%memory, self%scaled_b, self%scaled_x)
     allocate (self%scaled_b(3*matrix%n), self%scaled_x(3*matrix%n))

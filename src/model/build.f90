@@ -12,7 +12,7 @@ module dd3_model_build
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
   use dd3_input_known_name, only : check_known_name
-  use dd3_linalg_solver_registry, only : solver_names
+  use dd3_linalg_solver_registry, only : missing_package, solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
@@ -24,9 +24,10 @@ module dd3_model_build
   use dd3_model_outward_normals, only : find_contact_faces
   use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
-  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
   use dd3_model_rim, only : set_rim
   use dd3_model_sheet_faces, only : new_sheet_faces
+  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_gaps, only : set_gaps
@@ -135,16 +136,21 @@ contains
     call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
   end subroutine check_mesh_file
 
-  !> Report a linear solver that is not in the registry.
+  !> Report a linear solver that is not in the registry or not in this build.
   subroutine check_solver(case, errors)
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
 
+    character(len=:), allocatable :: package
     integer :: position
 
     if (case%solver%method == "") return
     call check_known_name(case%solver%method, case%solver%method_at, "linear solver", &
         solver_names(), position, errors)
+    package = missing_package(case%solver%method)
+    if (package /= "") call errors%push_input(case%solver%method_at, "the program was built "// &
+        "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
+        "built with the package "//package)
   end subroutine check_solver
 
   !> Join the lines of the title.
@@ -368,8 +374,8 @@ contains
     end do
   end subroutine check_start
 
-  !> Report the first phase in which the sheet is free to move as a rigid body and no tool is
-  !> active.
+  !> Report the first phase in which the sheet, or a part of it, is free to move as a rigid body and
+  !> no tool is active.
   subroutine check_supports(model, case, errors)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
@@ -378,18 +384,21 @@ contains
 
     type(rigid_motion_t) :: body
     character(len=:), allocatable :: motion
-    integer :: i
+    integer :: part(model%n_node), i, k
 
+    part = parts_of_nodes(model%connectivity, model%n_node)
     do i = 1, size(model%phase)
       if (any(model%phase(i)%active)) cycle
-      call new_rigid_motion(body, model%x0)
-      call body%hold_prescribed(model%x0, model%phase(i)%prescribed)
-      motion = body%free_motion()
-      if (len(motion) == 0) cycle
-      call errors%push_input(case%phase(i)%source%opened, "nothing holds the sheet in phase '"// &
-          case%phase(i)%source%called()//"': it is free to "//motion, &
-          "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
-      return
+      do k = 1, maxval(part)
+        call new_supported_part(body, model%x0, model%phase(i)%prescribed, part == k)
+        motion = body%free_motion()
+        if (len(motion) == 0) cycle
+        call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &
+            part_name(part, k)//" in phase '"//case%phase(i)%source%called()// &
+            "': it is free to "//motion, &
+            "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
+        return
+      end do
     end do
   end subroutine check_supports
 

@@ -8,7 +8,7 @@ module dd3_model_rigid_motion
   use dd3_linalg_tensor, only : cross
   implicit none
   private
-  public :: rigid_motion_t, new_rigid_motion
+  public :: rigid_motion_t, new_rigid_motion, new_supported_part
 
   !> Pivots below this fraction of the trace are round-off.
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -45,6 +45,23 @@ contains
     self%centre = sum(x, dim=2)/real(max(1, size(x, 2)), wp)
     self%size = maxval([(norm2(x(:, n) - self%centre), n=1, size(x, 2))])
   end subroutine new_rigid_motion
+
+  !> Make a body of some nodes with their supports.
+  pure subroutine new_supported_part(self, x, prescribed, member)
+    type(rigid_motion_t), intent(out) :: self
+    !> Positions of all nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Components with a prescribed displacement, `(3, n_node)`.
+    logical, intent(in) :: prescribed(:, :)
+    !> Nodes of the body, `(n_node)`.
+    logical, intent(in) :: member(:)
+
+    integer :: node(count(member)), n
+
+    node = pack([(n, n=1, size(member))], member)
+    call new_rigid_motion(self, x(:, node))
+    call self%hold_prescribed(x(:, node), prescribed(:, node))
+  end subroutine new_supported_part
 
   !> Hold a point in a direction.
   pure subroutine hold(self, x, direction)

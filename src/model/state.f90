@@ -30,7 +30,7 @@ module dd3_model_state
     real(wp), allocatable :: reaction(:, :)
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
-    !> Whether the force of `until` is approached from below.
+    !> Whether the force of `until` is approached from below; true for a displacement.
     logical :: until_from_below = .true.
   end type phase_start_t
 

@@ -19,7 +19,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: gap
+    real(wp) :: gap, start(3)
     logical :: found
     integer :: i, k
 
@@ -29,7 +29,9 @@ contains
           gap = spec%value
           if (spec%in_thicknesses) gap = gap*model%thickness
           associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
-            call offset_at_gap(tool%surface, other%surface, tool%position - other%position, gap, &
+            start = tool%position - other%position
+            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
+            call offset_at_gap(tool%surface, other%surface, start, gap, &
                 model%phase(i)%gap_offset(spec%tool), found)
             if (.not. found) call errors%push_input(spec%at, "no displacement along z gives this "// &
                 "gap between '"//tool%name//"' and '"//other%name//"'", &
@@ -39,5 +41,21 @@ contains
       end do
     end do
   end subroutine set_gaps
+
+  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
+  pure function aside(model, phase, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: phase
+    integer, intent(in) :: tool
+    real(wp) :: aside(2)
+
+    integer :: i
+
+    aside = 0.0_wp
+    do i = 1, phase
+      aside = aside + model%phase(i)%move(:2, tool)
+    end do
+  end function aside
 
 end module dd3_model_tool_gaps

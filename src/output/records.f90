@@ -1,6 +1,8 @@
-!> Records of a run: history.csv, status.csv, fields.vtkhdf and restart.h5.
+!> Records of a run: history.csv, status.csv, fields.vtkhdf and restart.h5. Of several ranks only
+!> the first writes them, and gives the others its errors.
 module dd3_output_records
-  use dd3_base_error, only : error_t, keep_first
+  use dd3_base_error, only : error_t, keep_first, share_error
+  use dd3_base_ranks, only : this_rank
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t
@@ -43,11 +45,14 @@ contains
 
     self%directory = directory
     self%restart_increment = state%increment
-    call self%history%open(model, directory, error)
-    if (.not. allocated(error)) call self%status%open(directory, error)
-    if (.not. allocated(error)) call self%fields%open(model, directory, error)
-    if (.not. allocated(error)) call self%history%write(model, state, error)
-    if (.not. allocated(error)) call write_fields(self, model, state, error)
+    if (this_rank() == 0) then
+      call self%history%open(model, directory, error)
+      if (.not. allocated(error)) call self%status%open(directory, error)
+      if (.not. allocated(error)) call self%fields%open(model, directory, error)
+      if (.not. allocated(error)) call self%history%write(model, state, error)
+      if (.not. allocated(error)) call write_fields(self, model, state, error)
+    end if
+    call share_error(error)
     self%restart_fields = state%fields_increment
   end subroutine records_open
 
@@ -65,30 +70,44 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    logical :: found
-
     self%directory = directory
     self%restart_increment = state%increment
     lost = ""
-    call self%history%resume(model, state, source, directory, found, error)
+    if (this_rank() == 0) call resume_files(self, model, source, state, lost, error)
+    call share_error(error)
+    self%restart_fields = state%fields_increment
+  end subroutine records_resume
+
+  !> Continue the files; see `records_resume`.
+  subroutine resume_files(self, model, source, state, lost, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    character(len=*), intent(in) :: source
+    type(state_t), intent(inout) :: state
+    character(len=:), allocatable, intent(inout) :: lost
+    type(error_t), allocatable, intent(out) :: error
+
+    logical :: found
+
+    call self%history%resume(model, state, source, self%directory, found, error)
     if (allocated(error)) return
     if (.not. found) then
       lost = lost//" history.csv"
       call self%history%write(model, state, error)
     end if
-    if (.not. allocated(error)) call self%status%resume(state, source, directory, found, error)
+    if (.not. allocated(error)) call self%status%resume(state, source, self%directory, found, &
+        error)
     if (allocated(error)) return
     if (.not. found) lost = lost//" status.csv"
-    call self%fields%resume(model, state, source, directory, found, error)
+    call self%fields%resume(model, state, source, self%directory, found, error)
     if (allocated(error)) return
     if (.not. found) then
       lost = lost//" fields.vtkhdf"
       call write_fields(self, model, state, error)
     end if
     ! In another folder, or from another file, a restart file there would not fit the records.
-    if (.not. allocated(error)) call write_restart(directory, model, state, error)
-    self%restart_fields = state%fields_increment
-  end subroutine records_resume
+    if (.not. allocated(error)) call write_restart(self%directory, model, state, error)
+  end subroutine resume_files
 
   !> Add the row of an attempt to status.csv.
   subroutine add_attempt(self, row, error)
@@ -97,7 +116,8 @@ contains
     !> Set if the row cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    call self%status%add(row, error)
+    if (this_rank() == 0) call self%status%add(row, error)
+    call share_error(error)
   end subroutine add_attempt
 
   !> Write an accepted increment.
@@ -111,13 +131,25 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
+    if (this_rank() == 0) call write_due(self, model, state, fields_due, error)
+    call share_error(error)
+  end subroutine write_increment
+
+  !> Write an accepted increment to the files that are due.
+  subroutine write_due(self, model, state, fields_due, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    logical, intent(in) :: fields_due
+    type(error_t), allocatable, intent(out) :: error
+
     call self%history%write(model, state, error)
     if (allocated(error)) return
     if (fields_due .or. every(model%output%fields_increments, state)) &
       call write_fields(self, model, state, error)
     if (allocated(error)) return
     if (every(model%output%restart_every, state)) call save(self, model, state, error)
-  end subroutine write_increment
+  end subroutine write_due
 
   !> Whether an output of every n-th increment is due.
   pure logical function every(n, state)
@@ -138,8 +170,11 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    call write_fields(self, model, state, error)
-    if (.not. allocated(error)) call save(self, model, state, error)
+    if (this_rank() == 0) then
+      call write_fields(self, model, state, error)
+      if (.not. allocated(error)) call save(self, model, state, error)
+    end if
+    call share_error(error)
   end subroutine write_phase_end
 
   !> Write the fields of a state.
@@ -181,6 +216,17 @@ contains
     !> Reason of the end of the run; set if it is not yet and a record cannot be closed.
     type(error_t), allocatable, intent(inout) :: error
 
+    if (this_rank() == 0) call close_files(self, model, state, error)
+    call share_error(error)
+  end subroutine records_close
+
+  !> Close the files; see `records_close`.
+  subroutine close_files(self, model, state, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(inout) :: error
+
     type(error_t), allocatable :: late
 
     call save(self, model, state, late)
@@ -193,6 +239,6 @@ contains
     call keep_first(error, late)
     call self%fields%close(late)
     call keep_first(error, late)
-  end subroutine records_close
+  end subroutine close_files
 
 end module dd3_output_records

@@ -7,10 +7,11 @@ module dd3_process_corrector
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_interrupt, only : interrupted
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : tangential
   use dd3_process_active_set, only : keeps_changing, record_status, unsettled, &
       update_active_set
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, &
@@ -20,7 +21,7 @@ module dd3_process_corrector
   use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
   use dd3_system_enhanced, only : enhanced_square, subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_contact, only : not_held
+  use dd3_system_contact, only : contact_work_t, not_held
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_reduced
@@ -99,6 +100,8 @@ contains
         if (verdict%outcome /= verdict_converged) return
         call record_status(correction, system%contact, j)
         call check_convergence(model, trial, system, attempt)
+        call system%partition%check_agreement(verdict%norm, verdict)
+        if (verdict%outcome == verdict_impossible) return
         if (verdict%outcome == verdict_converged &
             .or. (j > 1 .and. verdict%norm < settled*phase%newton%tolerance)) then
           call balance_tools(model, committed, trial, system, moved)
@@ -158,8 +161,9 @@ contains
         .and. minloc(criterion, dim=1) <= j - without_progress
   end function is_lost
 
-  !> Set the reason why the last iteration did not converge: a pressed tool without contact, the
-  !> force on a tool, or the residual of a node; empty if the contact status has not settled.
+  !> Set the reason why the last iteration did not converge: a pressed tool without contact, a node
+  !> led into a tool, the force on a tool, or the residual of a node; empty if the contact status
+  !> has not settled.
   subroutine explain(model, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -177,6 +181,11 @@ contains
         return
       end if
       verdict%node = correction%worst_node
+      if (is_led_inside(model, phase%prescribed, system%contact, &
+          model%candidate_of(max(1, verdict%node)))) then
+        verdict%reason = "a prescribed motion leads a node into a tool"
+        return
+      end if
       if (any(unsettled(correction))) return
       reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
           //to_text(correction%worst_node)
@@ -189,6 +198,24 @@ contains
       verdict%reason = reason//" after "//to_text(verdict%iterations)//" iterations"
     end associate
   end subroutine explain
+
+  !> Whether a candidate lies in a tool out of which its supports do not let it.
+  pure logical function is_led_inside(model, prescribed, contact, c)
+    type(model_t), intent(in) :: model
+    !> `(3, n_node)`.
+    logical, intent(in) :: prescribed(:, :)
+    type(contact_work_t), intent(in) :: contact
+    !> Number of the candidate; 0 for none.
+    integer, intent(in) :: c
+
+    real(wp) :: free(3)
+
+    is_led_inside = .false.
+    if (c == 0) return
+    if (contact%tool(c) == 0 .or. contact%distance(c) >= -model%tolerance%closed) return
+    free = merge(0.0_wp, contact%normal(:, c), prescribed(:, model%contact_node(c)))
+    is_led_inside = norm2(free) <= tangential
+  end function is_led_inside
 
   !> Evaluate stresses, internal forces, contact and residuals of the trial state; in the first
   !> iteration, which is never the last, the stiffness too. A step that inverts an element is

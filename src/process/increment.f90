@@ -11,20 +11,25 @@ module dd3_process_increment
   use dd3_process_corrector, only : correct
   use dd3_process_external, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
-  use dd3_process_phase_end, only : progress_tolerance
+  use dd3_process_phase_end, only : progress_tolerance, until_fraction
   use dd3_process_predictor, only : predict
   use dd3_process_stepper, only : stepper_t
   use dd3_process_work, only : add_work
+  use dd3_system_partition, only : share_state
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
-  public :: prepare_increment, try_increment, shrink_increment, accept_increment
+  public :: prepare_increment, try_increment, shrink_increment, return_to_until, accept_increment
 
   !> Factor on r_cap after an accepted increment; value of r_cap above which the bound is removed.
   real(wp), parameter :: r_cap_factor = 1.5_wp, largest_r_cap = 1.0e3_wp
   !> Smallest factor on r after an increment that took more iterations than the target.
   real(wp), parameter :: smallest_factor = 0.5_wp
+  !> Limiter of an attempt that returns to the early end of the phase, and the largest number of
+  !> attempts up to which it is repeated.
+  character(len=*), parameter :: early_end = "until"
+  integer, parameter :: most_returns = 10
 
 contains
 
@@ -130,6 +135,30 @@ contains
     end associate
   end subroutine shrink_increment
 
+  !> Reduce r for another attempt if a converged one has gone beyond the early end of the phase: the
+  !> prediction extrapolates linearly, and knows nothing of nodes that meet a tool.
+  subroutine return_to_until(phase, committed, trial, stepper, again)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: committed
+    !> Converged.
+    type(state_t), intent(in) :: trial
+    type(stepper_t), intent(inout) :: stepper
+    !> Whether another attempt is due.
+    logical, intent(out) :: again
+
+    real(wp) :: fraction
+
+    fraction = until_fraction(phase, committed, trial)
+    associate (attempt => stepper%attempt)
+      again = fraction < 1.0_wp .and. fraction > 0.0_wp .and. attempt%number < most_returns
+      if (.not. again) return
+      attempt%limit%r = fraction*attempt%limit%r
+      attempt%limit%name = early_end
+      attempt%solver = solve_info_t()
+      attempt%number = attempt%number + 1
+    end associate
+  end subroutine return_to_until
+
   !> Commit the trial state. A cut-back, or more iterations than the target, set a bound of r, which
   !> every other accepted increment raises; a failed increment leaves none, so that a restart
   !> repeats its attempts.
@@ -142,6 +171,7 @@ contains
 
     real(wp) :: factor
 
+    call share_state(stepper%system%partition, trial)
     call add_work(model, stepper%system%contact, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
@@ -153,7 +183,7 @@ contains
             sqrt(real(newton%target_iterations, wp)/real(attempt%verdict%iterations, wp)))
         committed%r_cap = attempt%limit%r
         committed%r_cap_by_iterations = .true.
-      else if (attempt%number > 1) then
+      else if (attempt%number > 1 .and. attempt%limit%name /= early_end) then
         committed%r_cap = attempt%limit%r
         committed%r_cap_by_iterations = .false.
       end if

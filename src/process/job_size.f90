@@ -37,16 +37,17 @@ contains
   !> Find the size of a job by its symbolic factorisation, which is not made if there is too little
   !> memory for the rest. The memory of UMFPACK, where it stands in for a solver that fails, comes
   !> on top.
-  subroutine find_job_size(self, model, state, options, error)
+  subroutine find_job_size(self, model, state, options, solver, error)
     type(job_size_t), intent(out) :: self
     type(model_t), intent(in) :: model
     !> Initial state.
     type(state_t), intent(in) :: state
     type(solver_options_t), intent(in) :: options
+    !> The solver, set up for the run; not allocated if there is too little memory for the rest.
+    class(linear_solver_t), allocatable, intent(out) :: solver
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
 
-    class(linear_solver_t), allocatable :: solver
     type(block_matrix_t) :: matrix
     real(wp) :: without_solver
 
@@ -64,7 +65,6 @@ contains
     self%blocks = size(matrix%column)
     self%factors = solver%factor_bytes()
     self%total = without_solver + matrix_bytes(self%blocks) + solver%bytes()
-    call solver%release()
   end subroutine find_job_size
 
   !> Return the memory of the stiffness and the reduced matrix, bytes.

@@ -3,6 +3,7 @@
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
+  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, broadcast_text, rank_of_smallest
   use dd3_base_threads, only : least_elements, threads_for
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
@@ -99,10 +100,28 @@ contains
     do i = 1, size(table)
       limit = table(i)%evaluate(model, state, stepper)
       if (limit%name == "") limit%name = table(i)%name
+      if (stepper%system%partition%divided) call share_limit(limit)
       call keep_smaller(stepper%attempt%limit, limit)
       if (table(i)%name == "force") stepper%attempt%force_limit = limit
     end do
   end subroutine apply
+
+  !> Give all ranks the smallest bound; of equal ones that of the element with the lowest number.
+  subroutine share_limit(limit)
+    type(limit_t), intent(inout) :: limit
+
+    integer :: rank, numbers(4)
+    real(wp) :: values(2)
+
+    rank = rank_of_smallest(limit%r, limit%element)
+    numbers = [limit%element, limit%point, limit%node, limit%tool]
+    values = [limit%r, limit%force_size]
+    call broadcast_integers(rank, size(numbers), numbers)
+    call broadcast_reals(rank, size(values), values)
+    call broadcast_text(rank, limit%name)
+    limit = limit_t(values(1), limit%name, numbers(1), numbers(2), numbers(3), numbers(4), &
+        values(2))
+  end subroutine share_limit
 
   !> Keep the smaller of two bounds, the first of equal ones.
   subroutine keep_smaller(limit, candidate)

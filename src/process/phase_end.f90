@@ -7,7 +7,8 @@ module dd3_process_phase_end
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: phase_is_over, next_output_progress, until_met, until_value, progress_tolerance
+  public :: phase_is_over, next_output_progress, until_met, until_value, until_fraction, &
+      until_tolerance, progress_tolerance
 
   !> Tolerance of the progress at the end of a phase and at outputs.
   real(wp), parameter :: progress_tolerance = 1.0e-9_wp
@@ -34,8 +35,7 @@ contains
 
     real(wp) :: tolerance, value
 
-    tolerance = force_tolerance
-    if (phase%until%kind == until_displacement) tolerance = displacement_tolerance
+    tolerance = until_tolerance(phase)
     value = abs(until_value(phase, state))
     if (state%start%until_from_below) then
       until_met = value >= phase%until%value*(1.0_wp - tolerance)
@@ -59,6 +59,38 @@ contains
       end if
     end associate
   end function until_value
+
+  !> Return the relative tolerance of the value that ends a phase early.
+  pure real(wp) function until_tolerance(phase)
+    type(phase_t), intent(in) :: phase
+
+    until_tolerance = force_tolerance
+    if (phase%until%kind == until_displacement) until_tolerance = displacement_tolerance
+  end function until_tolerance
+
+  !> Return the fraction of an increment, by linear interpolation, after which a phase ends early, if
+  !> the increment has gone beyond that end by more than the tolerance; 1 otherwise.
+  pure real(wp) function until_fraction(phase, before, after) result(fraction)
+    type(phase_t), intent(in) :: phase
+    !> States at the start and at the end of the increment.
+    type(state_t), intent(in) :: before, after
+
+    real(wp) :: old, new, excess
+    logical :: from_below
+
+    fraction = 1.0_wp
+    if (phase%until%tool == 0) return
+    from_below = before%start%until_from_below
+    old = until_value(phase, before)
+    new = until_value(phase, after)
+    if (merge(new, old, from_below) < 0.0_wp) then
+      old = -old
+      new = -new
+    end if
+    excess = merge(1.0_wp, -1.0_wp, from_below)*(new - phase%until%value)
+    if (excess <= until_tolerance(phase)*phase%until%value) return
+    fraction = (phase%until%value - old)/(new - old)
+  end function until_fraction
 
   !> Return the progress at the next output of fields; a huge value if none is left in the phase.
   pure real(wp) function next_output_progress(output, phase, state) result(progress)

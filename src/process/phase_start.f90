@@ -61,6 +61,7 @@ contains
       where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
       call set_tool_loads(phase, state)
+      start%until_from_below = .true.
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(phase, state)

@@ -9,10 +9,11 @@ module dd3_process_phase_warnings
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
-  use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
+  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
+  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
-  use dd3_process_phase_end, only : until_met, until_value
+  use dd3_process_phase_end, only : until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
   implicit none
   private
@@ -35,25 +36,33 @@ contains
         " (`free` frees them)"
   end function kept_note
 
-  !> Return a warning if a phase with an early end went on to its end; empty otherwise.
+  !> Return a warning if a phase with an early end went on to its end, or beyond the value that should
+  !> end it; empty otherwise.
   function until_warning(phase, state) result(text)
     type(phase_t), intent(in) :: phase
     !> State at the end of the phase.
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    character(len=:), allocatable :: quantity, unit
+    character(len=:), allocatable :: quantity, unit, fault
+    real(wp) :: excess
 
     text = ""
     if (phase%until%tool == 0) return
-    if (until_met(phase, state)) return
+    fault = "without meeting"
+    if (until_met(phase, state)) then
+      excess = abs(until_value(phase, state)) - phase%until%value
+      if (.not. state%start%until_from_below) excess = -excess
+      if (excess <= until_tolerance(phase)*phase%until%value) return
+      fault = "beyond"
+    end if
     quantity = "displacement"
     unit = " mm"
     if (phase%until%kind == until_force) then
       quantity = "force"
       unit = " N"
     end if
-    text = "warning: phase '"//phase%name//"' ended without meeting its `until`: the "//quantity// &
+    text = "warning: phase '"//phase%name//"' ended "//fault//" its `until`: the "//quantity// &
         " is "//to_text(abs(until_value(phase, state)), 4)//unit//", not "// &
         to_text(phase%until%value)//unit
   end function until_warning
@@ -86,8 +95,8 @@ contains
     end associate
   end function press_warning
 
-  !> Return a warning if neither supports nor tools in contact hold the sheet at the start of a
-  !> phase; empty otherwise.
+  !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at the
+  !> start of a phase; empty otherwise.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.
@@ -95,31 +104,36 @@ contains
     character(len=:), allocatable :: text
 
     type(rigid_motion_t) :: body
-    integer :: tool
+    integer :: part(model%n_node), k, tool
 
+    text = ""
+    part = parts_of_nodes(model%connectivity, model%n_node)
     associate (phase => model%phase(state%phase))
-      call new_rigid_motion(body, state%x)
-      call body%hold_prescribed(state%x, phase%prescribed)
-      text = body%free_motion()
-      if (len(text) == 0) return
-      do tool = 1, model%n_tool
-        if (phase%active(tool)) call hold_in_contact(body, model, phase, state, tool)
+      do k = 1, maxval(part)
+        call new_supported_part(body, state%x, phase%prescribed, part == k)
+        if (len(body%free_motion()) == 0) cycle
+        do tool = 1, model%n_tool
+          if (phase%active(tool)) call hold_in_contact(body, model, state, tool, part == k)
+        end do
+        text = body%free_motion()
+        if (len(text) == 0) cycle
+        text = "warning: at the start of phase '"//phase%name//"' nothing holds "// &
+            part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool in "// &
+            "contact from the start"
+        return
       end do
-      text = body%free_motion()
-      if (len(text) > 0) text = "warning: at the start of phase '"//phase%name//"' nothing "// &
-          "holds the sheet: it is free to "//text//"; supports are missing, or a tool in "// &
-          "contact from the start"
     end associate
   end function support_warning
 
   !> Hold a body where a tool is in contact, in the normal direction and, with friction, in the
   !> tangential ones; a pressed tool does not hold along its line.
-  subroutine hold_in_contact(body, model, phase, state, tool)
+  subroutine hold_in_contact(body, model, state, tool, member)
     type(rigid_motion_t), intent(inout) :: body
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
+    !> Nodes of the body, `(n_node)`.
+    logical, intent(in) :: member(:)
 
     type(hint_t) :: hint
     type(hit_t) :: hit
@@ -127,8 +141,8 @@ contains
     integer :: c, d
 
     do c = 1, model%n_contact
-      if (.not. model%candidate(tool, c)) cycle
-      associate (x => state%x(:, model%contact_node(c)))
+      if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
+      associate (x => state%x(:, model%contact_node(c)), phase => model%phase(state%phase))
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
             model%tolerance%touch, model%tolerance%committed_depth, hit)

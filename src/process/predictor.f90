@@ -7,6 +7,7 @@ module dd3_process_predictor
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
@@ -24,6 +25,7 @@ module dd3_process_predictor
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_drawbead, only : place_beads
   use dd3_system_load_stiffness, only : add_load_stiffness
+  use dd3_system_partition, only : partition_t
   use dd3_system_reduced, only : contact_force_increment
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -105,7 +107,7 @@ contains
             [3, model%n_node])
         self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
         call point_increments(self, model, committed, system)
-        call switch_unloading(self, model, committed, switched)
+        call switch_unloading(self, model, committed, system%partition, switched)
         if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
       end do
@@ -185,6 +187,7 @@ contains
 
     !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e, p)
     do e = 1, model%n_element
+      if (.not. system%partition%evaluated(e)) cycle
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
           call material%continuum_tangent(committed%stress(:, p, e), &
@@ -210,6 +213,7 @@ contains
     !$ thread = omp_get_thread_num() + 1
     !$omp do
     do e = 1, model%n_element
+      if (.not. system%partition%evaluated(e)) cycle
       call element_increments(self, model, committed, e, system%element(thread))
     end do
     !$omp end do
@@ -239,20 +243,22 @@ contains
   end subroutine element_increments
 
   !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
-  subroutine switch_unloading(self, model, committed, switched)
+  subroutine switch_unloading(self, model, committed, partition, switched)
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
+    type(partition_t), intent(in) :: partition
     !> Number of these points.
     integer, intent(out) :: switched
 
-    real(wp) :: direction(6)
+    real(wp) :: direction(6), total(1)
     integer :: e, p
 
     switched = 0
     !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) &
     !$omp& private(direction, e, p) reduction(+: switched)
     do e = 1, model%n_element
+      if (.not. partition%evaluated(e)) cycle
       associate (material => model%material(model%material_of(e)))
         do p = 1, model%element%n_point
           if (.not. self%plastic(p, e)) cycle
@@ -261,11 +267,14 @@ contains
           if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
               self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
-          switched = switched + 1
+          if (partition%own_element(e)) switched = switched + 1
         end do
       end associate
     end do
     !$omp end parallel do
+    total = real(switched, wp)
+    call sum_over_ranks(1, total)
+    switched = nint(total(1))
   end subroutine switch_unloading
 
   !> Set the displacement of the tools: the solution for pressed ones, the prescribed motion for the

@@ -14,6 +14,8 @@ module dd3_process_remedy
 
   character(len=*), parameter :: contact_remedy = "a tool that lies before the sheet along its "// &
       "force, a support of the sheet"
+  character(len=*), parameter :: motion_remedy = "a prescribed motion that leads no "// &
+      "node into a tool"
   character(len=*), parameter :: memory_remedy = "method = cgs in *SOLVER"
   character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
       "stop rigid motion"
@@ -42,11 +44,14 @@ contains
     associate (phase => model%phase(committed%phase), reason => attempt%verdict%reason)
       if (begins(reason, "nothing resists")) then
         remedy = contact_remedy
+      else if (begins(reason, "a prescribed motion")) then
+        remedy = motion_remedy
       else if (begins(reason, "linear solver: not enough memory")) then
         remedy = memory_remedy
       else if (begins(reason, "linear solver")) then
         remedy = solver_remedy
-        if (begins(attempt%solver%solver, "umfpack")) remedy = support_remedy
+        if (begins(attempt%solver%solver, "umfpack") .or. index(reason, "singular") > 0) &
+            remedy = support_remedy
       else if (committed%increment == 0 .and. begins(reason, "an iteration moved")) then
         remedy = support_remedy
       else if (.not. phase%newton%cutback) then

@@ -5,19 +5,20 @@ module dd3_process_run
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
+  use dd3_base_ranks, only : n_ranks
   use dd3_base_text, only : text_t, to_text
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry
   use dd3_input_case, only : solver_spec_t
-  use dd3_linalg_solver, only : solver_options_t
+  use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_records, only : records_t
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
-  use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
-      try_increment
+  use dd3_process_increment, only : accept_increment, prepare_increment, return_to_until, &
+      shrink_increment, try_increment
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
   use dd3_process_phase_start, only : begin_phase, check_returns
   use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
@@ -27,6 +28,7 @@ module dd3_process_run
   use dd3_process_tool_observation, only : observe_tools
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
+  use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system, system_t
   implicit none
   private
@@ -74,9 +76,11 @@ contains
 
   !> Run a model from a state to the end of its last phase. The records are complete also if the run
   !> stops before.
-  subroutine run_model(model, start, log, summary, error)
+  subroutine run_model(model, start, solver, log, summary, error)
     type(model_t), intent(in) :: model
     type(run_start_t), intent(in) :: start
+    !> Linear solver, as `find_job_size` returns it; moved into the run.
+    class(linear_solver_t), allocatable, intent(inout) :: solver
     type(log_t), intent(inout) :: log
     type(run_summary_t), intent(out) :: summary
     !> Set if the run stopped before the end.
@@ -89,9 +93,11 @@ contains
     began = wall_time()
     call set_threads(start%threads)
     run%committed = start%state
-    call new_system(run%stepper%system, model, solver_options(start), error)
+    call new_system(run%stepper%system, model, solver_options(start), error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
+    if (run%stepper%system%partition%divided) &
+        call log%note(partition_report(run%stepper%system%partition))
     call new_prediction(run%stepper%prediction, model)
     call open_records(run, model, start, log, error)
     if (.not. allocated(error)) then
@@ -109,11 +115,13 @@ contains
     summary%seconds = wall_time() - began
   end subroutine run_model
 
-  !> Return the options of the linear solver.
-  pure type(solver_options_t) function solver_options(start)
+  !> Return the options of the linear solver. Several ranks need one that works on distributed
+  !> matrices.
+  type(solver_options_t) function solver_options(start)
     type(run_start_t), intent(in) :: start
 
     solver_options%method = start%solver%method
+    if (n_ranks() > 1 .and. solver_options%method == "auto") solver_options%method = "petsc_mumps"
     solver_options%ilu_level = start%solver%ilu_level
     solver_options%tolerance = start%solver%tolerance
     solver_options%iterations = start%solver%iterations
@@ -276,13 +284,18 @@ contains
         again = .false.
         if (predicted .and. attempt%verdict%outcome == verdict_retry) &
             call shrink_increment(phase, stepper, again)
+        if (attempt%verdict%outcome == verdict_converged) then
+          call return_to_until(phase, run%committed, run%trial, stepper, again)
+          if (again) row%reason = "beyond the value of `until`"
+        end if
         if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
         run%summary%solver_iterations = run%summary%solver_iterations + row%solver_iterations
         if (allocated(error) .or. .not. again) exit
-        run%summary%retries = run%summary%retries + 1
+        if (attempt%verdict%outcome /= verdict_converged) &
+            run%summary%retries = run%summary%retries + 1
       end do
       if (attempt%verdict%outcome == verdict_converged) then
         call accept_increment(model, run%trial, stepper, run%committed)

@@ -83,6 +83,8 @@ contains
       end if
       call nodal_forces(model%load_set, start%load, model%contact_node, start%fading, force)
       force = force + start%reaction
+      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
+          start%pressure, state%x, force)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
           "warning: the forces that fade in phase '"//phase%name// &

@@ -12,9 +12,9 @@ module dd3_system_enhanced
 
   !> Data of the condensation; arrays of size zero for elements without enhanced strains.
   type :: enhanced_t
-    !> Forces conjugate to the parameters, zero in equilibrium, `(n_enhanced, n_element)`, N mm.
+    !> Forces conjugate to the parameters, zero in equilibrium, `(n_enhanced, n_element)`, N/mm.
     real(wp), allocatable :: residual(:, :)
-    !> Increments of the parameters without displacement, and for unit displacements (1/mm),
+    !> Increments of the parameters without displacement, mm2, and for unit displacements, mm,
     !> `(n_enhanced, n_element)` and `(n_enhanced, 3, n_element_node, n_element)`; their signs are
     !> reversed.
     real(wp), allocatable :: offset(:, :), gain(:, :, :, :)
@@ -87,14 +87,15 @@ contains
   end subroutine subtract_condensed
 
   !> Return the sum of squares of the parameters' residuals as forces on the faces of the elements,
-  !> N2. A parameter is a strain at the face; half the thickness times it is the motion of the face.
+  !> N2. A parameter is the strain at the face times the square of half the thickness, that is the
+  !> motion of the face times half the thickness.
   pure real(wp) function enhanced_square(self, thickness) result(total)
     type(enhanced_t), intent(in) :: self
     !> mm.
     real(wp), intent(in) :: thickness
 
     total = 0.0_wp
-    if (size(self%residual) > 0) total = sum((self%residual*(2.0_wp/thickness))**2)
+    if (size(self%residual) > 0) total = sum((self%residual*(0.5_wp*thickness))**2)
   end function enhanced_square
 
 end module dd3_system_enhanced

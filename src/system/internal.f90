@@ -12,6 +12,7 @@ module dd3_system_internal
   use dd3_linalg_matrix, only : add_element, clear
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_system_partition, only : share_verdict
   use dd3_system_enhanced, only : store_condensation
   use dd3_system_system, only : system_t
   implicit none
@@ -48,6 +49,7 @@ contains
       do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
+          if (.not. system%partition%evaluated(e)) cycle
           call update_element(model, committed, trial, e, system%element(thread), &
               system%tangent(:, :, :, e), mine)
           if (mine%outcome == verdict_converged) then
@@ -63,6 +65,11 @@ contains
       !$omp end do
     end do
     !$omp end parallel
+    call share_verdict(system%partition, verdict)
+    if (verdict%outcome /= verdict_converged) return
+    call system%partition%share_nodes(trial%internal_force)
+    call system%partition%share_elements(size(system%enhanced%residual), system%enhanced%residual)
+    if (with_stiffness) call system%partition%share_nodes(system%enhanced%force)
   end subroutine update_material
 
   !> Update one element.
@@ -129,6 +136,7 @@ contains
       do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
+          if (.not. system%partition%evaluated(e)) cycle
           call set_element(model, e, system%element(thread), committed, trial)
           call add_stiffness(system, model, e, system%element(thread))
         end do
@@ -136,6 +144,7 @@ contains
       !$omp end do
     end do
     !$omp end parallel
+    call system%partition%share_nodes(system%enhanced%force)
   end subroutine assemble_stiffness
 
   !> Set the workspace of an element to its trial configuration, or to the committed one.

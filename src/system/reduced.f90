@@ -9,8 +9,10 @@
 !> Menezes, Finite Elem. Anal. Des. 40 (2004) 1995-2010, eq. (6).
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_linalg_tensor, only : identity
   use dd3_linalg_matrix, only : block_matrix_t, copy_blocks, position_of
+  use dd3_linalg_partition, only : holds_row
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_contact_operator, only : status_gap
@@ -59,7 +61,7 @@ contains
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
   end subroutine new_linear_problem
 
-  !> Build the reduced matrix and its right-hand side.
+  !> Build the reduced matrix, of several ranks each its rows, and the right-hand side.
   subroutine reduce(model, phase, contact, stiffness, problem, reduced)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
@@ -87,6 +89,7 @@ contains
       end if
       call reduce_node(model, phase, contact, c, problem, reduced)
     end do
+    if (allocated(reduced%owner)) call share_tool_rows(model, phase, reduced)
     call finish_tool_rows(model, phase, contact, problem, reduced)
     call prescribe(phase, problem, reduced)
   end subroutine reduce
@@ -128,6 +131,7 @@ contains
       remaining(:, k) = 0.0_wp
       weight(k) = 0.0_wp
     end do
+    if (.not. holds_row(reduced, node)) return
     ! The columns of both rows ascend, and all of the node's are among the tool's.
     if (pressed) at = reduced%row_start(block)
     do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
@@ -150,6 +154,24 @@ contains
       call add_to_tool_row(reduced, block, row, block, -weight)
     end if
   end subroutine reduce_node
+
+  !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
+  subroutine share_tool_rows(model, phase, reduced)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: tool, block, first, last
+
+    do tool = 1, model%n_tool
+      block = model%tool_row(tool)
+      if (block == 0) cycle
+      if (.not. phase%pressed(tool)) cycle
+      first = reduced%row_start(block)
+      last = reduced%row_start(block + 1) - 1
+      call sum_over_ranks(9*(last - first + 1), reduced%value(:, :, first:last))
+    end do
+  end subroutine share_tool_rows
 
   !> Multiply a block by a factor from the left.
   pure subroutine multiply_left(factor, block)
@@ -309,12 +331,14 @@ contains
     real(wp) :: change(3)
     integer :: c, node, k, first
 
+    increment = 0.0_wp
     do c = 1, model%n_contact
+      node = model%contact_node(c)
+      if (.not. holds_row(stiffness, node)) cycle
       if (contact%status(c) == status_gap) then
         increment(:, c) = -contact%lambda(:, c)
         cycle
       end if
-      node = model%contact_node(c)
       change = 0.0_wp
       do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
         if (stiffness%column(k) > model%n_node) exit
@@ -326,6 +350,7 @@ contains
       where (phase%prescribed(:, node)) change = 0.0_wp
       increment(:, c) = -node_residual(phase, problem, node, c) - change
     end do
+    if (allocated(stiffness%owner)) call sum_over_ranks(size(increment), increment)
   end subroutine contact_force_increment
 
 end module dd3_system_reduced

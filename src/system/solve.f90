@@ -41,8 +41,14 @@ contains
     call system%profile%add(section_assembly)
     call system%solver%factor(system%reduced, verdict)
     call system%profile%add(section_factorisation)
-    if (verdict%node > model%n_node) call name_tool(model, verdict)
-    if (verdict%outcome /= verdict_converged) return
+    if (verdict%outcome /= verdict_converged) then
+      if (verdict%node > model%n_node) then
+        call name_tool(model, verdict)
+      else
+        call name_solver(verdict, trim(verdict%reason))
+      end if
+      return
+    end if
     call system%solver%solve(system%problem%rhs, system%problem%solution, report)
     call system%profile%add(section_solve)
     info%iterations = info%iterations + report%iterations
@@ -50,10 +56,22 @@ contains
     if (report%fallback) info%reason = report%reason
     if (.not. report%converged) then
       verdict%outcome = verdict_retry
-      verdict%reason = "linear solver: "//report%reason(:len(verdict%reason) - 15)
+      call name_solver(verdict, report%reason)
       verdict%norm = report%residual
     end if
   end subroutine solve_reduced
+
+  !> Set the reason of a linear solver that failed.
+  pure subroutine name_solver(verdict, reason)
+    type(verdict_t), intent(inout) :: verdict
+    character(len=*), intent(in) :: reason
+
+    character(len=*), parameter :: prefix = "linear solver: "
+    integer :: n
+
+    n = min(len(reason), len(verdict%reason) - len(prefix))
+    verdict%reason = prefix//reason(:n)
+  end subroutine name_solver
 
   !> Name the tool instead of its block row, which is empty if nothing resists the tool.
   subroutine name_tool(model, verdict)

@@ -5,6 +5,7 @@ module dd3_system_system
   use dd3_base_error, only : error_t
   use dd3_base_threads, only : most_threads
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
+  use dd3_linalg_partition, only : distribute_rows
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_element_work, only : element_work_t, new_element_work
@@ -13,6 +14,7 @@ module dd3_system_system
   use dd3_system_batches, only : batches_t, new_batches
   use dd3_system_contact, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
+  use dd3_system_partition, only : new_partition, partition_t
   use dd3_system_reduced, only : linear_problem_t, new_linear_problem
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
@@ -21,8 +23,10 @@ module dd3_system_system
 
   !> Data of assembly and solution.
   type :: system_t
-    !> Stiffness of the sheet, and the reduced matrix on the same pattern.
+    !> Stiffness of the sheet, and the reduced matrix on the same pattern: of several ranks each
+    !> has the values of its rows.
     type(block_matrix_t) :: stiffness, reduced
+    type(partition_t) :: partition
     !> Position of the blocks of an element in the matrix, `(n_element_node, n_element_node,
     !> n_element)`: row node, column node.
     integer, allocatable :: position(:, :, :)
@@ -47,17 +51,22 @@ module dd3_system_system
 
 contains
 
-  !> Build the patterns, allocate the work arrays and set up the solver.
-  subroutine new_system(self, model, options, error)
+  !> Build the patterns, allocate the work arrays and set up the solver, if it is not yet.
+  subroutine new_system(self, model, options, error, solver)
     type(system_t), intent(out) :: self
     type(model_t), intent(in) :: model
     type(solver_options_t), intent(in) :: options
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
+    !> Solver of these options, set up for the pattern of the stiffness; moved to the system unless
+    !> the rows are divided among ranks.
+    class(linear_solver_t), allocatable, intent(inout), optional :: solver
 
     integer :: i
 
     call new_stiffness_pattern(self%stiffness, model)
+    call distribute_rows(self%stiffness)
+    call new_partition(self%partition, model, self%stiffness)
     call find_positions(self%stiffness, model%connectivity, self%position)
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
@@ -75,6 +84,8 @@ contains
     call new_contact_work(self%contact, model%n_contact)
     allocate (self%bead(0))
     call new_linear_problem(self%problem, model, self%stiffness%n)
+    if (present(solver) .and. .not. self%partition%divided) call move_alloc(solver, self%solver)
+    if (allocated(self%solver)) return
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system

@@ -11,45 +11,25 @@
 !> solution (relative to its largest component) the largest values. Iterations and difference are
 !> repeated for a tolerance near round-off ("sharp").
 program benchmark_run_matrices
-  use dd3_base_clock, only : wall_time
-  use dd3_base_error, only : error_t, error_list_t
+  use dd3_base_clock, only : processor_time
+  use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : text_t, to_text
+  use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_contact_operator, only : status_gap, status_slip, status_stick
-  use dd3_input_case, only : case_t
-  use dd3_input_reader, only : read_case
   use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering, ordering_names
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
-  use dd3_linalg_solver_registry, only : new_linear_solver
-  use dd3_model_build, only : new_model
+  use dd3_linalg_solver_registry, only : new_linear_solver, present_solvers
   use dd3_model_model, only : model_t
-  use dd3_model_state, only : new_state, state_t
-  use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
-      try_increment
-  use dd3_process_phase_end, only : phase_is_over
-  use dd3_process_phase_start, only : begin_phase
-  use dd3_process_predictor, only : new_prediction
-  use dd3_process_stepper, only : stepper_t
-  use dd3_system_system, only : new_system
+  use run_samples, only : collect, read_model, sample_t, usual_options
   implicit none
 
-  !> Number of increments sampled in the last phase, and repeats of a measurement.
-  integer, parameter :: places = 10, repeats = 9
+  !> Repeats of a measurement.
+  integer, parameter :: repeats = 9
   !> Tolerance near round-off, with which solutions are compared.
   real(wp), parameter :: sharp_tolerance = 1.0e-14_wp
-
-  !> One linear system of the run.
-  type :: sample_t
-    !> Row of the first table.
-    character(len=120) :: origin = ""
-    type(block_matrix_t) :: matrix
-    !> Right-hand side and direct solution.
-    real(wp), allocatable :: b(:), reference(:)
-  end type sample_t
 
   !> Result of a solver for one system.
   type :: outcome_t
@@ -62,140 +42,18 @@ program benchmark_run_matrices
     real(wp) :: residual = 0.0_wp, difference = 0.0_wp
   end type outcome_t
 
-  type(case_t) :: case
   type(model_t) :: model
-  type(error_list_t) :: errors
-  type(text_t), allocatable :: override(:)
   type(sample_t), allocatable :: sample(:)
-  integer :: i
 
   if (command_argument_count() == 0) then
     error stop "benchmark_run_matrices <input file> [name=value ...]"
   end if
-  allocate (override(command_argument_count() - 1))
-  do i = 1, size(override)
-    override(i)%s = argument(i + 1)
-  end do
-  call read_case(case, argument(1), override, errors)
-  if (errors%count == 0) call new_model(model, case, errors)
-  if (errors%count > 0) then
-    do i = 1, errors%count
-      print '(a)', errors%item(i)%message
-    end do
-    error stop 1
-  end if
-  allocate (sample(0))
+  call read_model(model, 1)
   call collect(model, sample)
   call print_samples(sample)
   call compare(sample)
 
 contains
-
-  !> Return an argument of the command line.
-  function argument(number) result(text)
-    integer, intent(in) :: number
-    character(len=:), allocatable :: text
-
-    integer :: length
-
-    call get_command_argument(number, length=length)
-    allocate (character(len=length) :: text)
-    call get_command_argument(number, text)
-  end function argument
-
-  !> Return the options that the measurements vary.
-  pure type(solver_options_t) function usual_options(method) result(options)
-    character(len=*), intent(in) :: method
-
-    options%method = method
-    options%ilu_level = 2
-    options%tolerance = 1.0e-10_wp
-    options%iterations = 200
-    options%ordering = "none"
-  end function usual_options
-
-  !> Run the job and keep linear systems of it.
-  subroutine collect(model, sample)
-    type(model_t), intent(in) :: model
-    type(sample_t), allocatable, intent(inout) :: sample(:)
-
-    type(stepper_t) :: stepper
-    type(state_t) :: committed, trial
-    type(error_t), allocatable :: error
-    real(wp) :: step, next
-    logical :: chosen
-    integer :: number
-
-    call new_state(committed, model)
-    call new_state(trial, model)
-    call new_system(stepper%system, model, usual_options("auto"), error)
-    if (allocated(error)) error stop 1
-    call new_prediction(stepper%prediction, model)
-    do number = 1, size(model%phase)
-      call begin_phase(model, number, committed)
-      step = 1.0_wp
-      if (number == size(model%phase)) step = 1.0_wp/real(places, wp)
-      next = 0.5_wp*step
-      do while (.not. phase_is_over(model, committed))
-        chosen = committed%progress >= next
-        call run_increment(model, stepper, committed, trial, chosen, sample)
-        if (committed%increment /= trial%increment) return
-        if (chosen) next = next + step
-      end do
-    end do
-  end subroutine collect
-
-  !> Run one increment; `trial%increment` is -1 on return if it fails.
-  subroutine run_increment(model, stepper, committed, trial, chosen, sample)
-    type(model_t), intent(in) :: model
-    type(stepper_t), intent(inout) :: stepper
-    type(state_t), intent(inout) :: committed, trial
-    !> Whether to add the systems of the increment to `sample`.
-    logical, intent(in) :: chosen
-    type(sample_t), allocatable, intent(inout) :: sample(:)
-
-    logical :: again
-
-    trial%increment = -1
-    call prepare_increment(model, committed, stepper)
-    if (stepper%attempt%verdict%outcome /= verdict_converged) return
-    if (chosen) call keep("predictor", model, committed, stepper, sample)
-    do
-      call try_increment(model, committed, trial, stepper)
-      if (stepper%attempt%verdict%outcome == verdict_converged) exit
-      call shrink_increment(model%phase(committed%phase), stepper, again)
-      if (again) cycle
-      trial%increment = -1
-      return
-    end do
-    if (chosen) call keep("corrector", model, trial, stepper, sample)
-    call accept_increment(model, trial, stepper, committed)
-  end subroutine run_increment
-
-  !> Append the present linear system to the samples.
-  subroutine keep(part, model, state, stepper, sample)
-    !> Predictor or corrector.
-    character(len=*), intent(in) :: part
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(in) :: stepper
-    type(sample_t), allocatable, intent(inout) :: sample(:)
-
-    type(sample_t), allocatable :: longer(:)
-    integer :: n
-
-    n = size(sample)
-    allocate (longer(n + 1))
-    longer(:n) = sample
-    call move_alloc(longer, sample)
-    associate (this => sample(n + 1), status => stepper%system%contact%status)
-      this%matrix = stepper%system%reduced
-      this%b = stepper%system%problem%rhs
-      write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') &
-          n + 1, model%phase(state%phase)%name, state%travel, state%increment, part, count(state%plastic), &
-          count(status == status_gap), count(status == status_stick), count(status == status_slip)
-    end associate
-  end subroutine keep
 
   !> Print the table of the systems.
   subroutine print_samples(sample)
@@ -226,6 +84,7 @@ contains
     call measure(usual_options("umfpack"), "UMFPACK", sample)
     call measure(usual_options("auto"), "auto", sample)
     call measure(usual_options("block_lu"), "block LU", sample)
+    if (any(present_solvers() == "mumps")) call measure(usual_options("mumps"), "MUMPS", sample)
     options = usual_options("cgs")
     do i = 1, size(ordering_names)
       options%ordering = ordering_names(i)
@@ -301,9 +160,9 @@ contains
 
     call new_linear_solver(solver, options, error)
     if (allocated(error)) error stop 1
-    began = wall_time()
+    began = processor_time()
     call solver%setup(sample(1)%matrix)
-    setup = 1.0e3_wp*(wall_time() - began)
+    setup = 1.0e3_wp*(processor_time() - began)
     do k = 1, size(sample)
       call solve(solver, rounds, sample(k), outcome(k))
     end do
@@ -326,13 +185,13 @@ contains
     integer :: i
 
     do i = 1, rounds
-      began = wall_time()
+      began = processor_time()
       call solver%factor(sample%matrix, verdict)
-      factor(i) = 1.0e3_wp*(wall_time() - began)
+      factor(i) = 1.0e3_wp*(processor_time() - began)
       if (verdict%outcome /= verdict_converged) return
-      began = wall_time()
+      began = processor_time()
       call solver%solve(sample%b, x, report)
-      solution(i) = 1.0e3_wp*(wall_time() - began)
+      solution(i) = 1.0e3_wp*(processor_time() - began)
     end do
     if (.not. allocated(sample%reference)) sample%reference = x
     outcome%converged = report%converged .and. .not. report%fallback

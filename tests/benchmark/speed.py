@@ -28,7 +28,7 @@ from scripts import Problem, run  # noqa: E402
 
 CUP = ROOT / "input_files" / "square_cup" / "square_cup.dat"
 PAGE = ROOT / "docs" / "reports" / "speed.md"
-MARKS = ("<!-- speed.py -->\n", "<!-- end -->\n")
+BEGIN, END = "<!-- speed.py -->\n", "<!-- end -->\n"
 CHANGES = (("  thickness_points = ${points}\n", ""), ("element = solid_shell", "element = hex8"),
            ("*PHASE clamp", "*LIMITS\n  strain = 0.1\n  rotation = 5\n\n*PHASE clamp"),
            ("../materials/", f"{ROOT}/input_files/materials/"), ("tools = .", f"tools = {CUP.parent}"))
@@ -99,11 +99,10 @@ def table(rows, threads):
     return "\n".join(lines) + "\n\n"
 
 
-def write(text):
-    """Put a text between the marks of the page."""
-    page = PAGE.read_text(encoding="utf-8")
-    before, rest = page.split(MARKS[0])
-    PAGE.write_text(before + MARKS[0] + text + MARKS[1] + rest.split(MARKS[1])[1], encoding="utf-8")
+def write(text, page=PAGE, begin=BEGIN):
+    """Put a text between the marks of a page."""
+    before, rest = page.read_text(encoding="utf-8").split(begin)
+    page.write_text(before + begin + text + END + rest.split(END, 1)[1], encoding="utf-8")
 
 
 def main():

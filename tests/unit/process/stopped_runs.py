@@ -19,6 +19,7 @@ BEGINNING = ROOT / "tests" / "cases" / "bending_start" / "case.dat"
 SLIDING = ROOT / "tests" / "cases" / "friction_above" / "case.dat"
 POINT = ROOT / "tests" / "cases" / "point_tension" / "case.dat"
 TENSION = ROOT / "tests" / "cases" / "tension_00" / "case.dat"
+BETWEEN = ROOT / "tests" / "cases" / "come_and_go" / "case.dat"
 SIZE_LIMIT = 1_000_000
 
 
@@ -72,6 +73,32 @@ def inside_out(program, directory):
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["worst_element"] == "1", f"status.csv ends with {last}")
     check(last["criterion"] == "", f"the criterion is {last['criterion']}")
+
+
+def free_sheet(program, directory):
+    """Test a sheet without support between tools without friction: the message asks for supports."""
+    text = BETWEEN.read_text(encoding="utf-8").replace("friction = 0.5", "friction = 0")
+    for name in ("table.bez", "ram.bez"):
+        text = text.replace(name, str(BETWEEN.with_name(name)))
+    supports = text[text.index("*BOUNDARY straight"):text.index("*NEWTON")]
+    deck = directory.with_suffix(".dat")
+    deck.write_text(text.replace(supports, ""), encoding="utf-8")
+    output = run(program, directory, deck)
+    check("linear solver: " in output, f"the reason is not named:\n{output}")
+    check("supports that stop rigid motion" in output, f"the remedy is another one:\n{output}")
+
+
+def led_into_tool(program, directory):
+    """Test nodes that `displace` leads into a tool: the message names the cause, a node and the tool."""
+    text = BETWEEN.read_text(encoding="utf-8")
+    for name in ("table.bez", "ram.bez"):
+        text = text.replace(name, str(BETWEEN.with_name(name)))
+    deck = directory.with_suffix(".dat")
+    deck.write_text(text[:text.index("*PHASE")] + "*PHASE lift\n  control = load\n  trial = 0.5\n"
+                    "  displace = z_max z 3\n", encoding="utf-8")
+    output = run(program, directory, deck)
+    check("a prescribed motion leads a node" in output, f"the reason is another one:\n{output}")
+    check(", tool ram; try first" in output, f"the tool is not named:\n{output}")
 
 
 def small_disk(program, directory):
@@ -164,8 +191,8 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, small_disk, full_disk, full_device, no_directory, next_to_old,
-                 interrupted):
+    for test in (no_convergence, inside_out, free_sheet, led_into_tool, small_disk, full_disk, full_device,
+                 no_directory, next_to_old, interrupted):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 

@@ -1,0 +1,31 @@
+!> In place of `src/linalg/mumps_library.f90` where MUMPS is not installed: every job fails.
+module dd3_linalg_mumps_library
+  use dd3_base_kinds, only : i8, wp
+  implicit none
+  private
+  public :: dmumps_struc, dmumps, library_present
+
+  !> Whether the program contains the library.
+  logical, parameter :: library_present = .false.
+  !> Error in `infog`, not one of the library.
+  integer, parameter :: error_absent = -1000
+
+  !> Members of the library's structure that the program uses.
+  type :: dmumps_struc
+    integer :: comm = 0, sym = 0, par = 0, job = 0, n = 0
+    integer(i8) :: nnz = 0
+    integer, pointer :: irn(:) => null(), jcn(:) => null(), perm_in(:) => null()
+    real(wp), pointer :: a(:) => null(), rhs(:) => null()
+    integer :: icntl(60) = 0, infog(80) = 0
+  end type dmumps_struc
+
+contains
+
+  !> Refuse.
+  pure subroutine dmumps(id)
+    type(dmumps_struc), intent(inout) :: id
+
+    id%infog(1) = error_absent
+  end subroutine dmumps
+
+end module dd3_linalg_mumps_library

@@ -1,0 +1,40 @@
+!> In place of `src/parallel/ranks.f90` in a build without MPI: a single rank.
+submodule (dd3_base_ranks) dd3_absent_ranks
+  implicit none
+
+contains
+
+  module procedure ranks_present
+    ranks_present = .false.
+  end procedure ranks_present
+
+  module procedure start_ranks
+  end procedure start_ranks
+
+  module procedure end_ranks
+  end procedure end_ranks
+
+  module procedure this_rank
+    this_rank = 0
+  end procedure this_rank
+
+  module procedure n_ranks
+    n_ranks = 1
+  end procedure n_ranks
+
+  module procedure sum_over_ranks
+  end procedure sum_over_ranks
+
+  module procedure largest_over_ranks
+  end procedure largest_over_ranks
+
+  module procedure broadcast_integers
+  end procedure broadcast_integers
+
+  module procedure broadcast_reals
+  end procedure broadcast_reals
+
+  module procedure broadcast_text
+  end procedure broadcast_text
+
+end submodule dd3_absent_ranks

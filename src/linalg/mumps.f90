@@ -1,0 +1,219 @@
+!> Complete LU factorisation by the library MUMPS (Amestoy, Duff, L'Excellent and Koster, SIAM J.
+!> Matrix Anal. Appl. 23, 2001): multifrontal, with partial pivoting in the fronts. It is analysed
+!> once for a pattern, in the ordering of the program's own factorisation by fronts.
+module dd3_linalg_mumps
+  use dd3_base_kinds, only : i8, wp
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_linalg_blas_threads, only : use_one_blas_thread
+  use dd3_linalg_front_tree, only : choose_ordering
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_mumps_library, only : dmumps, dmumps_struc
+  use dd3_linalg_preconditioner, only : preconditioner_t
+  implicit none
+  private
+  public :: mumps_t
+
+  !> MUMPS's jobs.
+  integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factorise = 2, &
+      job_solve = 3
+  !> Positions in `icntl`: units and amount of its messages, column permutation, ordering, scaling,
+  !> and additional workspace in percent of the estimate.
+  integer, parameter :: icntl_units(3) = [1, 2, 3], icntl_messages = 4, icntl_permutation = 6, &
+      icntl_ordering = 7, icntl_scaling = 8, icntl_workspace = 14
+  !> Value of `icntl_ordering`: that of `perm_in`.
+  integer, parameter :: ordering_given = 1
+  !> Positions in `infog`: status and its argument, and the memory estimated by the analysis, MB.
+  integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16
+  !> MUMPS's errors: no memory, workspace too small, singular pattern, singular matrix.
+  integer, parameter :: error_memory(3) = [-5, -7, -13], error_workspace(2) = [-8, -9], &
+      error_singular(2) = [-6, -10]
+  !> Additional workspace: percent at first, factor after `error_workspace`, and limit.
+  integer, parameter :: first_workspace = 20, more_workspace = 3, most_workspace = 1000
+  real(wp), parameter :: megabyte = 1.0e6_wp
+
+  !> Factors of a matrix.
+  type, extends(preconditioner_t) :: mumps_t
+    !> Whether `library` is in use.
+    logical :: begun = .false.
+    !> Outcome of the analysis.
+    type(verdict_t) :: analysis
+    !> MUMPS's data: the matrix by entries, right-hand side and factors.
+    type(dmumps_struc) :: library
+  contains
+    procedure :: setup => mumps_setup
+    procedure :: build => mumps_build
+    procedure :: apply => mumps_apply
+    procedure :: bytes => mumps_bytes
+    procedure :: release => mumps_release
+  end type mumps_t
+
+contains
+
+  !> Analyse the pattern.
+  subroutine mumps_setup(self, matrix)
+    class(mumps_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    integer, allocatable :: order(:)
+    character(len=8) :: ordering
+    integer :: i
+
+    call self%release()
+    call use_one_blas_thread()
+    call begin(self)
+    associate (library => self%library)
+      if (self%begun) then
+        call choose_ordering(matrix, order, ordering)
+        self%description = "MUMPS ("//trim(ordering)//")"
+        call set_pattern(self, matrix)
+        do i = 1, matrix%n
+          library%perm_in(3*order(i) - 2:3*order(i)) = [3*i - 2, 3*i - 1, 3*i]
+        end do
+        library%job = job_analyse
+        call dmumps(library)
+      end if
+      call set_verdict(library, self%analysis)
+    end associate
+  end subroutine mumps_setup
+
+  !> Begin to use the library.
+  subroutine begin(self)
+    type(mumps_t), intent(inout) :: self
+
+    associate (library => self%library)
+      ! The sequential library needs no communicator.
+      library%comm = 0
+      library%sym = 0
+      library%par = 1
+      library%job = job_begin
+      call dmumps(library)
+      self%begun = library%infog(infog_status) >= 0
+      library%icntl(icntl_units) = 0
+      library%icntl(icntl_messages) = 0
+      library%icntl(icntl_permutation) = 0
+      library%icntl(icntl_ordering) = ordering_given
+      library%icntl(icntl_scaling) = 0
+      library%icntl(icntl_workspace) = first_workspace
+    end associate
+  end subroutine begin
+
+  !> Allocate the matrix, with rows and columns of its entries, and the vectors.
+  subroutine set_pattern(self, matrix)
+    type(mumps_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    integer :: i, k, c, at
+
+    associate (library => self%library)
+      library%n = 3*matrix%n
+      library%nnz = 9_i8*size(matrix%column, kind=i8)
+      allocate (library%irn(library%nnz), library%jcn(library%nnz), library%a(library%nnz))
+      allocate (library%perm_in(library%n), library%rhs(library%n))
+      at = 0
+      do i = 1, matrix%n
+        do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+          do c = 1, 3
+            library%irn(at + 1:at + 3) = [3*i - 2, 3*i - 1, 3*i]
+            library%jcn(at + 1:at + 3) = 3*matrix%column(k) - 3 + c
+            at = at + 3
+          end do
+        end do
+      end do
+    end associate
+  end subroutine set_pattern
+
+  !> Factorise, with more workspace if interchanges of rows need it.
+  subroutine mumps_build(self, matrix, verdict)
+    class(mumps_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    !> Retry if the matrix is singular, memory is short, or MUMPS fails otherwise.
+    type(verdict_t), intent(out) :: verdict
+
+    verdict = self%analysis
+    if (verdict%outcome /= verdict_converged) return
+    associate (library => self%library)
+      do
+        call copy_entries(size(matrix%value), matrix%value, library%a)
+        library%job = job_factorise
+        call dmumps(library)
+        if (all(library%infog(infog_status) /= error_workspace)) exit
+        if (library%icntl(icntl_workspace) >= most_workspace) exit
+        library%icntl(icntl_workspace) = more_workspace*library%icntl(icntl_workspace)
+      end do
+      call set_verdict(library, verdict)
+    end associate
+  end subroutine mumps_build
+
+  !> Kernel: copy the entries of the blocks.
+  pure subroutine copy_entries(n, block, entry)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: block(n)
+    real(wp), intent(out) :: entry(n)
+
+    entry = block
+  end subroutine copy_entries
+
+  !> Translate MUMPS's status.
+  subroutine set_verdict(library, verdict)
+    type(dmumps_struc), intent(in) :: library
+    type(verdict_t), intent(out) :: verdict
+
+    verdict%outcome = verdict_converged
+    associate (status => library%infog(infog_status))
+      if (status >= 0) return
+      verdict%outcome = verdict_retry
+      if (any(status == error_singular)) then
+        verdict%reason = "the matrix is singular"
+      else if (any(status == error_memory) .or. any(status == error_workspace)) then
+        verdict%reason = "not enough memory for MUMPS"
+      else
+        verdict%reason = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &
+            to_text(library%infog(infog_argument))
+      end if
+    end associate
+  end subroutine set_verdict
+
+  !> Solve L U z = r; z is zero without factors.
+  subroutine mumps_apply(self, r, z)
+    class(mumps_t), intent(inout) :: self
+    real(wp), intent(in) :: r(:)
+    real(wp), intent(out) :: z(:)
+
+    z = 0.0_wp
+    if (.not. self%begun) return
+    associate (library => self%library)
+      library%rhs = r
+      library%job = job_solve
+      call dmumps(library)
+      if (library%infog(infog_status) >= 0) z = library%rhs
+    end associate
+  end subroutine mumps_apply
+
+  !> Return the memory of the library, as it is estimated by the analysis, and of the matrix, bytes.
+  real(wp) function mumps_bytes(self) result(bytes)
+    class(mumps_t), intent(in) :: self
+
+    !> Bytes of an entry with its row and column.
+    real(wp), parameter :: per_entry = 16.0_wp
+
+    bytes = 0.0_wp
+    if (self%begun) bytes = megabyte*real(self%library%infog(infog_megabytes), wp) &
+        + per_entry*real(self%library%nnz, wp)
+  end function mumps_bytes
+
+  !> Free everything.
+  subroutine mumps_release(self)
+    class(mumps_t), intent(inout) :: self
+
+    if (.not. self%begun) return
+    self%begun = .false.
+    associate (library => self%library)
+      if (associated(library%irn)) deallocate (library%irn, library%jcn, library%a, &
+          library%perm_in, library%rhs)
+      library%job = job_end
+      call dmumps(library)
+    end associate
+  end subroutine mumps_release
+
+end module dd3_linalg_mumps

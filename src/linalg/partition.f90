@@ -1,0 +1,68 @@
+!> Partition of a matrix among the ranks: each holds some block rows. The rows of a rank are
+!> connected, with few couplings to those of the others (multilevel k-way partitioning, Karypis and
+!> Kumar, J. Parallel Distrib. Comput. 48, 1998; METIS 5).
+module dd3_linalg_partition
+  use dd3_base_ranks, only : broadcast_integers, n_ranks, this_rank
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_metis, only : partition_graph
+  implicit none
+  private
+  public :: distribute_rows, holds_row, order_by_owner, own_rows
+
+contains
+
+  !> Set the owner of each block row if there are several ranks.
+  subroutine distribute_rows(matrix)
+    type(block_matrix_t), intent(inout) :: matrix
+
+    integer, allocatable :: owner(:)
+    logical :: found
+    integer :: i, parts
+
+    parts = n_ranks()
+    if (parts == 1) return
+    call partition_graph(matrix, parts, owner, found)
+    ! Without METIS: strips of the numbering, which follows the sheet.
+    if (.not. found) owner = [(int(real(i - 1)/real(matrix%n)*real(parts)), i=1, matrix%n)]
+    call broadcast_integers(0, size(owner), owner)
+    call move_alloc(owner, matrix%owner)
+  end subroutine distribute_rows
+
+  !> Whether this rank holds a block row.
+  logical function holds_row(matrix, row)
+    type(block_matrix_t), intent(in) :: matrix
+    integer, intent(in) :: row
+
+    holds_row = .true.
+    if (allocated(matrix%owner)) holds_row = matrix%owner(row) == this_rank()
+  end function holds_row
+
+  !> Return the order in which the rows of each rank are consecutive.
+  function order_by_owner(matrix) result(order)
+    !> Distributed.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Original number of each block row, `(n)`.
+    integer, allocatable :: order(:)
+
+    integer :: i, rank
+
+    order = [integer ::]
+    do rank = 0, maxval(matrix%owner)
+      order = [order, pack([(i, i=1, matrix%n)], matrix%owner == rank)]
+    end do
+  end function order_by_owner
+
+  !> Find the block rows that this rank holds, in a matrix ordered by owner.
+  subroutine own_rows(matrix, first, last)
+    type(block_matrix_t), intent(in) :: matrix
+    !> The first and the last; `last < first` if there are none.
+    integer, intent(out) :: first, last
+
+    first = 1
+    last = matrix%n
+    if (.not. allocated(matrix%owner)) return
+    first = count(matrix%owner < this_rank()) + 1
+    last = count(matrix%owner <= this_rank())
+  end subroutine own_rows
+
+end module dd3_linalg_partition

@@ -1,0 +1,281 @@
+!> Solvers of PETSc: a matrix of 3x3 blocks (MATBAIJ) of which each rank holds its rows, and a
+!> Krylov solver (KSP) that PETSc's options database configures.
+submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
+  use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+  use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_char, c_null_ptr, c_ptr
+  use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : broadcast_reals, n_ranks, start_ranks, sum_over_ranks
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_linalg_blas_threads, only : use_one_blas_thread
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_partition, only : own_rows
+  use dd3_linalg_solver, only : solver_report_t
+  use dd3_parallel_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
+      ksp_get_iteration_number, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
+      ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
+      mat_create_baij, mat_create_vecs, mat_destroy, mat_residual, mat_set_values_blocked, norm_2, &
+      petsc_comm_world, set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, &
+      vec_get_values, vec_norm, vec_set_values
+  implicit none
+
+  !> Relative residual of a complete factorisation accepted where the tolerance asks for less.
+  real(wp), parameter :: residual_limit = 1.0e-6_wp
+  !> Tolerance of the iterations, whose own residual drifts, as a fraction of the one asked for.
+  real(wp), parameter :: margin = 0.1_wp
+
+  !> Reason of the end of the iterations: breakdown (KSP_DIVERGED_BREAKDOWN).
+  integer(c_int), parameter :: breakdown = -5
+  !> Most restarts.
+  integer, parameter :: most_restarts = 5
+
+  !> Solver of PETSc.
+  type, extends(linear_solver_t) :: petsc_solver_t
+    !> Name in the registry; with "dd3_", the prefix of the options.
+    character(len=16) :: name = ""
+    !> Whether it iterates.
+    logical :: iterative = .false.
+    !> Matrix, Krylov solver, right-hand side, solution and residual; null until a matrix is
+    !> factorised.
+    type(c_ptr) :: a = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, x = c_null_ptr, r = c_null_ptr
+    !> Scalar rows of this rank, 0-based.
+    integer(c_int), allocatable :: own(:)
+  contains
+    procedure :: setup_scaled => petsc_solver_setup
+    procedure :: factor_scaled => petsc_solver_factor
+    procedure :: solve_scaled => petsc_solver_solve
+    procedure :: release => petsc_solver_release
+  end type petsc_solver_t
+
+contains
+
+  module procedure make_petsc_mumps_solver
+    call make_solver(solver, options, "petsc_mumps", .false.)
+  end procedure make_petsc_mumps_solver
+
+  module procedure make_petsc_bicgstab_solver
+    call make_solver(solver, options, "petsc_bicgstab", .true.)
+  end procedure make_petsc_bicgstab_solver
+
+  !> Create a solver.
+  subroutine make_solver(solver, options, name, iterative)
+    class(linear_solver_t), allocatable, intent(out) :: solver
+    type(solver_options_t), intent(in) :: options
+    !> In the registry.
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: iterative
+
+    type(petsc_solver_t), allocatable :: made
+
+    allocate (made)
+    made%options = options
+    made%name = name
+    made%iterative = iterative
+    call move_alloc(made, solver)
+  end subroutine make_solver
+
+  !> Set the description; PETSc's objects are created with the first matrix.
+  subroutine petsc_solver_setup(self, matrix)
+    class(petsc_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    character(len=:), allocatable :: ranks
+
+    ranks = to_text(n_ranks())//" ranks"
+    if (n_ranks() == 1) ranks = "1 rank"
+    self%description = "MUMPS of PETSc on "//ranks
+    if (self%iterative) self%description = "BiCGSTAB of PETSc with ILU("// &
+        to_text(self%options%ilu_level)//") on the rows of each rank, "//ranks
+    self%description = trim(self%description)//", "//to_text(matrix%n)//" block rows"
+  end subroutine petsc_solver_setup
+
+  !> Hand the own rows to PETSc and factorise.
+  subroutine petsc_solver_factor(self, matrix, verdict)
+    class(petsc_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    type(verdict_t), intent(out) :: verdict
+
+    if (.not. c_associated(self%a)) call create_objects(self, matrix)
+    call insert_rows(self, matrix)
+    self%method = self%name
+    verdict%outcome = verdict_converged
+    if (ksp_set_up(self%ksp) == 0) return
+    verdict%outcome = verdict_retry
+    verdict%reason = "PETSc could not factorise the matrix"
+  end subroutine petsc_solver_factor
+
+  !> Create PETSc's objects for a pattern.
+  subroutine create_objects(self, matrix)
+    type(petsc_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    integer(c_int) :: ignored, n_all, n_own
+    integer(c_int), allocatable :: near(:), far(:)
+    integer :: i, k, first, last
+
+    call start_ranks()
+    call use_one_blas_thread()
+    call own_rows(matrix, first, last)
+    allocate (near(first:last), far(first:last))
+    do i = first, last
+      associate (column => matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1))
+        near(i) = int(count(column >= first .and. column <= last), c_int)
+        far(i) = int(size(column), c_int) - near(i)
+      end associate
+    end do
+    n_own = int(3*(last - first + 1), c_int)
+    n_all = int(3*matrix%n, c_int)
+    self%own = [(int(k, c_int), k=3*(first - 1), 3*last - 1)]
+    ignored = mat_create_baij(petsc_comm_world, 3_c_int, n_own, n_own, n_all, n_all, 0_c_int, &
+        near, 0_c_int, far, self%a)
+    ignored = mat_create_vecs(self%a, self%x, self%b)
+    ignored = vec_duplicate(self%b, self%r)
+    call set_options(self)
+    ignored = ksp_create(petsc_comm_world, self%ksp)
+    ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
+    ignored = ksp_set_operators(self%ksp, self%a, self%a)
+    ignored = ksp_set_from_options(self%ksp)
+  end subroutine create_objects
+
+  !> Set the options of the solver.
+  subroutine set_options(self)
+    type(petsc_solver_t), intent(in) :: self
+
+    character(len=:), allocatable :: prefix
+
+    prefix = "-dd3_"//trim(self%name)//"_"
+    if (.not. self%iterative) then
+      call set_option(prefix//"ksp_type", "preonly")
+      call set_option(prefix//"pc_type", "lu")
+      call set_option(prefix//"pc_factor_mat_solver_type", "mumps")
+      ! Workspace beyond the estimate, which pivoting exceeds, per cent.
+      call set_option(prefix//"mat_mumps_icntl_14", "80")
+      return
+    end if
+    call set_option(prefix//"ksp_type", "bcgs")
+    call set_option(prefix//"ksp_pc_side", "right")
+    call set_option(prefix//"ksp_rtol", to_text(margin*self%options%tolerance))
+    call set_option(prefix//"ksp_max_it", to_text(self%options%iterations))
+    call set_option(prefix//"pc_type", "asm")
+    call set_option(prefix//"sub_pc_type", "ilu")
+    call set_option(prefix//"sub_pc_factor_levels", to_text(self%options%ilu_level))
+  end subroutine set_options
+
+  !> Hand the own rows to PETSc.
+  subroutine insert_rows(self, matrix)
+    type(petsc_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+
+    !> Column component, column, row component: the row by scalar rows.
+    real(wp), allocatable :: row(:, :, :)
+    integer(c_int) :: ignored
+    integer :: i, j, first, last
+
+    call own_rows(matrix, first, last)
+    do i = first, last
+      associate (from => matrix%row_start(i), to => matrix%row_start(i + 1) - 1)
+        if (allocated(row)) deallocate (row)
+        allocate (row(3, to - from + 1, 3))
+        do j = 1, 3
+          row(:, :, j) = matrix%value(j, :, from:to)
+        end do
+        ignored = mat_set_values_blocked(self%a, 1_c_int, [int(i - 1, c_int)], &
+            int(to - from + 1, c_int), int(matrix%column(from:to) - 1, c_int), row, insert_values)
+      end associate
+    end do
+    call mat_assemble(self%a)
+  end subroutine insert_rows
+
+  !> Solve, check the true residual and give all ranks the solution.
+  subroutine petsc_solver_solve(self, matrix, b, x, report)
+    class(petsc_solver_t), intent(inout) :: self
+    type(block_matrix_t), intent(in) :: matrix
+    real(wp), intent(in) :: b(:)
+    real(wp), intent(inout) :: x(:)
+    type(solver_report_t), intent(inout) :: report
+
+    real(wp) :: residual, limit
+    integer(c_int) :: ignored, n, reason
+
+    report%method = self%name
+    n = size(self%own, kind=c_int)
+    ignored = vec_set_values(self%b, n, self%own, b(self%own + 1), insert_values)
+    call vec_assemble(self%b)
+    limit = self%options%tolerance
+    if (.not. self%iterative) limit = max(limit, residual_limit)
+    do
+      call run_krylov(self, report, residual, reason)
+      if (residual < report%residual) then
+        report%residual = residual
+        x(:3*matrix%n) = 0.0_wp
+        call get_solution(self, x)
+      end if
+      report%converged = report%residual <= limit
+      if (report%converged .or. report%restarts == most_restarts) exit
+      if (reason /= breakdown .and. reason < 0) exit
+      ! If vectors of BiCGSTAB are orthogonal, a step along the residual gives others; if its own
+      ! residual has drifted from the true one, the solution so far is a good start.
+      if (reason == breakdown) ignored = vec_axpy(self%x, 1.0_wp, self%r)
+      ignored = ksp_set_initial_guess_nonzero(self%ksp, 1_c_int)
+      report%restarts = report%restarts + 1
+    end do
+    ignored = ksp_set_initial_guess_nonzero(self%ksp, 0_c_int)
+    if (.not. report%converged) report%reason = trim(self%name)//" found no solution (reason "// &
+        to_text(int(reason))//" of PETSc, "//to_text(report%iterations)//" iterations)"
+  end subroutine petsc_solver_solve
+
+  !> Run the Krylov solver and evaluate the true residual.
+  subroutine run_krylov(self, report, residual, reason)
+    type(petsc_solver_t), intent(in) :: self
+    !> Gets the iterations.
+    type(solver_report_t), intent(inout) :: report
+    !> Huge if it is not finite.
+    real(wp), intent(out) :: residual
+    !> Reason of the end, as PETSc numbers it.
+    integer(c_int), intent(out) :: reason
+
+    real(wp) :: norm(1)
+    integer(c_int) :: ignored, iterations
+
+    ignored = ksp_solve(self%ksp, self%b, self%x)
+    ignored = ksp_get_converged_reason(self%ksp, reason)
+    ignored = ksp_get_iteration_number(self%ksp, iterations)
+    if (self%iterative) report%iterations = report%iterations + int(iterations)
+    ignored = mat_residual(self%a, self%b, self%x, self%r)
+    ignored = vec_norm(self%r, norm_2, norm(1))
+    call broadcast_reals(0, 1, norm)
+    residual = huge(residual)
+    if (ieee_is_finite(norm(1))) residual = norm(1)
+  end subroutine run_krylov
+
+  !> Gather the solution on all ranks.
+  subroutine get_solution(self, x)
+    type(petsc_solver_t), intent(in) :: self
+    !> Zero on entry.
+    real(wp), intent(inout) :: x(:)
+
+    real(wp), allocatable :: own(:)
+    integer(c_int) :: ignored
+
+    allocate (own(size(self%own)))
+    ignored = vec_get_values(self%x, size(own, kind=c_int), self%own, own)
+    x(self%own + 1) = own
+    call sum_over_ranks(size(x), x)
+  end subroutine get_solution
+
+  !> Free PETSc's objects.
+  subroutine petsc_solver_release(self)
+    class(petsc_solver_t), intent(inout) :: self
+
+    integer(c_int) :: ignored
+
+    self%method = ""
+    if (.not. c_associated(self%a)) return
+    ignored = ksp_destroy(self%ksp)
+    ignored = mat_destroy(self%a)
+    ignored = vec_destroy(self%b)
+    ignored = vec_destroy(self%x)
+    ignored = vec_destroy(self%r)
+  end subroutine petsc_solver_release
+
+end submodule dd3_parallel_petsc_solver
