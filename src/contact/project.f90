@@ -82,16 +82,16 @@ contains
       end do
     end do
     start = minloc(square(:n, :n)) - 1
-    projection%uv = real(start, wp)/n
+    projection%uv = real(start, wp)/real(n, wp)
     call project(patch, x, lower, upper, projection)
-    cell = patch%size/n
+    cell = patch%size/real(n, wp)
     do j = 0, n
       do i = 0, n
         if (all(abs([i, j] - start) <= 1)) cycle
         if (square(i, j) > (projection%distance + cell)**2) cycle
         if (any(square(max(i - 1, 0):min(i + 1, n), max(j - 1, 0):min(j + 1, n)) &
             < square(i, j))) cycle
-        other%uv = real([i, j], wp)/n
+        other%uv = real([i, j], wp)/real(n, wp)
         call project(patch, x, lower, upper, other)
         if (other%distance < projection%distance) projection = other
       end do

@@ -316,6 +316,10 @@ def make_cad(folder):
             occ.translate([copies[3]], 0, shift, 0)
             save(name)
         gmsh.clear()
+        cup = occ.addCylinder(0, 0, 0, 0, 0, 60, 50)
+        occ.fillet([cup], edges(lambda ends: ends[5] < 1e-3), [10])
+        save("cup_punch.step")
+        gmsh.clear()
         occ.addTorus(0, 0, 0, 30, 8)
         save("torus.brep")
         gmsh.clear()
@@ -351,6 +355,12 @@ def check_cad(folder, program):
                            ("sphere", lambda x: np.linalg.norm(x, axis=2) - 20)):
         convert(folder / f"{name}.brep", bez)
         assert np.abs(distance(points_of(read(bez), 5)[0])).max() < 0.002, name
+    # The fillet of a round punch closes in itself.
+    convert(folder / "cup_punch.step", bez, "--toward", 0, 0, -1)
+    point = points_of(read(bez), 5)[0]
+    r, z = np.hypot(point[..., 0], point[..., 1]), point[..., 2]
+    miss = np.where(z > 10, r - 50, np.where(r < 40, -z, np.hypot(r - 40, z - 10) - 10))
+    assert np.abs(miss).max() < 0.002 and r.max() > 49.99 and z.max() > 59.99
     assert "no part '9'; there are 1 " in convert(folder / "punch.step", "--part", "9", expect=2)
     with mock.patch.object(cad, "MOST_PATCHES", 1):  # of a face, which is then not divided further
         assert "farther than" in convert(folder / "punch.step", "--tolerance", 1e-5, expect=2)
