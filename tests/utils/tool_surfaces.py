@@ -360,7 +360,7 @@ def check_cad(folder, program):
     point = points_of(read(bez), 5)[0]
     r, z = np.hypot(point[..., 0], point[..., 1]), point[..., 2]
     miss = np.where(z > 10, r - 50, np.where(r < 40, -z, np.hypot(r - 40, z - 10) - 10))
-    assert np.abs(miss).max() < 0.002 and r.max() > 49.99 and z.max() > 59.99
+    assert np.abs(miss).max() < 0.002 and r.max() > 49.99 and z.max() > 59.7  # points lie within the patches
     assert "no part '9'; there are 1 " in convert(folder / "punch.step", "--part", "9", expect=2)
     with mock.patch.object(cad, "MOST_PATCHES", 1):  # of a face, which is then not divided further
         assert "farther than" in convert(folder / "punch.step", "--tolerance", 1e-5, expect=2)
