@@ -4,7 +4,7 @@ module dd3_linalg_matrix
   implicit none
   private
   public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-      multiply, clear, copy_blocks, add_element
+      multiply, clear, copy_blocks, copy_values, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -277,7 +277,7 @@ contains
     call copy_values(size(from%value), from%value, to%value)
   end subroutine copy_blocks
 
-  !> Kernel of `copy_blocks`.
+  !> Kernel: copy values as one contiguous array, whatever its shape.
   pure subroutine copy_values(n, from, to)
     integer, intent(in) :: n
     real(wp), intent(in) :: from(n)

@@ -7,7 +7,7 @@ module dd3_linalg_mumps
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_front_tree, only : choose_ordering
-  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_matrix, only : block_matrix_t, copy_values
   use dd3_linalg_mumps_library, only : dmumps, dmumps_struc
   use dd3_linalg_preconditioner, only : preconditioner_t
   implicit none
@@ -134,7 +134,7 @@ contains
     if (verdict%outcome /= verdict_converged) return
     associate (library => self%library)
       do
-        call copy_entries(size(matrix%value), matrix%value, library%a)
+        call copy_values(size(matrix%value), matrix%value, library%a)
         library%job = job_factorise
         call dmumps(library)
         if (all(library%infog(infog_status) /= error_workspace)) exit
@@ -144,15 +144,6 @@ contains
       call set_verdict(library, verdict)
     end associate
   end subroutine mumps_build
-
-  !> Kernel: copy the entries of the blocks.
-  pure subroutine copy_entries(n, block, entry)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: block(n)
-    real(wp), intent(out) :: entry(n)
-
-    entry = block
-  end subroutine copy_entries
 
   !> Translate MUMPS's status.
   subroutine set_verdict(library, verdict)

@@ -9,7 +9,7 @@ module dd3_system_internal
   use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
-  use dd3_linalg_matrix, only : add_element, clear
+  use dd3_linalg_matrix, only : add_element, clear, copy_values
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_partition, only : share_verdict
@@ -183,7 +183,7 @@ contains
     !> Holds kinematics, strain, axes and stresses.
     type(element_work_t), intent(inout) :: work
 
-    call copy_tangents(size(work%tangent), system%tangent(:, :, :, e), work%tangent)
+    call copy_values(size(work%tangent), system%tangent(:, :, :, e), work%tangent)
     call model%element%evaluate_stiffness(model%element, work)
     call add_element(system%stiffness, model%element%n_node, system%position(:, :, e), &
         work%stiffness)
@@ -197,14 +197,5 @@ contains
     call clear(system%stiffness)
     system%enhanced%force = 0.0_wp
   end subroutine clear_stiffness
-
-  !> Copy the tangents of an element as one contiguous array.
-  pure subroutine copy_tangents(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(out) :: to(n)
-
-    to = from
-  end subroutine copy_tangents
 
 end module dd3_system_internal
