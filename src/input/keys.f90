@@ -198,7 +198,7 @@ contains
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic "// &
           "one to it after ten iterations or a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
-          "displacement gradients, and any that inverts an element")]
+          "displacement gradients, and any that inverts an element or overshoots")]
   end function newton_keys
 
   function solver_keys() result(key)
