@@ -183,8 +183,9 @@ contains
       row("tool_force", kind_real, "", "1e-2", "tolerance of the balance of a pressed tool "// &
           "under which nodes keep opening and closing, over its force", lower=1.0e-6_wp, &
           upper=0.1_wp), &
-      row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
-          lower=2.0_wp, upper=1000.0_wp), &
+      row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment; "// &
+          "with active_set four times as many while the criterion decreases", lower=2.0_wp, &
+          upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
       row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", &

@@ -40,6 +40,9 @@ module dd3_process_corrector
   !> fallen to a new minimum in the last ones.
   integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
+  !> Largest number of iterations, relative to that of the input, if the criterion goes on
+  !> decreasing.
+  integer, parameter :: extension = 4
   !> Iteration after which the penalty of the input is reduced to the automatic one.
   integer, parameter :: reducing_iteration = 10
   !> Largest number of nodes listed in a message.
@@ -88,7 +91,10 @@ contains
     system%problem%tool_prescribed = 0.0_wp
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction)
-      do j = 1, phase%newton%iterations
+      do j = 1, extension*phase%newton%iterations
+        if (j > phase%newton%iterations) then
+          if (.not. (phase%newton%active_set .and. decreases(correction%criterion))) exit
+        end if
         if (interrupted()) then
           verdict%outcome = verdict_retry
           verdict%reason = "interrupted"
@@ -148,6 +154,16 @@ contains
     if (.not. problem%missed) return
     where (prescribed) problem%prescribed = problem%target - trial%x
   end subroutine prescribe_missed
+
+  !> Whether the criterion fell to a new minimum in the last iterations. Where a flat tool meets the
+  !> sheet all over and the sheet bulges away from it, the contacts open from the edge of the tool to
+  !> its middle by about one row of nodes in an iteration: the finer the mesh, the more iterations.
+  !> A smaller increment takes as many.
+  pure logical function decreases(criterion)
+    real(wp), intent(in) :: criterion(:)
+
+    decreases = minloc(criterion, dim=1) > size(criterion) - without_progress
+  end function decreases
 
   !> Whether the iterations do not approach a solution: residuals as large as the forces for long,
   !> and not decreasing.
