@@ -12,8 +12,8 @@ module dd3_process_corrector
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_active_set, only : keeps_changing, record_status, unsettled, &
-      update_active_set
+  use dd3_process_active_set, only : keeps_changing, open_unloaded, record_status, &
+      unsettled, update_active_set
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, &
       reduce_penalty, status_memory
   use dd3_process_balance, only : balance_tools, balanced
@@ -92,7 +92,8 @@ contains
         correction => attempt%correction)
       do j = 1, extension*phase%newton%iterations
         if (j > phase%newton%iterations) then
-          if (.not. (phase%newton%active_set .and. decreases(correction%criterion))) exit
+          if (.not. phase%newton%active_set) exit
+          if (.not. decreases(correction%criterion(correction%last_release + 1:))) exit
         end if
         if (interrupted()) then
           verdict%outcome = verdict_retry
@@ -116,6 +117,8 @@ contains
         if (phase%newton%active_set) then
           call update_active_set(correction, system%contact, phase%newton%tolerance, verdict, &
               changed)
+          if (verdict%outcome /= verdict_converged) call open_unloaded(correction, &
+              system%contact, committed%lambda, model%tolerance%touch, changed)
           if (changed) call evaluate_forces(model, committed, trial, system)
         end if
         if (verdict%outcome == verdict_converged) then
@@ -159,6 +162,7 @@ contains
   !> its middle by about one row of nodes in an iteration: the finer the mesh, the more iterations.
   !> A smaller increment takes as many.
   pure logical function decreases(criterion)
+    !> Since held candidates were released.
     real(wp), intent(in) :: criterion(:)
 
     decreases = minloc(criterion, dim=1) > size(criterion) - without_progress
