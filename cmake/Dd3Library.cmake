@@ -1,15 +1,12 @@
-# dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...] [GENERATED <file>...] [EXCEPT <file>...])
+# dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...] [GENERATED <file>...])
 #
 # Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only
 # to the libraries that name it in USES: a `use` of an undeclared folder does not compile. The sources are every .f90
-# below the folder except a main program (see dd3_program) and the EXCEPT files, and the GENERATED files.
+# below the folder except a main program (see dd3_program), and the GENERATED files.
 function(dd3_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED;EXCEPT")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
   list(FILTER sources EXCLUDE REGEX "/src/${folder}/${PROJECT_NAME}\\.f90$")
-  foreach(file IN LISTS arg_EXCEPT)
-    list(REMOVE_ITEM sources "${CMAKE_SOURCE_DIR}/${file}")
-  endforeach()
   list(APPEND sources ${arg_GENERATED})
   set(library dd3_${folder})
   if(NOT sources)

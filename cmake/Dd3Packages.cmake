@@ -25,19 +25,20 @@ if(NOT HDF5_FOUND)
 endif()
 
 # Optional. The sequential MUMPS contains procedures with the names of MPI's.
+#
+#   mumps_linalg     source of linalg: that of src/optional/, or the one in its place
+#   mumps_packages   library to link
 option(DD3_MUMPS "Use the sequential MUMPS if it is installed" ON)
 set(mumps_packages "")
-set(mumps_generated "cmake/absent/mumps_library.f90")
-set(mumps_except src/linalg/mumps_library.f90)
+set(mumps_linalg cmake/absent/mumps_library.f90)
 if(DD3_MUMPS AND DD3_PETSC)
   message(STATUS "MUMPS: not in a program with MPI, whose procedures the sequential library replaces")
 elseif(DD3_MUMPS)
   find_package(MUMPS QUIET)
   if(MUMPS_FOUND)
     set(mumps_packages MUMPS::dmumps)
-    set(mumps_generated "")
-    set(mumps_except "")
-    set_source_files_properties(src/linalg/mumps_library.f90 PROPERTIES COMPILE_OPTIONS "-I${MUMPS_INCLUDE_DIR}")
+    set(mumps_linalg src/optional/mumps_library.f90)
+    set_source_files_properties(${mumps_linalg} PROPERTIES COMPILE_OPTIONS "-I${MUMPS_INCLUDE_DIR}")
     message(STATUS "MUMPS ${MUMPS_DMUMPS}")
   else()
     message(STATUS "MUMPS was not found; it is optional. On Debian or Ubuntu: apt-get install libmumps-seq-dev")

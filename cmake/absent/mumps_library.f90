@@ -1,4 +1,4 @@
-!> In place of `src/linalg/mumps_library.f90` where MUMPS is not installed: every job fails.
+!> In place of `src/optional/mumps_library.f90` where MUMPS is not installed: every job fails.
 module dd3_linalg_mumps_library
   use dd3_base_kinds, only : i8, wp
   implicit none

@@ -13,7 +13,7 @@ module dd3_linalg_solver_registry
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
   private
-  public :: missing_package, new_linear_solver, present_solvers, solver_names
+  public :: missing_package, new_linear_solver, solver_names
 
   abstract interface
     !> Create a solver.
@@ -56,16 +56,6 @@ contains
     entries = registry()
     names = entries%name
   end function solver_names
-
-  !> Return the names of the solvers in this build of the program.
-  function present_solvers() result(names)
-    character(len=16), allocatable :: names(:)
-
-    type(entry_t), allocatable :: entries(:)
-
-    entries = registry()
-    names = pack(entries%name, entries%package == "")
-  end function present_solvers
 
   !> Return the Debian package, with the preset, without which this build lacks a solver; empty if
   !> it lacks none, or for an unknown name.

@@ -23,6 +23,9 @@ module dd3_model_tool_depth
   real(wp), parameter :: slight_depth = 1.0e-3_wp
   !> Margin around a face in which closest points of its points are looked for, in diagonals.
   real(wp), parameter :: margin = 0.25_wp
+  !> Distance beside a face that is round-off, in diagonals: a point on the edge of the sheet lies
+  !> behind it.
+  real(wp), parameter :: beside = 1.0e-6_wp
   !> Least -m.n of the normals of sheet and tool that face each other.
   real(wp), parameter :: facing = 0.05_wp
 
@@ -111,8 +114,10 @@ contains
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
     self%thickness = model%thickness_at(node(1))
     self%search_depth = max(wrong_side_depth*self%thickness, self%size)
-    self%lower = minval(self%x, dim=2) - self%search_depth*max(self%normal, 0.0_wp)
-    self%upper = maxval(self%x, dim=2) - self%search_depth*min(self%normal, 0.0_wp)
+    self%lower = minval(self%x, dim=2) - self%search_depth*max(self%normal, 0.0_wp) &
+        - beside*self%size
+    self%upper = maxval(self%x, dim=2) - self%search_depth*min(self%normal, 0.0_wp) &
+        + beside*self%size
     self%height = maxval(matmul(self%normal, self%x))
   end subroutine set_face
 
@@ -300,7 +305,7 @@ contains
       if (area <= 0.0_wp) cycle
       along(1) = dot_product(face%normal, cross(r, b))/area
       along(2) = dot_product(face%normal, cross(a, r))/area
-      if (any(along < 0.0_wp) .or. sum(along) > 1.0_wp) cycle
+      if (any(along < -beside) .or. sum(along) > 1.0_wp + beside) cycle
       depth = dot_product(face%normal, along(1)*a + along(2)*b - r)
       return
     end do

@@ -5,17 +5,18 @@
 !> and the iterations converge on a smooth problem.
 !> Then nodes that violate the contact law are released into their status by it, until none does:
 !> the converged solution is that of the contact law.
+!> Contacts without force behind a front of opening ones are held open in the same way.
 !> Source: Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888 (primal-dual active
 !> set); Alart and Curnier 1991.
 module dd3_process_active_set
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_retry, verdict_t
-  use dd3_contact_operator, only : status_slip, status_stick
+  use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_process_attempt, only : correction_t, status_memory
   use dd3_system_contact, only : contact_work_t, not_held
   implicit none
   private
-  public :: record_status, update_active_set, keeps_changing, unsettled
+  public :: record_status, update_active_set, open_unloaded, keeps_changing, unsettled
 
   !> Number of changes of a node's status after which it is held, and the iterations before which
   !> changes do not count.
@@ -25,6 +26,10 @@ module dd3_process_active_set
   !> The first times all violators are released, then those above this fraction of the largest.
   integer, parameter :: full_releases = 4
   real(wp), parameter :: released_fraction = 0.5_wp
+  !> Iterations after which contacts without force are opened, each time, and the force, relative to
+  !> the largest tension, that counts as none.
+  integer, parameter :: opening_interval = 10
+  real(wp), parameter :: slight_force = 2.0e-2_wp
 
 contains
 
@@ -75,6 +80,46 @@ contains
       call hold_cycling(correction, contact, changed)
     end if
   end subroutine update_active_set
+
+  !> Open the contacts without force of a tool that carried none in the committed state, where
+  !> others of its contacts are under tension. Where a flat tool has met the sheet all over and the
+  !> sheet bulges away from it, the contacts would otherwise open from the edge of the tool to its
+  !> middle by one row of nodes in an iteration, as the next row resists. A force that has only
+  !> appeared in this iteration is therefore no resistance, and contacts within `touch` that are
+  !> open at present are held open too.
+  subroutine open_unloaded(correction, contact, committed, touch, changed)
+    !> Gets the number of candidates held.
+    type(correction_t), intent(inout) :: correction
+    !> Gets the status held.
+    type(contact_work_t), intent(inout) :: contact
+    !> Contact forces in the committed state, `(3, n_contact)`, N.
+    real(wp), intent(in) :: committed(:, :)
+    !> mm.
+    real(wp), intent(in) :: touch
+    !> Set if the contact must be evaluated again.
+    logical, intent(inout) :: changed
+
+    real(wp), allocatable :: tension(:)
+    logical, allocatable :: mine(:), opened(:)
+    real(wp) :: largest
+    integer :: tool
+
+    if (mod(size(correction%criterion), opening_interval) /= 0) return
+    tension = merge(sum(contact%lambda*contact%normal, dim=1), 0.0_wp, contact%status == status_gap)
+    do tool = 1, maxval(contact%tool)
+      mine = contact%tool == tool
+      largest = maxval(tension, mask=mine)
+      if (.not. any(mine .and. tension > 0.0_wp)) cycle
+      if (any(mine .and. norm2(committed, dim=1) > slight_force*largest)) cycle
+      opened = mine .and. contact%held == not_held .and. contact%distance < touch &
+          .and. norm2(contact%force, dim=1) < largest &
+          .and. norm2(contact%lambda - correction%lambda_increment, dim=1) < slight_force*largest
+      where (opened) contact%held = status_gap
+      where (opened) correction%opened = .true.
+      correction%held = correction%held + count(opened)
+      changed = changed .or. any(opened)
+    end do
+  end subroutine open_unloaded
 
   !> Whether candidates changed their status in each of the last two iterations.
   pure logical function keeps_changing(correction)
@@ -137,12 +182,14 @@ contains
     released = largest > negligible*maxval(norm2(contact%force, dim=1))
     if (.not. released) return
     correction%releases = correction%releases + 1
+    correction%last_release = size(correction%criterion)
     smallest = released_fraction*largest
     if (correction%releases <= full_releases) smallest = tiny(smallest)
     do c = 1, size(contact%status)
       if (contact%held(c) == not_held) cycle
       if (contact%violation(c) < smallest) cycle
       contact%held(c) = contact%natural(c)
+      if (correction%opened(c)) contact%held(c) = not_held
       correction%released = correction%released + 1
     end do
   end subroutine release_violators

@@ -34,12 +34,14 @@ module dd3_process_attempt
     !> minimum, and whether its slip reversed in the last iteration, `(n_contact)`.
     integer, allocatable :: changes(:)
     logical, allocatable :: reversed(:)
+    !> Whether a candidate was opened for want of force, `(n_contact)`.
+    logical, allocatable :: opened(:)
     !> Tangential contact forces in the last iteration, `(3, n_contact)`, N.
     real(wp), allocatable :: tangential(:, :)
     !> Counts of remedies: candidates held, releases of held ones, iterations damped.
     integer :: held = 0, released = 0, damped = 0
-    !> Number of times that held candidates were released.
-    integer :: releases = 0
+    !> Number of times that held candidates were released, and the iteration of the last one.
+    integer :: releases = 0, last_release = 0
     !> Fraction of the last solution in the trial state, and the reductions that led to it.
     real(wp) :: step = 1.0_wp
     integer :: reductions = 0
@@ -103,14 +105,17 @@ contains
     if (.not. allocated(self%status)) then
       allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
       allocate (self%changes(n_contact), self%reversed(n_contact), self%tangential(3, n_contact))
+      allocate (self%opened(n_contact))
     end if
     self%status = -1
     self%changes = 0
     self%reversed = .false.
+    self%opened = .false.
     self%tangential = 0.0_wp
     self%held = 0
     self%released = 0
     self%releases = 0
+    self%last_release = 0
     self%damped = 0
     self%step = 1.0_wp
     self%reductions = 0

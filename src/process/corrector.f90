@@ -10,10 +10,10 @@ module dd3_process_corrector
   use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : tangential
-  use dd3_process_active_set, only : keeps_changing, record_status, unsettled, &
-      update_active_set
+  use dd3_process_active_set, only : keeps_changing, open_unloaded, record_status, &
+      unsettled, update_active_set
   use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, &
       reduce_penalty, status_memory
   use dd3_process_balance, only : balance_tools, balanced
@@ -22,7 +22,7 @@ module dd3_process_corrector
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_contact, only : contact_work_t, not_held
+  use dd3_system_contact, only : contact_work_t, is_normal_held, not_held
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_reduced
@@ -93,7 +93,8 @@ contains
         correction => attempt%correction)
       do j = 1, extension*phase%newton%iterations
         if (j > phase%newton%iterations) then
-          if (.not. (phase%newton%active_set .and. decreases(correction%criterion))) exit
+          if (.not. phase%newton%active_set) exit
+          if (.not. decreases(correction%criterion(correction%last_release + 1:))) exit
         end if
         if (interrupted()) then
           verdict%outcome = verdict_retry
@@ -117,6 +118,8 @@ contains
         if (phase%newton%active_set) then
           call update_active_set(correction, system%contact, phase%newton%tolerance, verdict, &
               changed)
+          if (verdict%outcome /= verdict_converged) call open_unloaded(correction, &
+              system%contact, committed%lambda, model%tolerance%touch, changed)
           if (changed) call evaluate_forces(model, committed, trial, system)
         end if
         if (verdict%outcome == verdict_converged) then
@@ -160,6 +163,7 @@ contains
   !> its middle by about one row of nodes in an iteration: the finer the mesh, the more iterations.
   !> A smaller increment takes as many.
   pure logical function decreases(criterion)
+    !> Since held candidates were released.
     real(wp), intent(in) :: criterion(:)
 
     decreases = minloc(criterion, dim=1) > size(criterion) - without_progress
@@ -198,8 +202,7 @@ contains
         return
       end if
       verdict%node = correction%worst_node
-      if (is_led_inside(model, phase%prescribed, system%contact, &
-          model%candidate_of(max(1, verdict%node)))) then
+      if (is_led_inside(model, phase, system%contact, model%candidate_of(max(1, verdict%node)))) then
         verdict%reason = "a prescribed motion leads a node into a tool"
         return
       end if
@@ -217,21 +220,17 @@ contains
   end subroutine explain
 
   !> Whether a candidate lies in a tool out of which its supports do not let it.
-  pure logical function is_led_inside(model, prescribed, contact, c)
+  pure logical function is_led_inside(model, phase, contact, c)
     type(model_t), intent(in) :: model
-    !> `(3, n_node)`.
-    logical, intent(in) :: prescribed(:, :)
+    type(phase_t), intent(in) :: phase
     type(contact_work_t), intent(in) :: contact
     !> Number of the candidate; 0 for none.
     integer, intent(in) :: c
 
-    real(wp) :: free(3)
-
     is_led_inside = .false.
     if (c == 0) return
     if (contact%tool(c) == 0 .or. contact%distance(c) >= -model%tolerance%closed) return
-    free = merge(0.0_wp, contact%normal(:, c), prescribed(:, model%contact_node(c)))
-    is_led_inside = norm2(free) <= tangential
+    is_led_inside = is_normal_held(phase, model%contact_node(c), contact%normal(:, c))
   end function is_led_inside
 
   !> Evaluate stresses, internal forces, contact and residuals of the trial state; in the first

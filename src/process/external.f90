@@ -8,7 +8,7 @@ module dd3_process_external
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: set_loads, evaluate_external, external_forces, unfaded_forces
+  public :: set_loads, evaluate_external, unfaded_forces
 
 contains
 
@@ -31,35 +31,21 @@ contains
     end associate
   end subroutine set_loads
 
-  !> Set the external forces of a trial state.
-  subroutine evaluate_external(model, trial)
+  !> Set the external forces of a state, and the fading ones among them; those of pressures and of
+  !> springs depend on the positions of the nodes.
+  subroutine evaluate_external(model, state)
     type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: trial
+    type(state_t), intent(inout) :: state
 
-    real(wp) :: fading(3, model%n_contact), force(3, model%n_node)
-
-    call external_forces(model, trial, fading, force)
-    trial%fading = fading
-    trial%external_force = force
+    associate (force => state%external_force)
+      state%fading = (1.0_wp - state%progress)*unfaded_forces(model, state)
+      call nodal_forces(model%load_set, state%load, model%contact_node, state%fading, force)
+      force = force + (1.0_wp - state%progress)*state%start%reaction
+      if (size(state%bead_load) > 0) force = force + state%bead_load
+      if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
+          state%pressure, state%x, force)
+    end associate
   end subroutine evaluate_external
-
-  !> Evaluate the external forces; those of pressures and of springs depend on the positions of the
-  !> nodes.
-  subroutine external_forces(model, state, fading, force)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    !> Fading forces of the candidates on released tools, N.
-    real(wp), intent(out) :: fading(3, model%n_contact)
-    !> On the nodes, N.
-    real(wp), intent(out) :: force(3, model%n_node)
-
-    fading = (1.0_wp - state%progress)*unfaded_forces(model, state)
-    call nodal_forces(model%load_set, state%load, model%contact_node, fading, force)
-    force = force + (1.0_wp - state%progress)*state%start%reaction
-    if (size(state%bead_load) > 0) force = force + state%bead_load
-    if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
-        state%pressure, state%x, force)
-  end subroutine external_forces
 
   !> Return the forces of the candidates on released tools and on their springs before they fade, N.
   pure function unfaded_forces(model, state) result(force)

@@ -12,6 +12,7 @@ module dd3_process_phase_start
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
+  use dd3_process_external, only : evaluate_external
   use dd3_process_phase_end, only : until_value
   use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   implicit none
@@ -71,6 +72,7 @@ contains
       start%tool_displacement = state%tool_displacement
       start%plastic_strain = state%internal_variables(1, :, :)
     end associate
+    call evaluate_external(model, state)
   end subroutine begin_phase
 
   !> Whether a phase names a tool that an earlier one released, so that it has contact again.

@@ -6,7 +6,6 @@ module dd3_process_work
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_external, only : external_forces
   use dd3_system_contact, only : contact_work_t
   implicit none
   private
@@ -33,8 +32,7 @@ contains
     if (size(new%bead_load) > 0) call add_bead_work(model, old, moved, new)
   end subroutine add_work
 
-  !> Add the work of loads and of supports that move. Forces that begin to fade at the start of the
-  !> phase are not in the external forces of the state before it.
+  !> Add the work of loads and of supports that move.
   subroutine add_external_work(model, old, moved, new)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: old
@@ -42,11 +40,9 @@ contains
     real(wp), intent(in) :: moved(:, :)
     type(state_t), intent(inout) :: new
 
-    real(wp) :: force(3, model%n_node), reaction(3, model%n_node), fading(3, model%n_contact)
+    real(wp) :: force(3, model%n_node), reaction(3, model%n_node)
 
-    force = old%external_force
-    if (old%progress <= 0.0_wp) call external_forces(model, old, fading, force)
-    force = force + new%external_force
+    force = old%external_force + new%external_force
     reaction = old%internal_force + new%internal_force - force
     reaction(:, model%contact_node) = reaction(:, model%contact_node) + old%lambda + new%lambda
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp

@@ -11,12 +11,17 @@ module dd3_system_contact
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : tangential
   implicit none
   private
   public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact, not_held
+  public :: is_normal_held
 
   !> Value of `held` of a candidate whose status is not held.
   integer, parameter :: not_held = -1
+  !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does not
+  !> follow from equilibrium, but grows or falls by the penalty times the gap in every iteration.
+  real(wp), parameter :: held_factor = 1.0e4_wp
   !> Candidates that a thread takes at a time.
   integer, parameter :: chunk = 64
 
@@ -110,11 +115,35 @@ contains
           + committed%tool_displacement(:, tool)
       self%distance(c) = hit%distance
       self%normal(:, c) = hit%normal
-      call evaluate_candidate(self, c, hit, slip, contact_penalty(model, &
-          model%phase(trial%phase), c, trial%penalty_reduced), model%tool(tool)%friction)
+      call evaluate_candidate(self, c, hit, slip, candidate_penalty(model, &
+          model%phase(trial%phase), c, hit%normal, trial%penalty_reduced), &
+          model%tool(tool)%friction)
     end if
     trial%status(c) = self%status(c)
   end subroutine find_and_evaluate
+
+  !> Return the penalty of a candidate at a point of a tool, N/mm.
+  pure real(wp) function candidate_penalty(model, phase, c, normal, reduced) result(penalty)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: c
+    !> Of the tool.
+    real(wp), intent(in) :: normal(3)
+    !> Whether a penalty of the input above the automatic one is reduced to it.
+    logical, intent(in) :: reduced
+
+    penalty = contact_penalty(model, phase, c, reduced)
+    if (is_normal_held(phase, model%contact_node(c), normal)) penalty = held_factor*penalty
+  end function candidate_penalty
+
+  !> Whether the prescribed displacements of a node hold it along a normal.
+  pure logical function is_normal_held(phase, node, normal)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: node
+    real(wp), intent(in) :: normal(3)
+
+    is_normal_held = norm2(merge(0.0_wp, normal, phase%prescribed(:, node))) <= tangential
+  end function is_normal_held
 
   !> Evaluate status, force and linearisation of a candidate near a tool.
   subroutine evaluate_candidate(self, c, hit, slip, penalty, friction)
@@ -204,8 +233,8 @@ contains
       call set_predictor_status(self%status(c), friction, phase, leaving, touching(tool), hit, &
           model%tolerance%touch)
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          self%lambda(:, c), no_slip, contact_penalty(model, phase, c, committed%penalty_reduced), &
-          friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+          self%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal, &
+          committed%penalty_reduced), friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
 

@@ -21,7 +21,7 @@ program benchmark_run_matrices
   use dd3_linalg_ordering, only : find_ordering, ordering_names
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
-  use dd3_linalg_solver_registry, only : new_linear_solver, present_solvers
+  use dd3_linalg_solver_registry, only : missing_package, new_linear_solver
   use dd3_model_model, only : model_t
   use run_samples, only : collect, read_model, sample_t, usual_options
   implicit none
@@ -84,7 +84,7 @@ contains
     call measure(usual_options("umfpack"), "UMFPACK", sample)
     call measure(usual_options("auto"), "auto", sample)
     call measure(usual_options("block_lu"), "block LU", sample)
-    if (any(present_solvers() == "mumps")) call measure(usual_options("mumps"), "MUMPS", sample)
+    if (missing_package("mumps") == "") call measure(usual_options("mumps"), "MUMPS", sample)
     options = usual_options("cgs")
     do i = 1, size(ordering_names)
       options%ordering = ordering_names(i)

@@ -21,7 +21,7 @@ program benchmark_solvers
   use dd3_linalg_ordering, only : find_ordering, ordering_names
   use dd3_linalg_scaled_system, only : scaled_system_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
-  use dd3_linalg_solver_registry, only : new_linear_solver, present_solvers
+  use dd3_linalg_solver_registry, only : missing_package, new_linear_solver, solver_names
   use matrix_market, only : read_matrix_market
   implicit none
 
@@ -89,7 +89,8 @@ contains
     allocate (reference(size(b)))
     reference = 0.0_wp
     call measure(options, matrix, b, reference)
-    names = present_solvers()
+    names = solver_names()
+    names = pack(names, [(missing_package(names(i)) == "", i = 1, size(names))])
     names = pack(names, names /= "umfpack" .and. names /= "cgs")
     do i = 1, size(names)
       options%method = names(i)
