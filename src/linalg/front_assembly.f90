@@ -5,7 +5,7 @@ module dd3_linalg_front_assembly
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: put_blocks, add_border
+  public :: put_blocks, add_border, add_part
 
 contains
 
@@ -58,6 +58,28 @@ contains
       end do
     end do
   end subroutine add_border
+
+  !> Add the part of a vector that belongs to the border of a child to that of a front.
+  pure subroutine add_part(n, place, border, p, pivots, rest)
+    !> See `add_border`.
+    integer, intent(in) :: n, place(n)
+    real(wp), intent(in) :: border(3*n)
+    !> Number of pivots.
+    integer, intent(in) :: p
+    !> The front's vector, of the pivots and of its border.
+    real(wp), intent(inout) :: pivots(p), rest(*)
+
+    integer :: k, i
+
+    do k = 1, n
+      i = 3*place(k) - 2
+      if (i < p) then
+        pivots(i:i + 2) = pivots(i:i + 2) + border(3*k - 2:3*k)
+      else
+        rest(i - p:i - p + 2) = rest(i - p:i - p + 2) + border(3*k - 2:3*k)
+      end if
+    end do
+  end subroutine add_part
 
   !> Find the runs of rows that are neighbours in a front too; none extends beyond the pivots.
   pure subroutine find_runs(n, place, n_pivot, run, n_run, in_pivots)

@@ -8,8 +8,8 @@ module dd3_linalg_multifrontal
   use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
-  use dd3_linalg_dense, only : dgemv, dtrsv
-  use dd3_linalg_front_assembly, only : add_border, put_blocks
+  use dd3_linalg_dense, only : dgemv, dlaswp, dtrsv
+  use dd3_linalg_front_assembly, only : add_border, add_part, put_blocks
   use dd3_linalg_front_branches, only : find_branches, front_products, front_work_t
   use dd3_linalg_front_factor, only : factor_front
   use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
@@ -45,7 +45,7 @@ module dd3_linalg_multifrontal
     integer(i8), allocatable :: border_at(:)
     !> Workspaces of the trunk, 0, and of the branches.
     type(front_work_t), allocatable :: work(:)
-    !> Vectors of a solution.
+    !> Vector of a solution, `(3n)`, and its part of the border of each front, beside one another.
     real(wp), allocatable :: y(:), part(:)
     !> Number of fronts shifted in the last factorisation.
     integer :: shifted = 0
@@ -104,25 +104,23 @@ contains
     class(multifrontal_t), intent(inout) :: self
 
     integer(i8) :: p, m
-    integer :: f, largest
+    integer :: f
 
     associate (tree => self%tree)
       allocate (self%left_start(tree%n_front + 1), self%upper_start(tree%n_front + 1))
       self%left_start(1) = 1
       self%upper_start(1) = 1
-      largest = 0
       do f = 1, tree%n_front
         p = 3*int(tree%first(f + 1) - tree%first(f), i8)
         m = 3*int(rows_of(tree, f), i8)
         self%left_start(f + 1) = self%left_start(f) + m*p
         self%upper_start(f + 1) = self%upper_start(f) + p*(m - p)
-        largest = max(largest, int(m - p))
       end do
       allocate (self%left(self%left_start(tree%n_front + 1) - 1))
       ! One more, so that the empty part of the last front has an address.
       allocate (self%upper(self%upper_start(tree%n_front + 1)))
     end associate
-    allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(largest))
+    allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(3*size(self%tree%border) + 1))
   end subroutine find_sizes
 
   !> Assign the blocks of the matrix to the fronts, each to the front of its earlier pivot.
@@ -290,74 +288,84 @@ contains
     real(wp), intent(in) :: r(:)
     real(wp), intent(out) :: z(:)
 
-    integer :: i, f
+    integer :: i, b, threads
 
-    associate (tree => self%tree)
-      do i = 1, self%n
-        self%y(3*i - 2:3*i) = r(3*tree%order(i) - 2:3*tree%order(i))
-      end do
-      do f = 1, tree%n_front
-        call forward(self, f)
-      end do
-      do f = tree%n_front, 1, -1
-        call backward(self, f)
-      end do
-      do i = 1, self%n
-        z(3*tree%order(i) - 2:3*tree%order(i)) = self%y(3*i - 2:3*i)
-      end do
-    end associate
+    threads = min(self%threads, most_threads())
+    do i = 1, self%n
+      self%y(3*i - 2:3*i) = r(3*self%tree%order(i) - 2:3*self%tree%order(i))
+    end do
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) num_threads(threads)
+    do b = 1, size(self%work) - 1
+      call forward(self, b)
+    end do
+    !$omp end parallel do
+    call forward(self, 0)
+    call backward(self, 0)
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) num_threads(threads)
+    do b = 1, size(self%work) - 1
+      call backward(self, b)
+    end do
+    !$omp end parallel do
+    do i = 1, self%n
+      z(3*self%tree%order(i) - 2:3*self%tree%order(i)) = self%y(3*i - 2:3*i)
+    end do
   end subroutine multifrontal_apply
 
-  !> Eliminate the pivots of a front from the vector `y`.
-  subroutine forward(self, f)
+  !> Eliminate the pivots of a branch, or of the trunk, from the vector `y`.
+  subroutine forward(self, branch)
     class(multifrontal_t), intent(inout) :: self
-    integer, intent(in) :: f
+    integer, intent(in) :: branch
 
-    integer :: i, k, p, m, at
+    integer :: f, child, p, m, at, from
 
-    associate (tree => self%tree, y => self%y, part => self%part)
-      at = 3*tree%first(f) - 2
-      p = 3*(tree%first(f + 1) - tree%first(f))
-      m = 3*rows_of(tree, f)
-      if (m == p) return
-      call dgemv("N", m - p, p, 1.0_wp, self%left(self%left_start(f) + int(p, i8)), m, y(at), 1, &
-          0.0_wp, part, 1)
-      do k = 1, (m - p)/3
-        i = 3*tree%border(tree%border_start(f) + k - 1)
-        y(i - 2:i) = y(i - 2:i) - part(3*k - 2:3*k)
+    associate (tree => self%tree)
+      do f = self%work(branch)%first, self%work(branch)%last
+        if (self%branch_of(f) /= branch) cycle
+        at = 3*tree%first(f) - 2
+        from = 3*tree%border_start(f) - 2
+        p = 3*(tree%first(f + 1) - tree%first(f))
+        m = 3*rows_of(tree, f)
+        self%part(from:from + m - p - 1) = 0.0_wp
+        child = tree%last_child(f)
+        do while (child > 0)
+          associate (first => tree%border_start(child), last => tree%border_start(child + 1) - 1)
+            call add_part(last - first + 1, tree%place(first:last), self%part(3*first - 2:3*last), &
+                p, self%y(at:at + p - 1), self%part(from:from + m - p - 1))
+          end associate
+          child = tree%previous(child)
+        end do
+        if (m > p) call dgemv("N", m - p, p, -1.0_wp, self%left(self%left_start(f) + int(p, i8)), &
+            m, self%y(at), 1, 1.0_wp, self%part(from), 1)
       end do
     end associate
   end subroutine forward
 
-  !> Find the pivots of a front from those of later fronts.
-  subroutine backward(self, f)
+  !> Find the pivots of a branch, or of the trunk, from those of later fronts.
+  subroutine backward(self, branch)
     class(multifrontal_t), intent(inout) :: self
-    integer, intent(in) :: f
+    integer, intent(in) :: branch
 
-    real(wp) :: held
-    integer :: i, k, p, m, at
+    integer :: f, i, k, p, u, at, from
 
-    associate (tree => self%tree, y => self%y, part => self%part, &
-        left => self%left(self%left_start(f):))
-      at = 3*tree%first(f) - 2
-      p = 3*(tree%first(f + 1) - tree%first(f))
-      m = 3*rows_of(tree, f)
-      if (m > p) then
-        do k = 1, (m - p)/3
-          i = 3*tree%border(tree%border_start(f) + k - 1)
-          part(3*k - 2:3*k) = y(i - 2:i)
-        end do
-        call dgemv("N", p, m - p, -1.0_wp, self%upper(self%upper_start(f)), p, part, 1, 1.0_wp, &
-            y(at), 1)
-      end if
-      do i = at, at + p - 1
-        k = at - 1 + self%pivot(i)
-        held = y(i)
-        y(i) = y(k)
-        y(k) = held
+    associate (tree => self%tree)
+      do f = self%work(branch)%last, self%work(branch)%first, -1
+        if (self%branch_of(f) /= branch) cycle
+        at = 3*tree%first(f) - 2
+        from = 3*tree%border_start(f) - 2
+        p = 3*(tree%first(f + 1) - tree%first(f))
+        u = 3*rows_of(tree, f) - p
+        if (u > 0) then
+          do k = 1, u/3
+            i = 3*tree%border(tree%border_start(f) + k - 1)
+            self%part(from + 3*k - 3:from + 3*k - 1) = self%y(i - 2:i)
+          end do
+          call dgemv("N", p, u, -1.0_wp, self%upper(self%upper_start(f)), p, self%part(from), 1, &
+              1.0_wp, self%y(at), 1)
+        end if
+        call dlaswp(1, self%y(at), p, 1, p, self%pivot(at), 1)
+        call dtrsv("L", "N", "U", p, self%left(self%left_start(f)), p + u, self%y(at), 1)
+        call dtrsv("U", "N", "N", p, self%left(self%left_start(f)), p + u, self%y(at), 1)
       end do
-      call dtrsv("L", "N", "U", p, left, m, y(at), 1)
-      call dtrsv("U", "N", "N", p, left, m, y(at), 1)
     end associate
   end subroutine backward
 
