@@ -17,6 +17,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
     sys.exit(77)
 
 import numpy as np  # noqa: E402
+from scipy.spatial import cKDTree  # noqa: E402
 from tools import cad  # noqa: E402
 from tool_surfaces import (MESHES, box_distance, convert, die_triangles, make_cad, points_of, read,  # noqa: E402
                            write_stl)
@@ -169,6 +170,36 @@ def check_cut_cad(folder):
     assert "80 of 80 free edges" in run_tool(folder / "shifted_a_little.brep", "--sew", "0.015")
 
 
+def check_crown(folder):
+    """Check a crown that meets its axis: a curve of Bézier, revolved, with its axis oblique to the coordinates and cut
+    beside it, so that the face goes around its pole and is trimmed."""
+    import gmsh
+    profile = np.array([[0, 0, 0], [10, 0, 0], [20, 0, 2], [24, 0, 6]])
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    occ = gmsh.model.occ
+    with cad.silence():
+        curve = occ.addBezier([occ.addPoint(*point) for point in profile])
+        occ.revolve([(1, curve)], 0, 0, 0, 0, 0, 1, 2 * np.pi)
+        occ.remove([(1, curve)])
+        crown = occ.getEntities(2)
+        occ.cut(crown, [(3, occ.addBox(8, -50, -50, 60, 100, 100))])
+        occ.rotate(occ.getEntities(2), 0, 0, 0, 1, 1, 0, 0.4)
+        occ.synchronize()
+        gmsh.write(str(folder / "crown.step"))
+    gmsh.finalize()
+    said = convert(folder / "crown.step", folder / "crown.bez")
+    assert "were cut: face 1" in said, said
+    point = points_of(read(folder / "crown.bez"), 5)[0].reshape(-1, 3)
+    axis = np.array([np.sin(0.4), -np.sin(0.4), np.sqrt(2) * np.cos(0.4)]) / np.sqrt(2)
+    height = point @ axis
+    r = np.linalg.norm(point - height[:, None] * axis, axis=1)
+    t = np.linspace(0, 1, 100001)
+    weights = (1 - t)**3, 3 * t * (1 - t)**2, 3 * t**2 * (1 - t), t**3
+    along = sum(weight * place for weight, place in zip(weights, profile[:, [0, 2], None]))
+    assert cKDTree(along.T).query(np.stack([r, height], axis=1))[0].max() < 0.0021, said
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_cut_texts, check_places):
@@ -176,6 +207,7 @@ def main():
         check_limits()
         if importlib.util.find_spec("gmsh"):
             check_cut_cad(Path(name))
+            check_crown(Path(name))
     print("broken files are converted right or refused")
 
 
