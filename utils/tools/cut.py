@@ -61,7 +61,8 @@ def add_square(occ, centre, normal, half):
     along = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     along /= np.linalg.norm(along)
     across = np.cross(normal, along)
-    corners = [occ.addPoint(*(centre + half * (a * along + b * across))) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [occ.addPoint(*(centre + half * (a * along + b * across)))
+               for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     lines = [occ.addLine(*pair) for pair in zip(corners, corners[1:] + corners[:1])]
     return occ.addPlaneSurface([occ.addCurveLoop(lines)])
 

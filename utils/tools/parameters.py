@@ -46,8 +46,8 @@ def within_turn(gmsh, tag, table):
 
 
 def filled(uv):
-    """Return the parameters (patch, 3, 3, 2) with those unknown as the mean of their patch, from where the search of the
-    closest point starts; a patch with few known ones has NaN."""
+    """Return the parameters (patch, 3, 3, 2) with those unknown as the mean of their patch; NaN for a patch with few
+    known ones."""
     known = ~np.isnan(uv)
     count = known.sum(axis=(1, 2), keepdims=True)
     mean = np.where(known, uv, 0.0).sum(axis=(1, 2), keepdims=True) / np.maximum(count, 1)
