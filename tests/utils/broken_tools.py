@@ -17,8 +17,8 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
     sys.exit(77)
 
 import numpy as np  # noqa: E402
-from scipy.spatial import cKDTree  # noqa: E402
-from tools import cad  # noqa: E402
+from scipy.spatial import Delaunay, cKDTree  # noqa: E402
+from tools import cad, nagata  # noqa: E402
 from tool_surfaces import (MESHES, box_distance, convert, die_triangles, make_cad, points_of, read,  # noqa: E402
                            write_stl)
 
@@ -99,6 +99,35 @@ def check_stl_files(folder):
     odd.write_bytes(raw)
     convert(odd, folder / "dié ö 1.bez")
     assert largest_distance(folder / "dié ö 1.bez") < 0.006
+
+
+def check_dyna_solids(folder):
+    """Check solids of LS-DYNA on one line each and on two, a wedge of both orders, and thick shells: one block."""
+    nodes = [(x, y, z) for z in (0, 10) for x, y in ((0, 0), (20, 0), (20, 10), (0, 10), (40, 0), (40, 10))]
+    first, second = (1, 2, 3, 4, 7, 8, 9, 10), (2, 5, 6, 3, 8, 11, 12, 9)
+    wedges = (2, 3, 9, 8, 5, 5, 11, 11), (3, 6, 6, 3, 9, 12, 12, 9), (5, 6, 3, 3, 11, 12, 9, 9)
+    for keyword, solids in (("*ELEMENT_SOLID", (first, second)), ("*ELEMENT_TSHELL", (first, second)),
+                            ("*ELEMENT_SOLID", (first, wedges[0], wedges[2]))):
+        for between in ("", "\n"):
+            text = "*KEYWORD\n*NODE\n" + "".join(f"{number:8d}{x:16.1f}{y:16.1f}{z:16.1f}\n"
+                                                for number, (x, y, z) in enumerate(nodes, 1)) + keyword + "\n"
+            for number, corners in enumerate(solids, 1):
+                text += f"{number:8d}{7:8d}{between}" + "".join(f"{corner:8d}" for corner in corners) + "\n"
+            (folder / "block.k").write_text(text + "*END\n")
+            said = convert(folder / "block.k", folder / "block.bez", "--rotate", 0, 0, 1, 90, "--move", 0, 0, 5)
+            assert "x -10 to 0, y 0 to 40, z 5 to 15" in said and "0 free, 0 of more" in said, said
+
+
+def check_straightened(folder):
+    """Check that the edges of facets whose patches would fold are kept straight: waves in few random triangles."""
+    place = np.random.default_rng(0).random((60, 2)) * 20
+    place = np.concatenate([place, [[0, 0], [20, 0], [0, 20], [20, 20]]])
+    height = 2 * np.sin(place[:, 0] / 2) * np.cos(place[:, 1] / 3)
+    path = folder / "rough.stl"
+    write_stl(path, np.column_stack([place, height])[Delaunay(place).simplices])
+    assert "folds      0" in convert(path, "--tolerance", 9)
+    with mock.patch.object(nagata, "MOST_PLAIN", 0):
+        assert "17 folded patches" in convert(path, "--tolerance", 9, expect=2)
 
 
 def check_cut_texts(folder):
@@ -202,7 +231,8 @@ def check_crown(folder):
 
 def main():
     with tempfile.TemporaryDirectory() as name:
-        for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_cut_texts, check_places):
+        for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_dyna_solids, check_straightened,
+                      check_cut_texts, check_places):
             check(Path(name))
         check_limits()
         if importlib.util.find_spec("gmsh"):
