@@ -110,7 +110,8 @@ def interrupted(runner, work):
 
 def stopped(runner, work):
     """A run that stops: continued unchanged it stops again in the same way; with more iterations it reaches the end."""
-    for name, changes, settings in (("iterations", (("cutback = on", "cutback = off"),), ("iterations=4",)),
+    for name, changes, settings in (("iterations", (("cutback = on", "cutback = off\n  active_set = off"),),
+                                     ("iterations=4",)),
                                     ("cut-backs", (("cutback = on", "cutback = on\n  cutback_min = 0.03"),),
                                      ("iterations=3",))):
         first, again, output = work / name / "first", work / name / "again", work / name / "changed"
