@@ -110,8 +110,10 @@ def face_facets(mesh, options):
 
 
 def direction(options):
-    """Return the unit vector of --toward, or None."""
-    return None if options.toward is None else np.array(options.toward) / np.linalg.norm(options.toward)
+    """Return the unit vector of --toward in the axes of the file, or None."""
+    if options.toward is None:
+        return None
+    return moved.rotation(options.rotate).T @ np.array(options.toward) / np.linalg.norm(options.toward)
 
 
 def nothing_faces(options):
@@ -174,6 +176,11 @@ def command_line():
                         help="direction from the tool to the sheet: chooses the side of its normals; faces that look "
                              "the other way are left out")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the coordinates, 1000 for metres")
+    parser.add_argument("--rotate", type=float, nargs=4, action="append", default=[],
+                        metavar=("X", "Y", "Z", "DEGREES"),
+                        help="rotate about an axis through the origin of the file; may be repeated")
+    parser.add_argument("--move", type=float, nargs=3, default=(0, 0, 0), metavar=("X", "Y", "Z"),
+                        help="move after the rotation, mm")
     parser.add_argument("--sew", type=float, metavar="mm", help="join free edges and nodes up to this far apart")
     parser.add_argument("--tolerance", type=float, metavar="mm",
                         help="largest distance from the CAD (0.002); of facets, an estimate (0.02)")
@@ -203,6 +210,8 @@ def arguments():
     for name in ("scale", "sew", "tolerance"):
         if getattr(options, name) is not None and not 0 < getattr(options, name) < np.inf:
             parser.error(f"--{name} takes a positive number")
+    if any(not np.any(axis) for *axis, _ in options.rotate):
+        parser.error("--rotate takes an axis and an angle")
     options.kind, options.reader = reader_of(options.source)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
     return options
@@ -214,6 +223,7 @@ def main():
     progress = Progress(options.source.name)
     surface, parts, lines, errors = options.reader(options, progress)
     progress.end()
+    surface.net = moved.placed(surface.net, moved.rotation(options.rotate), options.move)
     if options.turn:
         surface.net = turned(surface.net)
     result, joints = report.judge(surface, options, parts)

@@ -5,11 +5,11 @@ module dd3_base_threads
   implicit none
   private
   public :: set_threads, most_threads, threads_for
-  public :: least_elements, least_nodes
+  public :: least_elements, least_nodes, least_values
 
-  !> Passes of a loop over elements, and over nodes, candidates or rows, that occupy a thread longer
-  !> than it waits for the others.
-  integer, parameter :: least_elements = 128, least_nodes = 256
+  !> Passes of a loop over elements, over nodes, candidates or rows, and over the values of a matrix,
+  !> that occupy a thread longer than it waits for the others.
+  integer, parameter :: least_elements = 128, least_nodes = 256, least_values = 50000
 
 contains
 

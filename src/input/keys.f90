@@ -180,7 +180,7 @@ contains
           lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("release_tolerance", kind_real, "", "1e-5", "maximum of tolerance in a phase in which "// &
           "all tools are released", lower=zero, upper=0.1_wp, lower_open=.true.), &
-      row("tool_force", kind_real, "", "1e-2", "tolerance of the balance of a pressed tool "// &
+      row("tool_force", kind_real, "", "1e-3", "tolerance of the balance of a pressed tool "// &
           "under which nodes keep opening and closing, over its force", lower=1.0e-6_wp, &
           upper=0.1_wp), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment; "// &
@@ -199,7 +199,7 @@ contains
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic "// &
           "one to it after ten iterations or a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
-          "displacement gradients, and any that inverts an element")]
+          "displacement gradients, and any that inverts an element or overshoots")]
   end function newton_keys
 
   function solver_keys() result(key)

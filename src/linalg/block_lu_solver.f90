@@ -18,7 +18,7 @@ module dd3_linalg_block_lu_solver
   integer, parameter :: most_refinements = 10
   !> Time of a block product on dense fronts, and of the work on a front besides, in block products
   !> by rows.
-  real(wp), parameter :: front_product = 0.4_wp, front_overhead = 1300.0_wp
+  real(wp), parameter :: front_product = 0.22_wp, front_overhead = 2000.0_wp
 
   !> Complete factorisation on blocks.
   type, extends(linear_solver_t) :: block_lu_solver_t

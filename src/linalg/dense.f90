@@ -3,7 +3,7 @@ module dd3_linalg_dense
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: dgemm, dgemv, dgetrf, dtrsm, dtrsv
+  public :: dgemm, dgemv, dgetrf, dlaswp, dtrmm, dtrsv
 
   interface
     !> c = alpha op(a) op(b) + beta c.
@@ -32,14 +32,21 @@ module dd3_linalg_dense
       integer, intent(out) :: pivot(*), info
     end subroutine dgetrf
 
-    !> Solve with a triangular matrix and several right-hand sides.
-    subroutine dtrsm(side, triangle, op, diagonal, m, n, alpha, a, lda, b, ldb)
+    !> Interchange row i with row `pivot(i)`, for i from `first` to `last`.
+    subroutine dlaswp(n, a, lda, first, last, pivot, stride)
+      import :: wp
+      integer, intent(in) :: n, lda, first, last, pivot(*), stride
+      real(wp), intent(inout) :: a(*)
+    end subroutine dlaswp
+
+    !> Multiply several vectors by a triangular matrix.
+    subroutine dtrmm(side, triangle, op, diagonal, m, n, alpha, a, lda, b, ldb)
       import :: wp
       character, intent(in) :: side, triangle, op, diagonal
       integer, intent(in) :: m, n, lda, ldb
       real(wp), intent(in) :: alpha, a(*)
       real(wp), intent(inout) :: b(*)
-    end subroutine dtrsm
+    end subroutine dtrmm
 
     !> Solve with a triangular matrix.
     subroutine dtrsv(triangle, op, diagonal, n, a, lda, x, stride)

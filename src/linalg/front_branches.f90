@@ -16,30 +16,29 @@ module dd3_linalg_front_branches
   type :: front_work_t
     !> First and last front.
     integer :: first = 0, last = 0
-    !> Border of the present front, and stack of those that wait for their parents.
-    real(wp), allocatable :: rest(:), stack(:)
-    !> Last entry of the stack in use.
-    integer(i8) :: top = 0
-    !> Fronts that wait for their parents, and their number.
-    integer, allocatable :: waiting(:)
-    integer :: n_waiting = 0
+    !> Borders that wait for their parents, on two stacks that grow towards one another: those of
+    !> fronts at an even depth in the tree and those at an odd one, so that a border is made on the
+    !> one while those that go into it are on top of the other.
+    real(wp), allocatable :: border(:)
     !> Number of fronts shifted in the last factorisation, and front that it failed at; 0 for none.
     integer :: shifted = 0, failed = 0
   end type front_work_t
 
 contains
 
-  !> Find the branches, and allocate their workspaces and that of the trunk.
-  subroutine find_branches(tree, threads, branch_of, work)
+  !> Find the branches, the largest first, and allocate their workspaces and that of the trunk.
+  subroutine find_branches(tree, threads, branch_of, border_at, work)
     type(front_tree_t), intent(in) :: tree
     integer, intent(in) :: threads
     !> Branch of each front, `(n_front)`; 0 for the trunk.
     integer, allocatable, intent(out) :: branch_of(:)
+    !> Where the border of each front begins in the workspace of its branch, `(n_front)`.
+    integer(i8), allocatable, intent(out) :: border_at(:)
     !> Number 0 is the trunk's.
     type(front_work_t), allocatable, intent(out) :: work(:)
 
     real(wp), allocatable :: total(:)
-    integer, allocatable :: first(:), root(:)
+    integer, allocatable :: first(:), root(:), side(:)
     real(wp) :: limit
     integer :: f, b
 
@@ -47,8 +46,9 @@ contains
     limit = sum(total, mask=tree%parent == 0)/(per_thread*real(threads, wp))
     root = pack([(f, f=1, tree%n_front)], total <= limit .and. total >= smallest*limit &
         .and. total_above(tree, total) > limit .and. threads > 1)
+    call sort_descending(total, root)
     allocate (branch_of(tree%n_front), source=0)
-    allocate (work(0:size(root)))
+    allocate (border_at(tree%n_front), work(0:size(root)))
     work(0)%first = 1
     work(0)%last = tree%n_front
     do b = 1, size(root)
@@ -56,10 +56,26 @@ contains
       work(b)%last = root(b)
       branch_of(first(root(b)):root(b)) = b
     end do
+    side = depth_parity(tree)
     do b = 0, size(root)
-      call allocate_work(tree, branch_of, b, work(b))
+      call allocate_work(tree, branch_of, b, side, border_at, work(b))
     end do
   end subroutine find_branches
+
+  !> Sort fronts by their totals, the largest first.
+  pure subroutine sort_descending(total, front)
+    real(wp), intent(in) :: total(:)
+    integer, intent(inout) :: front(:)
+
+    integer :: i, k, held
+
+    do i = 1, size(front)
+      k = i - 1 + maxloc(total(front(i:)), dim=1)
+      held = front(i)
+      front(i) = front(k)
+      front(k) = held
+    end do
+  end subroutine sort_descending
 
   !> Sum up the block products of each front and of those before it in the tree.
   pure subroutine sum_up(tree, total, first)
@@ -95,37 +111,51 @@ contains
     end do
   end function total_above
 
-  !> Allocate the workspace of a branch, by going through its fronts.
-  subroutine allocate_work(tree, branch_of, branch, work)
+  !> Return whether the depth of each front in the tree is odd, 1, or even, 0.
+  pure function depth_parity(tree) result(parity)
     type(front_tree_t), intent(in) :: tree
-    integer, intent(in) :: branch_of(:), branch
+    integer :: parity(tree%n_front)
+
+    integer :: f
+
+    do f = tree%n_front, 1, -1
+      parity(f) = 0
+      if (tree%parent(f) > 0) parity(f) = 1 - parity(tree%parent(f))
+    end do
+  end function depth_parity
+
+  !> Place the borders of a branch in its workspace, and allocate that.
+  subroutine allocate_work(tree, branch_of, branch, side, border_at, work)
+    type(front_tree_t), intent(in) :: tree
+    !> Side of each front: parity of its depth.
+    integer, intent(in) :: branch_of(:), branch, side(:)
+    integer(i8), intent(inout) :: border_at(:)
     type(front_work_t), intent(inout) :: work
 
-    integer(i8) :: stacked, largest_stack, largest
-    integer :: f, k
+    integer(i8) :: top(0:1), largest
+    integer :: f, child
 
-    allocate (work%waiting(work%last - work%first + 1))
-    stacked = 0
-    largest_stack = 1
+    top = 0
     largest = 1
     do f = work%first, work%last
-      if (branch_of(f) == branch) then
-        do k = 1, tree%children(f)
-          if (branch_of(work%waiting(work%n_waiting)) == branch) &
-              stacked = stacked - border_size(tree, work%waiting(work%n_waiting))
-          work%n_waiting = work%n_waiting - 1
+      if (branch_of(f) /= branch) cycle
+      associate (own => side(f))
+        border_at(f) = top(own)
+        top(own) = top(own) + border_size(tree, f)
+        largest = max(largest, sum(top))
+        child = tree%last_child(f)
+        do while (child > 0)
+          if (branch_of(child) == branch) top(1 - own) = border_at(child)
+          child = tree%previous(child)
         end do
-        largest = max(largest, border_size(tree, f))
-        if (tree%parent(f) > 0) stacked = stacked + border_size(tree, f)
-        largest_stack = max(largest_stack, stacked)
-      else if (branch_of(tree%parent(f)) /= branch) then
-        cycle
-      end if
-      if (tree%parent(f) == 0) cycle
-      work%n_waiting = work%n_waiting + 1
-      work%waiting(work%n_waiting) = f
+      end associate
     end do
-    allocate (work%rest(largest), work%stack(largest_stack))
+    do f = work%first, work%last
+      if (branch_of(f) /= branch) cycle
+      border_at(f) = border_at(f) + 1
+      if (side(f) == 1) border_at(f) = largest - border_at(f) - border_size(tree, f) + 2
+    end do
+    allocate (work%border(largest))
   end subroutine allocate_work
 
   !> Return the number of entries of a front's square border.

@@ -28,8 +28,9 @@ module dd3_linalg_front_tree
     integer, allocatable :: first(:)
     !> Front that the border goes to, `(n_front)`; 0 for a root.
     integer, allocatable :: parent(:)
-    !> Number of fronts that go to each front, `(n_front)`: the last ones before it on the stack.
-    integer, allocatable :: children(:)
+    !> Last front that goes to each front, and the one before that goes to the same, `(n_front)`; 0
+    !> for none.
+    integer, allocatable :: last_child(:), previous(:)
     !> Where the border of each front begins in `border`, `(n_front + 1)`.
     integer, allocatable :: border_start(:)
     !> Rows of the borders, ascending in a front, and their places in the parent's front.
@@ -228,7 +229,7 @@ contains
     integer :: f, above
 
     allocate (front_of(size(parent)), self%parent(self%n_front))
-    allocate (self%children(self%n_front), source=0)
+    allocate (self%last_child(self%n_front), self%previous(self%n_front), source=0)
     do f = 1, self%n_front
       front_of(self%first(f):self%first(f + 1) - 1) = f
     end do
@@ -237,7 +238,8 @@ contains
       self%parent(f) = 0
       if (above == 0) cycle
       self%parent(f) = front_of(above)
-      self%children(front_of(above)) = self%children(front_of(above)) + 1
+      self%previous(f) = self%last_child(front_of(above))
+      self%last_child(front_of(above)) = f
     end do
   end subroutine connect
 
@@ -247,10 +249,10 @@ contains
     type(block_matrix_t), intent(in) :: matrix
     integer, intent(in) :: front_of(:)
 
-    integer, allocatable :: mark(:), new_number(:), head(:), next(:)
+    integer, allocatable :: mark(:), new_number(:)
     integer :: f, i, k, child, last, n, start
 
-    allocate (mark(matrix%n), head(self%n_front), next(self%n_front), source=0)
+    allocate (mark(matrix%n), source=0)
     allocate (new_number(matrix%n), self%border_start(self%n_front + 1))
     allocate (self%border(4*matrix%n))
     new_number(self%order) = [(i, i=1, matrix%n)]
@@ -265,18 +267,15 @@ contains
           call add(new_number(matrix%column(k)))
         end do
       end do
-      child = head(f)
+      child = self%last_child(f)
       do while (child > 0)
         do k = self%border_start(child), self%border_start(child + 1) - 1
           call add(self%border(k))
         end do
-        child = next(child)
+        child = self%previous(child)
       end do
       call sort(self%border(start:n))
       self%border_start(f + 1) = n + 1
-      if (self%parent(f) == 0) cycle
-      next(f) = head(self%parent(f))
-      head(self%parent(f)) = f
     end do
     self%border = self%border(:n)
     call find_places(self, size(front_of))

@@ -1,6 +1,7 @@
 !> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns.
 module dd3_linalg_matrix
   use dd3_base_kinds, only : wp
+  use dd3_base_threads, only : least_values, threads_for
   implicit none
   private
   public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
@@ -255,27 +256,48 @@ contains
   end function position_of
 
   !> Set all blocks to zero.
-  pure subroutine clear(self)
+  subroutine clear(self)
     type(block_matrix_t), intent(inout) :: self
 
     call set_zero(size(self%value), self%value)
   end subroutine clear
 
   !> Kernel of `clear`, on a flat array: gfortran clears an array of blocks block by block.
-  pure subroutine set_zero(n, value)
+  subroutine set_zero(n, value)
     integer, intent(in) :: n
     real(wp), intent(out) :: value(n)
 
-    value = 0.0_wp
+    integer :: i
+
+    !$omp parallel do num_threads(threads_for(n, least_values))
+    do i = 1, n
+      value(i) = 0.0_wp
+    end do
+    !$omp end parallel do
   end subroutine set_zero
 
   !> Copy the blocks of a matrix into one of the same pattern.
-  pure subroutine copy_blocks(from, to)
+  subroutine copy_blocks(from, to)
     type(block_matrix_t), intent(in) :: from
     type(block_matrix_t), intent(inout) :: to
 
-    call copy_values(size(from%value), from%value, to%value)
+    call copy_with_threads(size(from%value), from%value, to%value)
   end subroutine copy_blocks
+
+  !> Kernel of `copy_blocks`.
+  subroutine copy_with_threads(n, from, to)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: from(n)
+    real(wp), intent(out) :: to(n)
+
+    integer :: i
+
+    !$omp parallel do num_threads(threads_for(n, least_values))
+    do i = 1, n
+      to(i) = from(i)
+    end do
+    !$omp end parallel do
+  end subroutine copy_with_threads
 
   !> Kernel: copy values as one contiguous array, whatever its shape.
   pure subroutine copy_values(n, from, to)
@@ -317,7 +339,7 @@ contains
   end subroutine add_blocks
 
   !> Evaluate the product y = A x.
-  pure subroutine multiply(self, x, y)
+  subroutine multiply(self, x, y)
     type(block_matrix_t), intent(in) :: self
     real(wp), intent(in) :: x(3*self%n)
     real(wp), intent(out) :: y(3*self%n)
@@ -327,7 +349,7 @@ contains
 
   !> Kernel of the product, with one partial sum per column of the blocks, so that no addition waits
   !> for the previous one.
-  pure subroutine multiply_rows(n, n_block, row_start, column, value, x, y)
+  subroutine multiply_rows(n, n_block, row_start, column, value, x, y)
     integer, intent(in) :: n, n_block, row_start(n + 1), column(n_block)
     real(wp), intent(in) :: value(3, 3, n_block), x(3, n)
     real(wp), intent(out) :: y(3, n)
@@ -335,6 +357,7 @@ contains
     real(wp) :: a(3), b(3), c(3)
     integer :: i, j, k
 
+    !$omp parallel do num_threads(threads_for(9*n_block, least_values)) private(a, b, c, j, k)
     do i = 1, n
       a = 0.0_wp
       b = 0.0_wp
@@ -347,6 +370,7 @@ contains
       end do
       y(:, i) = a + b + c
     end do
+    !$omp end parallel do
   end subroutine multiply_rows
 
 end module dd3_linalg_matrix

@@ -8,15 +8,19 @@ module dd3_linalg_multifrontal
   use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_blas_threads, only : use_one_blas_thread
-  use dd3_linalg_dense, only : dgemv, dtrsv
-  use dd3_linalg_front_branches, only : border_size, find_branches, front_products, front_work_t
-  use dd3_linalg_front_factor, only : add_border, factor_front, put_blocks
+  use dd3_linalg_dense, only : dgemv, dlaswp, dtrsv
+  use dd3_linalg_front_assembly, only : add_border, add_part, put_blocks
+  use dd3_linalg_front_branches, only : find_branches, front_products, front_work_t
+  use dd3_linalg_front_factor, only : factor_front
   use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
   use dd3_linalg_matrix, only : block_matrix_t, position_of
   use dd3_linalg_preconditioner, only : preconditioner_t
   implicit none
   private
   public :: multifrontal_t
+
+  !> Block columns of a front that are assembled together.
+  integer, parameter :: chunk = 8
 
   !> Factors P A11 = L11 U11 of the pivots of each front, A21 A11^-1, and A12.
   type, extends(preconditioner_t) :: multifrontal_t
@@ -36,10 +40,12 @@ module dd3_linalg_multifrontal
     !> Where the blocks of the two parts of each front begin in `block`, `(2*n_front + 1)`; the
     !> block's number in the matrix and the place of its first entry in the part.
     integer, allocatable :: block_start(:), block(:), entry(:)
-    !> Branch of each front, `(n_front)`, and workspaces of the trunk, 0, and of the branches.
+    !> Branch of each front, and where its border begins in the workspace of the branch, `(n_front)`.
     integer, allocatable :: branch_of(:)
+    integer(i8), allocatable :: border_at(:)
+    !> Workspaces of the trunk, 0, and of the branches.
     type(front_work_t), allocatable :: work(:)
-    !> Vectors of a solution.
+    !> Vector of a solution, `(3n)`, and its part of the border of each front, beside one another.
     real(wp), allocatable :: y(:), part(:)
     !> Number of fronts shifted in the last factorisation.
     integer :: shifted = 0
@@ -89,7 +95,7 @@ contains
     if (allocated(self%left)) deallocate (self%left, self%upper, self%left_start, &
         self%upper_start, self%pivot, self%y, self%part)
     call find_sizes(self)
-    call find_branches(self%tree, self%threads, self%branch_of, self%work)
+    call find_branches(self%tree, self%threads, self%branch_of, self%border_at, self%work)
     call place_blocks(self, matrix)
   end subroutine multifrontal_prepare
 
@@ -98,25 +104,23 @@ contains
     class(multifrontal_t), intent(inout) :: self
 
     integer(i8) :: p, m
-    integer :: f, largest
+    integer :: f
 
     associate (tree => self%tree)
       allocate (self%left_start(tree%n_front + 1), self%upper_start(tree%n_front + 1))
       self%left_start(1) = 1
       self%upper_start(1) = 1
-      largest = 0
       do f = 1, tree%n_front
         p = 3*int(tree%first(f + 1) - tree%first(f), i8)
         m = 3*int(rows_of(tree, f), i8)
         self%left_start(f + 1) = self%left_start(f) + m*p
         self%upper_start(f + 1) = self%upper_start(f) + p*(m - p)
-        largest = max(largest, int(m - p))
       end do
       allocate (self%left(self%left_start(tree%n_front + 1) - 1))
       ! One more, so that the empty part of the last front has an address.
       allocate (self%upper(self%upper_start(tree%n_front + 1)))
     end associate
-    allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(largest))
+    allocate (self%pivot(3*self%n), self%y(3*self%n), self%part(3*size(self%tree%border) + 1))
   end subroutine find_sizes
 
   !> Assign the blocks of the matrix to the fronts, each to the front of its earlier pivot.
@@ -179,16 +183,16 @@ contains
     !> Retry if a block of pivots is not finite.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: b
+    integer :: b, threads
 
-    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) &
-    !$omp& num_threads(min(self%threads, most_threads()))
+    threads = min(self%threads, most_threads())
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) num_threads(threads)
     do b = 1, size(self%work) - 1
-      call build_branch(self, matrix, b, self%work(b))
+      call build_branch(self, matrix, b, 1)
     end do
     !$omp end parallel do
     verdict%outcome = verdict_converged
-    if (all(self%work(1:)%failed == 0)) call build_branch(self, matrix, 0, self%work(0))
+    if (all(self%work(1:)%failed == 0)) call build_branch(self, matrix, 0, threads)
     self%shifted = sum(self%work%shifted)
     if (all(self%work%failed == 0)) return
     associate (front => maxval(self%work%failed))
@@ -199,96 +203,84 @@ contains
   end subroutine multifrontal_build
 
   !> Factorise the fronts of a branch, or those of the trunk when all branches are finished.
-  subroutine build_branch(self, matrix, branch, work)
+  subroutine build_branch(self, matrix, branch, threads)
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    integer, intent(in) :: branch
-    type(front_work_t), intent(inout) :: work
+    !> Branch, and number of threads that process a front.
+    integer, intent(in) :: branch, threads
 
     integer :: f
     logical :: good
 
-    work%top = 0
-    work%n_waiting = 0
-    work%shifted = 0
-    work%failed = 0
-    do f = work%first, work%last
-      if (self%branch_of(f) == branch) then
-        call build_front(self, matrix, f, work, good)
-        if (.not. good) then
-          work%failed = f
-          return
-        end if
-      else if (self%branch_of(self%tree%parent(f)) /= branch) then
-        cycle
-      end if
-      if (self%tree%parent(f) == 0) cycle
-      work%n_waiting = work%n_waiting + 1
-      work%waiting(work%n_waiting) = f
+    self%work(branch)%shifted = 0
+    self%work(branch)%failed = 0
+    do f = self%work(branch)%first, self%work(branch)%last
+      if (self%branch_of(f) /= branch) cycle
+      call build_front(self, matrix, f, threads, good)
+      if (good) cycle
+      self%work(branch)%failed = f
+      return
     end do
   end subroutine build_branch
 
-  !> Assemble and factorise a front, and put its border on the stack.
-  subroutine build_front(self, matrix, f, work, good)
+  !> Assemble and factorise a front.
+  subroutine build_front(self, matrix, f, threads, good)
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    integer, intent(in) :: f
-    !> That of the front's branch.
-    type(front_work_t), intent(inout) :: work
+    integer, intent(in) :: f, threads
     !> Whether the pivots are finite.
     logical, intent(out) :: good
 
     integer :: p, u, k
 
-    associate (tree => self%tree, left => self%left_start(f), upper => self%upper_start(f))
+    associate (tree => self%tree, work => self%work(self%branch_of(f)), &
+        left => self%left_start(f), upper => self%upper_start(f), rest => self%border_at(f), &
+        from => self%block_start(2*f - 1), middle => self%block_start(2*f), &
+        after => self%block_start(2*f + 1))
       p = 3*(tree%first(f + 1) - tree%first(f))
       u = 3*rows_of(tree, f) - p
-      associate (from => self%block_start(2*f - 1), middle => self%block_start(2*f), &
-          after => self%block_start(2*f + 1))
-        call put_blocks(p + u, p, middle - from, self%block(from:), self%entry(from:), &
-            matrix%value, self%left(left))
-        call put_blocks(p, u, after - middle, self%block(middle:), self%entry(middle:), &
-            matrix%value, self%upper(upper))
-      end associate
-      if (tree%children(f) > 0) work%rest(:border_size(tree, f)) = 0.0_wp
-      do k = 1, tree%children(f)
-        call add_child(self, f, work)
+      !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
+      do k = 1, (p + u)/3, chunk
+        call add_children(self, f, [k, min(k + chunk - 1, (p + u)/3)], p, u, &
+            self%left(left), self%upper(upper), work%border(rest))
       end do
-      call factor_front(p, u, tree%children(f) == 0, self%left(left), self%upper(upper), &
-          work%rest, self%pivot(3*tree%first(f) - 2), work%shifted, good)
-      if (tree%parent(f) == 0) return
-      work%stack(work%top + 1:work%top + border_size(tree, f)) = work%rest(:border_size(tree, f))
-      work%top = work%top + border_size(tree, f)
+      !$omp end parallel do
+      call put_blocks(p + u, middle - from, self%block(from:), self%entry(from:), matrix%value, &
+          self%left(left))
+      call put_blocks(p, after - middle, self%block(middle:), self%entry(middle:), matrix%value, &
+          self%upper(upper))
+      call factor_front(p, u, tree%last_child(f) == 0, threads, self%left(left), &
+          self%upper(upper), work%border(rest), self%pivot(3*tree%first(f) - 2), &
+          work%shifted, good)
     end associate
   end subroutine build_front
 
-  !> Add the border of the last front that waits to its parent. If that front ends a branch of its
-  !> own, its border is alone on the branch's stack.
-  subroutine add_child(self, f, work)
-    class(multifrontal_t), intent(inout) :: self
-    !> The parent.
+  !> Set some block columns of a front to the sum of the borders of its children.
+  subroutine add_children(self, f, columns, p, u, left, upper, rest)
+    class(multifrontal_t), intent(in) :: self
     integer, intent(in) :: f
-    type(front_work_t), intent(inout) :: work
+    !> First and last block column.
+    integer, intent(in) :: columns(2)
+    !> Pivots, rows of the border, and parts of the front; see `factor_front`.
+    integer, intent(in) :: p, u
+    real(wp), intent(inout) :: left(p + u, p), upper(p, u), rest(u, u)
 
-    integer :: child, branch, n, p, u
+    integer :: child, n
 
-    child = work%waiting(work%n_waiting)
-    work%n_waiting = work%n_waiting - 1
-    branch = self%branch_of(child)
-    associate (tree => self%tree, left => self%left_start(f), upper => self%upper_start(f))
-      p = 3*(tree%first(f + 1) - tree%first(f))
-      u = 3*rows_of(tree, f) - p
-      n = tree%border_start(child + 1) - tree%border_start(child)
-      if (branch /= self%branch_of(f)) then
-        call add_border(n, tree%place(tree%border_start(child):), self%work(branch)%stack, p, u, &
-            self%left(left), self%upper(upper), work%rest)
-      else
-        work%top = work%top - border_size(tree, child)
-        call add_border(n, tree%place(tree%border_start(child):), work%stack(work%top + 1), p, u, &
-            self%left(left), self%upper(upper), work%rest)
-      end if
+    associate (tree => self%tree, first => 3*columns(1) - 2, last => 3*columns(2))
+      left(:, first:min(last, p)) = 0.0_wp
+      upper(:, max(first - p, 1):last - p) = 0.0_wp
+      child = tree%last_child(f)
+      if (child > 0) rest(:, max(first - p, 1):last - p) = 0.0_wp
+      do while (child > 0)
+        n = tree%border_start(child + 1) - tree%border_start(child)
+        call add_border(n, tree%place(tree%border_start(child):), &
+            self%work(self%branch_of(child))%border(self%border_at(child)), columns, p, u, left, &
+            upper, rest)
+        child = tree%previous(child)
+      end do
     end associate
-  end subroutine add_child
+  end subroutine add_children
 
   !> Solve L U z = r.
   subroutine multifrontal_apply(self, r, z)
@@ -296,74 +288,84 @@ contains
     real(wp), intent(in) :: r(:)
     real(wp), intent(out) :: z(:)
 
-    integer :: i, f
+    integer :: i, b, threads
 
-    associate (tree => self%tree)
-      do i = 1, self%n
-        self%y(3*i - 2:3*i) = r(3*tree%order(i) - 2:3*tree%order(i))
-      end do
-      do f = 1, tree%n_front
-        call forward(self, f)
-      end do
-      do f = tree%n_front, 1, -1
-        call backward(self, f)
-      end do
-      do i = 1, self%n
-        z(3*tree%order(i) - 2:3*tree%order(i)) = self%y(3*i - 2:3*i)
-      end do
-    end associate
+    threads = min(self%threads, most_threads())
+    do i = 1, self%n
+      self%y(3*i - 2:3*i) = r(3*self%tree%order(i) - 2:3*self%tree%order(i))
+    end do
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) num_threads(threads)
+    do b = 1, size(self%work) - 1
+      call forward(self, b)
+    end do
+    !$omp end parallel do
+    call forward(self, 0)
+    call backward(self, 0)
+    !$omp parallel do if (size(self%work) > 1) schedule(dynamic) num_threads(threads)
+    do b = 1, size(self%work) - 1
+      call backward(self, b)
+    end do
+    !$omp end parallel do
+    do i = 1, self%n
+      z(3*self%tree%order(i) - 2:3*self%tree%order(i)) = self%y(3*i - 2:3*i)
+    end do
   end subroutine multifrontal_apply
 
-  !> Eliminate the pivots of a front from the vector `y`.
-  subroutine forward(self, f)
+  !> Eliminate the pivots of a branch, or of the trunk, from the vector `y`.
+  subroutine forward(self, branch)
     class(multifrontal_t), intent(inout) :: self
-    integer, intent(in) :: f
+    integer, intent(in) :: branch
 
-    integer :: i, k, p, m, at
+    integer :: f, child, p, m, at, from
 
-    associate (tree => self%tree, y => self%y, part => self%part)
-      at = 3*tree%first(f) - 2
-      p = 3*(tree%first(f + 1) - tree%first(f))
-      m = 3*rows_of(tree, f)
-      if (m == p) return
-      call dgemv("N", m - p, p, 1.0_wp, self%left(self%left_start(f) + int(p, i8)), m, y(at), 1, &
-          0.0_wp, part, 1)
-      do k = 1, (m - p)/3
-        i = 3*tree%border(tree%border_start(f) + k - 1)
-        y(i - 2:i) = y(i - 2:i) - part(3*k - 2:3*k)
+    associate (tree => self%tree)
+      do f = self%work(branch)%first, self%work(branch)%last
+        if (self%branch_of(f) /= branch) cycle
+        at = 3*tree%first(f) - 2
+        from = 3*tree%border_start(f) - 2
+        p = 3*(tree%first(f + 1) - tree%first(f))
+        m = 3*rows_of(tree, f)
+        self%part(from:from + m - p - 1) = 0.0_wp
+        child = tree%last_child(f)
+        do while (child > 0)
+          associate (first => tree%border_start(child), last => tree%border_start(child + 1) - 1)
+            call add_part(last - first + 1, tree%place(first:last), self%part(3*first - 2:3*last), &
+                p, self%y(at:at + p - 1), self%part(from:from + m - p - 1))
+          end associate
+          child = tree%previous(child)
+        end do
+        if (m > p) call dgemv("N", m - p, p, -1.0_wp, self%left(self%left_start(f) + int(p, i8)), &
+            m, self%y(at), 1, 1.0_wp, self%part(from), 1)
       end do
     end associate
   end subroutine forward
 
-  !> Find the pivots of a front from those of later fronts.
-  subroutine backward(self, f)
+  !> Find the pivots of a branch, or of the trunk, from those of later fronts.
+  subroutine backward(self, branch)
     class(multifrontal_t), intent(inout) :: self
-    integer, intent(in) :: f
+    integer, intent(in) :: branch
 
-    real(wp) :: held
-    integer :: i, k, p, m, at
+    integer :: f, i, k, p, u, at, from
 
-    associate (tree => self%tree, y => self%y, part => self%part, &
-        left => self%left(self%left_start(f):))
-      at = 3*tree%first(f) - 2
-      p = 3*(tree%first(f + 1) - tree%first(f))
-      m = 3*rows_of(tree, f)
-      if (m > p) then
-        do k = 1, (m - p)/3
-          i = 3*tree%border(tree%border_start(f) + k - 1)
-          part(3*k - 2:3*k) = y(i - 2:i)
-        end do
-        call dgemv("N", p, m - p, -1.0_wp, self%upper(self%upper_start(f)), p, part, 1, 1.0_wp, &
-            y(at), 1)
-      end if
-      do i = at, at + p - 1
-        k = at - 1 + self%pivot(i)
-        held = y(i)
-        y(i) = y(k)
-        y(k) = held
+    associate (tree => self%tree)
+      do f = self%work(branch)%last, self%work(branch)%first, -1
+        if (self%branch_of(f) /= branch) cycle
+        at = 3*tree%first(f) - 2
+        from = 3*tree%border_start(f) - 2
+        p = 3*(tree%first(f + 1) - tree%first(f))
+        u = 3*rows_of(tree, f) - p
+        if (u > 0) then
+          do k = 1, u/3
+            i = 3*tree%border(tree%border_start(f) + k - 1)
+            self%part(from + 3*k - 3:from + 3*k - 1) = self%y(i - 2:i)
+          end do
+          call dgemv("N", p, u, -1.0_wp, self%upper(self%upper_start(f)), p, self%part(from), 1, &
+              1.0_wp, self%y(at), 1)
+        end if
+        call dlaswp(1, self%y(at), p, 1, p, self%pivot(at), 1)
+        call dtrsv("L", "N", "U", p, self%left(self%left_start(f)), p + u, self%y(at), 1)
+        call dtrsv("U", "N", "N", p, self%left(self%left_start(f)), p + u, self%y(at), 1)
       end do
-      call dtrsv("L", "N", "U", p, left, m, y(at), 1)
-      call dtrsv("U", "N", "N", p, left, m, y(at), 1)
     end associate
   end subroutine backward
 
@@ -376,8 +378,7 @@ contains
     bytes = 8.0_wp*(real(size(self%left, kind=i8), wp) + real(size(self%upper, kind=i8), wp)) &
         + 8.0_wp*(real(size(self%block), wp) + real(size(self%tree%border), wp))
     do b = 0, size(self%work) - 1
-      bytes = bytes + 8.0_wp*(real(size(self%work(b)%rest, kind=i8), wp) &
-          + real(size(self%work(b)%stack, kind=i8), wp))
+      bytes = bytes + 8.0_wp*real(size(self%work(b)%border, kind=i8), wp)
     end do
   end function multifrontal_bytes
 

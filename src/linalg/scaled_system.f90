@@ -5,6 +5,7 @@ module dd3_linalg_scaled_system
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
+  use dd3_base_threads, only : least_nodes, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : own_rows
@@ -130,8 +131,9 @@ contains
     if (left(1) > 0) bad_row = self%matrix%n + 1 - left(1)
   end subroutine share_scale
 
-  !> Kernel: copy and scale blocks up to the first bad row; see `scaled_system_t` for the arrays.
-  pure subroutine scale_rows(n, n_block, first, last, row_start, source, from, to, scale, bad_row)
+  !> Kernel: copy and scale the blocks of all rows that are not bad; see `scaled_system_t` for the
+  !> arrays.
+  subroutine scale_rows(n, n_block, first, last, row_start, source, from, to, scale, bad_row)
     integer, intent(in) :: n, n_block, first, last, row_start(n + 1), source(n_block)
     !> Blocks of the original and of the copy.
     real(wp), intent(in) :: from(3, 3, n_block)
@@ -142,6 +144,9 @@ contains
     real(wp) :: a(3), b(3), c(3)
     integer :: i, k, m
 
+    bad_row = n + 1
+    !$omp parallel do num_threads(threads_for(last - first + 1, least_nodes)) &
+    !$omp& private(a, b, c, k, m) reduction(min: bad_row)
     do i = first, last
       a = 0.0_wp
       b = 0.0_wp
@@ -153,9 +158,12 @@ contains
         c = c + abs(from(:, 3, m))
       end do
       a = a + b + c
-      bad_row = i
-      if (.not. all(ieee_is_finite(a))) return
-      if (any(a < 1.0e3_wp*tiny(a))) return
+      if (.not. all(ieee_is_finite(a))) then
+        bad_row = min(bad_row, i)
+      else if (any(a < 1.0e3_wp*tiny(a))) then
+        bad_row = min(bad_row, i)
+      end if
+      if (bad_row <= i) cycle
       a = 1.0_wp/a
       scale(:, i) = a
       do k = row_start(i), row_start(i + 1) - 1
@@ -165,7 +173,8 @@ contains
         to(:, 3, k) = a*from(:, 3, m)
       end do
     end do
-    bad_row = 0
+    !$omp end parallel do
+    if (bad_row > n) bad_row = 0
   end subroutine scale_rows
 
   !> Renumber and scale a right-hand side.

@@ -21,6 +21,10 @@ module dd3_linalg_umfpack
   !> UMFPACK_STRATEGY_SYMMETRIC: the pattern is nearly symmetric, with few zeros on the diagonal.
   !> Without values UMFPACK does not choose it by itself.
   real(c_double), parameter :: strategy_symmetric = 3.0_c_double
+  !> UMFPACK_ORDERING: position of the column ordering in the control parameters.
+  integer, parameter :: control_ordering = 11
+  !> UMFPACK_ORDERING_BEST: the best of AMD, METIS and the nested dissection of CHOLMOD.
+  real(c_double), parameter :: ordering_best = 4.0_c_double
   !> UMFPACK_RCOND: position of the estimated reciprocal condition number in the statistics.
   integer, parameter :: info_rcond = 68
   !> Reciprocal condition number below which a matrix counts as singular.
@@ -126,6 +130,7 @@ contains
     call use_one_blas_thread()
     call umfpack_di_defaults(self%control)
     self%control(control_strategy) = strategy_symmetric
+    self%control(control_ordering) = ordering_best
     self%n = 3*matrix%n
     allocate (blocks(matrix%n), rank(size(matrix%column)))
     blocks = 0

@@ -45,6 +45,8 @@ module dd3_process_attempt
     !> Fraction of the last solution in the trial state, and the reductions that led to it.
     real(wp) :: step = 1.0_wp
     integer :: reductions = 0
+    !> Norm of the residuals in the last iteration, N.
+    real(wp) :: residual = 0.0_wp
     !> Node with the largest residual, and that residual, N.
     integer :: worst_node = 0
     real(wp) :: worst_residual = 0.0_wp
@@ -118,6 +120,7 @@ contains
     self%step = 1.0_wp
     self%reductions = 0
     self%lambda_increment = 0.0_wp
+    self%residual = 0.0_wp
     self%worst_node = 0
     self%worst_residual = 0.0_wp
   end subroutine clear_correction

@@ -18,8 +18,9 @@ module dd3_process_corrector
       reduce_penalty, status_memory
   use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
-  use dd3_process_residual, only : evaluate_forces, lost_tool, pressed_force
-  use dd3_system_enhanced, only : enhanced_square, subtract_condensed
+  use dd3_process_overshoot, only : check_overshoot
+  use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
+  use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : contact_work_t, is_normal_held, not_held
   use dd3_system_load_stiffness, only : add_load_stiffness
@@ -233,8 +234,8 @@ contains
   end function is_led_inside
 
   !> Evaluate stresses, internal forces, contact and residuals of the trial state; in the first
-  !> iteration, which is never the last, the stiffness too. A step that inverts an element is
-  !> shortened if the iterations are damped.
+  !> iteration, which is never the last, the stiffness too. A step that inverts an element or
+  !> overshoots is shortened if the iterations are damped.
   subroutine evaluate(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
@@ -247,20 +248,23 @@ contains
     logical :: again
 
     j = attempt%verdict%iterations
-    call system%profile%start()
     again = .true.
     do while (again)
+      call system%profile%start()
       call update_material(system, model, committed, trial, j == 1, attempt%verdict)
       attempt%verdict%iterations = j
-      again = attempt%verdict%outcome /= verdict_converged &
-          .and. model%phase(trial%phase)%newton%damping
+      call system%profile%add(section_material)
+      again = attempt%verdict%outcome /= verdict_converged
+      if (.not. again) then
+        call evaluate_forces(model, committed, trial, system)
+        call system%profile%add(section_contact)
+        if (model%phase(trial%phase)%newton%damping) &
+            call check_overshoot(model, trial, system, attempt, again)
+      end if
+      again = again .and. model%phase(trial%phase)%newton%damping
       if (again) call retreat(model, committed, trial, system, attempt, again)
       if (again) system%problem%missed = .true.
     end do
-    call system%profile%add(section_material)
-    if (attempt%verdict%outcome /= verdict_converged) return
-    call evaluate_forces(model, committed, trial, system)
-    call system%profile%add(section_contact)
   end subroutine evaluate
 
   !> Evaluate the criterion of convergence, eq. (19).
@@ -272,33 +276,32 @@ contains
     !> Gets criterion, contact status and verdict: converged, or retry.
     type(attempt_t), intent(inout) :: attempt
 
-    real(wp) :: sum_of_squares, scale, tool_force
+    real(wp) :: scale, tool_force
     integer :: j, tool
     logical :: forces_met, outside
 
-    call residual_norm(model, trial, system, attempt%correction, sum_of_squares)
-    sum_of_squares = sum_of_squares + enhanced_square(system%enhanced, model%thickness)
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction, contact => system%contact, &
         tool_residual => system%problem%tool_residual)
+      call evaluate_norm(model, trial, system, correction%residual, correction%worst_node, &
+          correction%worst_residual)
       forces_met = .true.
       tool_force = balanced
       if (keeps_changing(correction)) tool_force = phase%newton%tool_force
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
-        if (.not. any(contact%tool == tool .and. contact%status /= status_gap)) then
+        if (any(contact%tool == tool .and. contact%status /= status_gap)) then
+          forces_met = forces_met &
+              .and. abs(tool_residual(tool)) <= tool_force*pressed_force(trial, tool)
+        else
           forces_met = forces_met .and. norm2(trial%tool_load(:, tool)) <= 0.0_wp
-          cycle
         end if
-        sum_of_squares = sum_of_squares + tool_residual(tool)**2
-        forces_met = forces_met &
-            .and. abs(tool_residual(tool)) <= tool_force*pressed_force(trial, tool)
       end do
       scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2)
       j = verdict%iterations
       correction%criterion = [correction%criterion(:j - 1), &
-          (norm2(correction%lambda_increment) + sqrt(sum_of_squares))/scale]
+          (norm2(correction%lambda_increment) + correction%residual)/scale]
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
       outside = all(contact%distance >= -model%tolerance%depth .or. contact%tool == 0)
@@ -308,40 +311,6 @@ contains
           verdict%outcome = verdict_converged
     end associate
   end subroutine check_convergence
-
-  !> Return the sum of squares of the residuals of equilibrium and contact at the free degrees of
-  !> freedom, N2, and the worst node.
-  subroutine residual_norm(model, trial, system, correction, sum_of_squares)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: trial
-    type(system_t), intent(in) :: system
-    !> Gets the worst node.
-    type(correction_t), intent(inout) :: correction
-    real(wp), intent(out) :: sum_of_squares
-
-    real(wp) :: equilibrium(3), contribution
-    integer :: node, c
-
-    sum_of_squares = 0.0_wp
-    correction%worst_residual = -1.0_wp
-    associate (phase => model%phase(trial%phase), problem => system%problem)
-      do node = 1, model%n_node
-        c = model%candidate_of(node)
-        equilibrium = problem%residual(:, node)
-        contribution = 0.0_wp
-        if (c > 0) then
-          equilibrium = equilibrium + problem%contact_residual(:, c)
-          contribution = sum(problem%contact_residual(:, c)**2)
-        end if
-        contribution = contribution + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
-        sum_of_squares = sum_of_squares + contribution
-        if (contribution <= correction%worst_residual) cycle
-        correction%worst_residual = contribution
-        correction%worst_node = node
-      end do
-    end associate
-    correction%worst_residual = sqrt(max(correction%worst_residual, 0.0_wp))
-  end subroutine residual_norm
 
   !> Return a list of the nodes whose status did not settle in the last iterations; empty if there
   !> are none.

@@ -8,10 +8,11 @@ module dd3_process_residual
   use dd3_process_external, only : evaluate_external
   use dd3_system_contact, only : contact_work_t, evaluate_contact
   use dd3_system_drawbead, only : evaluate_beads
+  use dd3_system_enhanced, only : enhanced_square
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: evaluate_forces, pressed_force, lost_tool
+  public :: evaluate_forces, evaluate_norm, pressed_force, lost_tool
 
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: small = 1.0e-3_wp
@@ -59,6 +60,51 @@ contains
       end do
     end associate
   end subroutine evaluate_forces
+
+  !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
+  !> of the enhanced strains and of the pressed tools in contact.
+  subroutine evaluate_norm(model, trial, system, norm, worst_node, worst_residual)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    !> Evaluated at the trial state.
+    type(system_t), intent(in) :: system
+    !> N.
+    real(wp), intent(out) :: norm
+    !> Node with the largest residual, and that residual, N.
+    integer, intent(out) :: worst_node
+    real(wp), intent(out) :: worst_residual
+
+    real(wp) :: equilibrium(3), contribution, sum_of_squares
+    integer :: node, c, tool
+
+    sum_of_squares = 0.0_wp
+    worst_residual = -1.0_wp
+    associate (phase => model%phase(trial%phase), problem => system%problem, &
+        contact => system%contact)
+      do node = 1, model%n_node
+        c = model%candidate_of(node)
+        equilibrium = problem%residual(:, node)
+        contribution = 0.0_wp
+        if (c > 0) then
+          equilibrium = equilibrium + problem%contact_residual(:, c)
+          contribution = sum(problem%contact_residual(:, c)**2)
+        end if
+        contribution = contribution + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
+        sum_of_squares = sum_of_squares + contribution
+        if (contribution <= worst_residual) cycle
+        worst_residual = contribution
+        worst_node = node
+      end do
+      sum_of_squares = sum_of_squares + enhanced_square(system%enhanced, model%thickness)
+      do tool = 1, model%n_tool
+        if (.not. phase%pressed(tool)) cycle
+        if (any(contact%tool == tool .and. contact%status /= status_gap)) &
+            sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
+      end do
+    end associate
+    norm = sqrt(sum_of_squares)
+    worst_residual = sqrt(max(worst_residual, 0.0_wp))
+  end subroutine evaluate_norm
 
   !> Return the displacement of a pressed tool that has lost the sheet back to contact, mm; zero for
   !> the others.

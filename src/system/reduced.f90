@@ -19,7 +19,7 @@ module dd3_system_reduced
   use dd3_system_contact, only : contact_work_t
   implicit none
   private
-  public :: linear_problem_t, new_linear_problem, reduce, contact_force_increment
+  public :: linear_problem_t, new_linear_problem, reduce, reduce_forces, contact_force_increment
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
@@ -38,6 +38,10 @@ module dd3_system_reduced
     real(wp), allocatable :: tool_prescribed(:, :)
     !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
     real(wp), allocatable :: tool_residual(:)
+    !> I - E of the candidates in the reduced matrix, `(3, 3, n_contact)`, and their tools, 0 in a
+    !> gap, `(n_contact)`.
+    real(wp), allocatable :: remaining(:, :, :)
+    integer, allocatable :: contact_tool(:)
     !> Right-hand side of the reduced system, `(3*n_row)`.
     real(wp), allocatable :: rhs(:)
     !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
@@ -56,6 +60,8 @@ contains
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
+    allocate (self%remaining(3, 3, model%n_contact), source=0.0_wp)
+    allocate (self%contact_tool(model%n_contact), source=0)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
         source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
@@ -82,6 +88,8 @@ contains
     call start_tool_rows(model, phase, problem, reduced)
     do c = 1, model%n_contact
       node = model%contact_node(c)
+      problem%remaining(:, :, c) = identity - contact%e(:, :, c)
+      problem%contact_tool(c) = 0
       if (contact%status(c) == status_gap) then
         problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - &
             problem%contact_residual(:, c)
@@ -111,10 +119,11 @@ contains
 
     node = model%contact_node(c)
     tool = contact%tool(c)
+    problem%contact_tool(c) = tool
     block = model%tool_row(tool)
     pressed = phase%pressed(tool)
     d = contact%d(:, :, c)
-    remaining = identity - contact%e(:, :, c)
+    remaining = problem%remaining(:, :, c)
     residual = node_residual(phase, problem, node, c)
     problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
     if (.not. pressed) then
@@ -154,6 +163,36 @@ contains
       call add_to_tool_row(reduced, block, row, block, -weight)
     end if
   end subroutine reduce_node
+
+  !> Return the right-hand side by which forces on the nodes enter the reduced system built last.
+  subroutine reduce_forces(model, phase, problem, force, rhs)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    !> Of the system built last.
+    type(linear_problem_t), intent(in) :: problem
+    !> `(3, n_node)`, N.
+    real(wp), intent(in) :: force(:, :)
+    !> `(3*n_row)`.
+    real(wp), intent(out) :: rhs(:)
+
+    real(wp) :: free(3), kept(3)
+    integer :: node, c, tool, row
+
+    rhs = 0.0_wp
+    do node = 1, model%n_node
+      free = merge(0.0_wp, force(:, node), phase%prescribed(:, node))
+      rhs(3*node - 2:3*node) = free
+      c = model%candidate_of(node)
+      if (c == 0) cycle
+      tool = problem%contact_tool(c)
+      if (tool == 0) cycle
+      kept = matmul(problem%remaining(:, :, c), free)
+      rhs(3*node - 2:3*node) = merge(0.0_wp, kept, phase%prescribed(:, node))
+      if (.not. phase%pressed(tool)) cycle
+      row = 3*(model%tool_row(tool) - 1) + force_row(phase%direction(:, tool))
+      rhs(row) = rhs(row) - dot_product(phase%direction(:, tool), free - kept)
+    end do
+  end subroutine reduce_forces
 
   !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
   subroutine share_tool_rows(model, phase, reduced)

@@ -5,6 +5,7 @@
     draw_bending.py --program build/release/dd3imp --work build/draw_bending --write    and put them into docs/reports
 """
 import math
+import re
 import sys
 
 import numpy as np
@@ -17,17 +18,61 @@ DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not
 FLANGE = 36.0  # x beyond which the strip is flat at the end of the draw, mm
 HOLDERS = {"2.45 kN": -35, "19.6 kN": -280}  # N for 1 mm of the half strip
 MESHES = {"isotropic": (88, 175, 350, 700), "kinematic": (350,)}  # elements along the half strip
+SHEETS = {"SPCC": "spcc_kinematic", "SPFC": "spfc_kinematic"}  # of the library
+SHEET_RUN = "2.45 kN", 175  # holder and elements of their runs
 SWIFT = (565.32, 0.007117, 0.2589)  # MPa, -, -
-BACK_STRESS = (30.0, 50.0)  # CX, Xsat (MPa) of Lemaitre and Chaboche
+BACK_STRESS = (30.0, 50.0)  # CX, Xsat (MPa) of Lemaitre and Chaboche, assumed
 STRAINS = (0, .002, .005, .01, .02, .03, .05, .075, .1, .15, .2, .3, .5, .8, 1.2)
+FINE = (0, .0005, .001, .0015, .002, .003, .004, .006, .008, .012, .018, *STRAINS[5:])
+
+
+def table_law(strains, law):
+    """Return the line of a hardening table of a law."""
+    return f"  hardening = table {' '.join(f'{p:g}:{law(p):.3f}' for p in strains)}\n"
+
+
+def saturating(limit, rate):
+    """Return the law that saturates with a rate."""
+    return lambda p: limit*(1 - math.exp(-rate*p))
 
 
 def kinematic():
-    """Return the hardening with a back-stress whose tension curve is that of the law without."""
+    """Return the mild steel with a back-stress whose tension curve is that of the law without."""
     k, e0, n = SWIFT
     rate, limit = BACK_STRESS
-    pairs = [f"{p:g}:{k*(e0 + p)**n - limit*(1 - math.exp(-rate*p)):.3f}" for p in STRAINS]
-    return f"table {' '.join(pairs)}\n  backstress = lemaitre_chaboche CX={rate:g} Xsat={limit:g}"
+    part = saturating(limit, rate)
+    head = DECK.read_text(encoding="utf-8").split("*MATERIAL mild_steel")[1].split("  hardening")[0].split("\n", 1)[1]
+    return (head + table_law(STRAINS, lambda p: k*(e0 + p)**n - part(p))
+            + f"  backstress = lemaitre_chaboche CX={rate:g} Xsat={limit:g}\n")
+
+
+def library(name):
+    """Return the lines of a material of the library, and those of the same tension curve without a back-stress."""
+    text = (DECK.parents[1] / "materials" / f"{name}.dat").read_text(encoding="utf-8").split("*MATERIAL")[1]
+    lines = text.split("\n", 1)[1]
+    start, limit, rate, back_rate, back_limit = map(float, re.findall(r"=([\d.]+)", lines.split("voce")[1]))
+    voce, back = saturating(limit, rate), saturating(back_limit, back_rate)
+    return lines, lines.split("  hardening")[0] + table_law(FINE, lambda p: start + voce(p) + back(p))
+
+
+def laws():
+    """Return the lines of the material by its name in the tables; None: those of the deck."""
+    found = {"isotropic": None, "kinematic": kinematic()}
+    for sheet, name in SHEETS.items():
+        with_it, without = library(name)
+        found |= {f"{sheet}, isotropic": without, f"{sheet}, kinematic": with_it}
+    return found
+
+
+def with_law(folder, name, lines):
+    """Return the deck with another material."""
+    if not lines:
+        return DECK
+    text = DECK.read_text(encoding="utf-8").replace('patches = "', f'patches = "{DECK.parent}/')
+    head, rest = text.split("*MATERIAL mild_steel")
+    deck = folder / f"{name.replace(', ', '_')}.dat"
+    deck.write_text(f"{head}*MATERIAL mild_steel\n{lines}\n*BLANK{rest.split('*BLANK')[1]}", encoding="utf-8")
+    return deck
 
 
 def middle_line(fields, step):
@@ -84,34 +129,38 @@ def draw(lines):
     figure.savefig(PICTURE, dpi=110)
 
 
-def main():
-    """Make the runs and the table."""
-    options = studies.arguments(__doc__)
-    rows, lines, wanted = [], {}, 0
+def runs(options):
+    """Make the runs; yield holder, law, elements along the strip and folder of each, None if it is not there."""
     for holder, force in HOLDERS.items():
-        for law, hardening in (("isotropic", None), ("kinematic", kinematic())):
-            for mesh in MESHES[law]:
-                wanted += 1
-                deck = DECK
-                if hardening:
-                    deck = options.work / "kinematic.dat"
-                    deck.write_text(DECK.read_text(encoding="utf-8").replace("${hardening}", hardening)
-                                    .replace('patches = "', f'patches = "{DECK.parent}/'), encoding="utf-8")
-                folder = studies.make(options, f"{holder}_{law}_{mesh}".replace(" ", "_"), deck,
-                                      {"divisions": f"{mesh} 1 1", "holder": force})
-                if not folder:
-                    continue
-                theta1, theta2, rho, line = shape(folder)
-                rows.append([holder, law, f"{175/mesh:.2f}", f"{theta1:.1f}", f"{theta2:.1f}", f"{rho:.0f}",
-                             *studies.effort(folder)])
-                lines[f"{holder}, {law}, {175/mesh:.2f} mm"] = line
-    text = studies.table(["holder", "hardening", "element, mm", "theta1, degrees", "theta2, degrees", "rho, mm",
-                          "increments", "iterations", "seconds"], rows)
-    print(text)
-    if options.write:
-        put_table(REPORT, "shape", text)
+        for law, lines in laws().items():
+            for mesh in MESHES.get(law, (SHEET_RUN[1],) if holder == SHEET_RUN[0] else ()):
+                name = f"{holder}_{law}_{mesh}".replace(", ", "_").replace(" ", "_")
+                yield holder, law, mesh, studies.make(options, name, with_law(options.work, law, lines),
+                                                      {"divisions": f"{mesh} 1 1", "holder": force})
+
+
+def main():
+    """Make the runs and the tables, that of the sheet of the benchmark and that of the sheets of SHEETS."""
+    options = studies.arguments(__doc__)
+    rows, lines, complete = {"shape": [], "sheets": []}, {}, True
+    for holder, law, mesh, folder in runs(options):
+        complete = complete and bool(folder)
+        if not folder:
+            continue
+        theta1, theta2, rho, line = shape(folder)
+        rows["sheets" if "," in law else "shape"].append(
+            [holder, law, f"{175/mesh:.2f}", f"{theta1:.1f}", f"{theta2:.1f}", f"{rho:.0f}", *studies.effort(folder)])
+        if "," not in law:
+            lines[f"{holder}, {law}, {175/mesh:.2f} mm"] = line
+    head = ["holder", "hardening", "element, mm", "theta1, degrees", "theta2, degrees", "rho, mm", "increments",
+            "iterations", "seconds"]
+    for name, found in rows.items():
+        print(studies.table(head, found))
+        if options.write and found:
+            put_table(REPORT, name, studies.table(head, found))
+    if options.write and lines:
         draw(lines)
-    sys.exit(0 if len(rows) == wanted else 1)
+    sys.exit(0 if complete else 1)
 
 
 if __name__ == "__main__":

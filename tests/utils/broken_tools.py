@@ -17,7 +17,8 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "scipy")):
     sys.exit(77)
 
 import numpy as np  # noqa: E402
-from tools import cad  # noqa: E402
+from scipy.spatial import Delaunay, cKDTree  # noqa: E402
+from tools import cad, nagata  # noqa: E402
 from tool_surfaces import (MESHES, box_distance, convert, die_triangles, make_cad, points_of, read,  # noqa: E402
                            write_stl)
 
@@ -100,6 +101,35 @@ def check_stl_files(folder):
     assert largest_distance(folder / "dié ö 1.bez") < 0.006
 
 
+def check_dyna_solids(folder):
+    """Check solids of LS-DYNA on one line each and on two, a wedge of both orders, and thick shells: one block."""
+    nodes = [(x, y, z) for z in (0, 10) for x, y in ((0, 0), (20, 0), (20, 10), (0, 10), (40, 0), (40, 10))]
+    first, second = (1, 2, 3, 4, 7, 8, 9, 10), (2, 5, 6, 3, 8, 11, 12, 9)
+    wedges = (2, 3, 9, 8, 5, 5, 11, 11), (3, 6, 6, 3, 9, 12, 12, 9), (5, 6, 3, 3, 11, 12, 9, 9)
+    for keyword, solids in (("*ELEMENT_SOLID", (first, second)), ("*ELEMENT_TSHELL", (first, second)),
+                            ("*ELEMENT_SOLID", (first, wedges[0], wedges[2]))):
+        for between in ("", "\n"):
+            text = "*KEYWORD\n*NODE\n" + "".join(f"{number:8d}{x:16.1f}{y:16.1f}{z:16.1f}\n"
+                                                for number, (x, y, z) in enumerate(nodes, 1)) + keyword + "\n"
+            for number, corners in enumerate(solids, 1):
+                text += f"{number:8d}{7:8d}{between}" + "".join(f"{corner:8d}" for corner in corners) + "\n"
+            (folder / "block.k").write_text(text + "*END\n")
+            said = convert(folder / "block.k", folder / "block.bez", "--rotate", 0, 0, 1, 90, "--move", 0, 0, 5)
+            assert "x -10 to 0, y 0 to 40, z 5 to 15" in said and "0 free, 0 of more" in said, said
+
+
+def check_straightened(folder):
+    """Check that the edges of facets whose patches would fold are kept straight: waves in few random triangles."""
+    place = np.random.default_rng(0).random((60, 2)) * 20
+    place = np.concatenate([place, [[0, 0], [20, 0], [0, 20], [20, 20]]])
+    height = 2 * np.sin(place[:, 0] / 2) * np.cos(place[:, 1] / 3)
+    path = folder / "rough.stl"
+    write_stl(path, np.column_stack([place, height])[Delaunay(place).simplices])
+    assert "folds      0" in convert(path, "--tolerance", 9)
+    with mock.patch.object(nagata, "MOST_PLAIN", 0):
+        assert "17 folded patches" in convert(path, "--tolerance", 9, expect=2)
+
+
 def check_cut_texts(folder):
     """Check meshes that end anywhere, and bytes that are no text."""
     for name in ("die.inp", "die.k", "solid.inp"):
@@ -169,13 +199,45 @@ def check_cut_cad(folder):
     assert "80 of 80 free edges" in run_tool(folder / "shifted_a_little.brep", "--sew", "0.015")
 
 
+def check_crown(folder):
+    """Check a crown that meets its axis: a curve of Bézier, revolved, with its axis oblique to the coordinates and cut
+    beside it, so that the face goes around its pole and is trimmed."""
+    import gmsh
+    profile = np.array([[0, 0, 0], [10, 0, 0], [20, 0, 2], [24, 0, 6]])
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    occ = gmsh.model.occ
+    with cad.silence():
+        curve = occ.addBezier([occ.addPoint(*point) for point in profile])
+        occ.revolve([(1, curve)], 0, 0, 0, 0, 0, 1, 2 * np.pi)
+        occ.remove([(1, curve)])
+        crown = occ.getEntities(2)
+        occ.cut(crown, [(3, occ.addBox(8, -50, -50, 60, 100, 100))])
+        occ.rotate(occ.getEntities(2), 0, 0, 0, 1, 1, 0, 0.4)
+        occ.synchronize()
+        gmsh.write(str(folder / "crown.step"))
+    gmsh.finalize()
+    said = convert(folder / "crown.step", folder / "crown.bez")
+    assert "were cut: face 1" in said, said
+    point = points_of(read(folder / "crown.bez"), 5)[0].reshape(-1, 3)
+    axis = np.array([np.sin(0.4), -np.sin(0.4), np.sqrt(2) * np.cos(0.4)]) / np.sqrt(2)
+    height = point @ axis
+    r = np.linalg.norm(point - height[:, None] * axis, axis=1)
+    t = np.linspace(0, 1, 100001)
+    weights = (1 - t)**3, 3 * t * (1 - t)**2, 3 * t**2 * (1 - t), t**3
+    along = sum(weight * place for weight, place in zip(weights, profile[:, [0, 2], None]))
+    assert cKDTree(along.T).query(np.stack([r, height], axis=1))[0].max() < 0.0021, said
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
-        for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_cut_texts, check_places):
+        for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_dyna_solids, check_straightened,
+                      check_cut_texts, check_places):
             check(Path(name))
         check_limits()
         if importlib.util.find_spec("gmsh"):
             check_cut_cad(Path(name))
+            check_crown(Path(name))
     print("broken files are converted right or refused")
 
 

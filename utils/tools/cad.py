@@ -8,6 +8,7 @@ below the tolerance.
 import os
 import re
 import sys
+import time
 from collections import defaultdict
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,10 +17,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scripts import Problem
 from tools.closest import closest
-from tools.cut import cut, is_closed
+from tools.cut import cut, is_closed, planes_through, planes_through_pole
 from tools.division import Division
 from tools.joints import find_joints, folded, kinks, to_chords
 from tools.limits import limited
+from tools.parameters import filled, parameters_of
 from tools.report import MOST_NAMES, REACH, up
 from tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
@@ -261,28 +263,12 @@ def collect(gmsh, model):
                 raise Problem(f"{model.names[index]}: Gmsh left elements that are no quadrilaterals")
             member = np.reshape(member, (-1, 9)).astype(int)[:, NINE]
             labels.append(member)
-            uv = table[member]
-            uv[np.isnan(uv).any(axis=(1, 2, 3))] = np.nan
-            parameters.append(uv)
+            parameters.append(filled(table[member]))
             face.append(np.full(len(member), index))
     if not labels:
         raise Problem("Gmsh made no mesh of the faces")
     model.labels, model.uv, model.face = (np.concatenate(part) for part in (labels, parameters, face))
     model.nodes = xyz[place[model.labels]]
-
-
-def parameters_of(gmsh, tag, count):
-    """Return the parameters of the nodes on a face, by label; NaN for other nodes and for those on a seam."""
-    table = np.full((count, 2), np.nan)
-    bounds = [abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
-    for edge in (edge for edge in bounds if bounds.count(edge) == 1):
-        known, _, t = gmsh.model.mesh.getNodes(1, edge, includeBoundary=True, returnParametricCoord=True)
-        if len(known) == len(t):
-            table[known.astype(int)] = np.reshape(gmsh.model.reparametrizeOnSurface(1, edge, t, tag), (-1, 2))
-    known, _, uv = gmsh.model.mesh.getNodes(2, tag, includeBoundary=False, returnParametricCoord=True)
-    if 2 * len(known) == len(uv):
-        table[known.astype(int)] = np.reshape(uv, (-1, 2))
-    return table
 
 
 def measure(gmsh, model, net, shift=0.0):
@@ -338,34 +324,46 @@ def worst_kinks(net, face, count):
 def mesh_within(gmsh, path, model, tolerance, progress):
     """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
     division = Division(gmsh, model.tags)
-    best = None
+    best, start = None, time.process_time()
     for rounds in range(MOST_ROUNDS):
-        with limited(MESH_TIME, f"{path}: the faces are not meshed in {MESH_TIME:.0f} s of processor time: leave out "
-                                "what the sheet does not touch, in the CAD program or by --part"):
-            failed = division.mesh(gmsh)
-        if failed:
-            if rounds == MOST_ROUNDS - 1:
-                raise Problem("Gmsh cannot mesh " + ", ".join(model.names[model.tags.index(tag)] for tag in failed))
-            continue
-        collect(gmsh, model)
-        net = from_nodes(model.nodes)
-        model.distance = measure(gmsh, model, net)
-        kink = worst_kinks(net, model.face, len(model.tags))
-        bent = set(model.face[folded(net)].tolist())
-        late = model.distance > tolerance
+        failed = mesh_once(gmsh, path, model, division)
         progress((rounds + 1) / MOST_ROUNDS)
-        if rounds >= KINK_ROUNDS:
-            kink[:] = 0.0
-        score = (len(bent), late.sum(), (kink > KINK).sum())
-        if best is None or score < best[0]:
-            best = score, model.nodes, model.uv, model.labels, model.face, model.distance
-        if not any(score):
+        if not failed:
+            kink, bent = faults(model, rounds)
+            score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).sum())
+            if best is None or score < best[0]:
+                best = score, model.nodes, model.uv, model.labels, model.face, model.distance
+            if not any(score):
+                break
+            full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
+            if not division.refine(np.where(full, 0.0, model.distance / tolerance), np.where(full, 0.0, kink / KINK),
+                                   bent - set(np.flatnonzero(full).tolist())):
+                break
+        if time.process_time() - start > MESH_TIME:
             break
-        full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
-        if not division.refine(np.where(full, 0.0, model.distance / tolerance), np.where(full, 0.0, kink / KINK),
-                               bent - set(np.flatnonzero(full).tolist())):
-            break
+    if best is None:
+        raise Problem(f"{path}: Gmsh cannot mesh {', '.join(model.names[model.tags.index(tag)] for tag in failed)}; "
+                      "divide or mend it in the CAD program, leave its part out by --part, or convert an STL export")
     _, model.nodes, model.uv, model.labels, model.face, model.distance = best
+
+
+def mesh_once(gmsh, path, model, division):
+    """Mesh the faces and measure their distance; return the faces where that failed."""
+    with limited(MESH_TIME, f"{path}: the faces are not meshed in {MESH_TIME:.0f} s of processor time: leave out "
+                            "what the sheet does not touch, in the CAD program or by --part"):
+        failed = division.mesh(gmsh)
+        if not failed:
+            collect(gmsh, model)
+            model.distance = measure(gmsh, model, from_nodes(model.nodes))
+    return failed
+
+
+def faults(model, rounds):
+    """Return the largest kink inside each face, degrees, 0 after the first rounds; and the faces with folds."""
+    net = from_nodes(model.nodes)
+    count = len(model.tags)
+    kink = worst_kinks(net, model.face, count) if rounds < KINK_ROUNDS else np.zeros(count)
+    return kink, set(model.face[folded(net)].tolist())
 
 
 def read_cad(gmsh, path, options, progress):
@@ -390,22 +388,26 @@ def read_cad(gmsh, path, options, progress):
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
     tolerance = max(options.tolerance, options.sew or 0.0)
+    around = {tag: planes for tag in model.tags if (planes := planes_through_pole(gmsh, tag))}
+    if around:
+        cut_closed(gmsh, path, model, list(around), sum(around.values(), []))
     mesh_within(gmsh, path, model, tolerance, progress)
     # The worst faces: the others gain from the same cuts.
     limit = max(tolerance, WORST * model.distance.max())
     closed = [tag for tag, distance in zip(model.tags, model.distance) if distance > limit and is_closed(gmsh, tag)]
     if closed:
-        cut_closed(gmsh, path, model, closed)
+        boxes = [np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3)) for tag in closed]
+        cut_closed(gmsh, path, model, closed, planes_through(boxes))
         mesh_within(gmsh, path, model, tolerance, progress)
     return model
 
 
-def cut_closed(gmsh, path, model, closed):
-    """Cut faces that close in themselves; the parts keep the names."""
+def cut_closed(gmsh, path, model, closed, planes):
+    """Cut faces, all by planes, as some close in themselves; the parts keep the names."""
     gmsh.model.mesh.clear()
     with silence(), limited(allowed(SEW_TIME, path), f"{path}: faces that close in themselves are not cut in "
                             f"{allowed(SEW_TIME, path):.0f} s of processor time; cut them in the CAD program"):
-        parts = cut(gmsh, model.tags, closed)
+        parts = cut(gmsh, model.tags, planes)
     model.notes.append("faces that close in themselves were cut: "
                        + ", ".join(model.names[model.tags.index(tag)] for tag in closed[:MOST_NAMES])
                        + (f" and {len(closed) - MOST_NAMES} more" if len(closed) > MOST_NAMES else ""))

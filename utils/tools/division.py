@@ -7,8 +7,9 @@ import numpy as np
 TURN = 45.0
 # Corner angles of a face with a regular mesh, degrees.
 CORNERS = 25.0, 155.0
-# Fraction of its last value that the distance of a divided face must fall below for another division.
-STAGNANT = 0.8
+# Fraction of its last value that the distance of a divided face must fall below; divisions without that before it is
+# given up: rounded up, the division of one edge of a face may stay the same.
+STAGNANT, MOST_STAGNANT = 0.8, 2
 # Points at which an edge is examined.
 SAMPLES = 17
 OPTIONS = {"Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 1, "Mesh.SubdivisionAlgorithm": 1,
@@ -29,16 +30,18 @@ class Division:
         self.tags = tags
         self.factor = {tag: 1.0 for tag in tags}
         self.last = {}  # the distance of a face when it was divided further
+        self.stagnant = defaultdict(int)
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}
         for tag, loop in self.loops.items():
             for edge in set(map(abs, loop)):
                 self.turn[edge, tag] = self.edge_turn(gmsh, edge, tag)
-        self.regular = {tag for tag, loop in self.loops.items() if self.is_regular(gmsh, tag, loop)}
-        self.length = {edge: gmsh.model.occ.getMass(1, edge) for edge, _ in self.turn}
-        self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}
         low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
         self.size = float(np.linalg.norm(high - low))
+        self.length = {edge: gmsh.model.occ.getMass(1, edge) for edge, _ in self.turn}
+        self.corners = {tag: self.corners_of(gmsh, loop) for tag, loop in self.loops.items()}
+        self.regular = {tag for tag, corners in self.corners.items() if corners}
+        self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}
 
     @staticmethod
     def loop(gmsh, tag):
@@ -58,28 +61,32 @@ class Division:
             normal = np.zeros((1, 3))
         return max(turning(tangent), turning(normal))
 
-    @staticmethod
-    def is_regular(gmsh, tag, loop):
-        """Check that a face has four different edges that meet at clear angles."""
-        if len(loop) != 4 or len(set(map(abs, loop))) != 4:
-            return False
-        ends = []
-        for edge in loop:
-            low, high = gmsh.model.getParametrizationBounds(1, abs(edge))
-            place = np.array([low[0], high[0]])
-            tangent = np.reshape(gmsh.model.getDerivative(1, abs(edge), place), (2, 3))
-            point = np.reshape(gmsh.model.getValue(1, abs(edge), place), (2, 3))
-            ends.append((point, tangent) if edge > 0 else (point[::-1], -tangent[::-1]))
+    def corners_of(self, gmsh, loop):
+        """Return the corners of a face with a regular mesh: of four different edges, or of three that end at a pole,
+        an edge without length, which is the first corner. They meet at clear angles; else there are no corners."""
+        lengths = [self.length[abs(edge)] > 1e-9 * self.size for edge in loop]
+        if len(loop) != 4 or len(set(map(abs, loop))) != 4 or sum(lengths) < 3:
+            return []
+        first = 0 if all(lengths) else lengths.index(False) + 1
+        edges = [edge for edge in loop[first:] + loop[:first] if lengths[loop.index(edge)]]
+        ends = [self.ends_of(gmsh, edge) for edge in edges]
         size = max(np.linalg.norm(point[1] - point[0]) for point, _ in ends)
-        for k in range(4):
-            (point, along), (point_next, along_next) = ends[k], ends[(k + 1) % 4]
-            if np.linalg.norm(point[1] - point_next[0]) > 1e-4 * size:
-                return False
+        for (point, along), (point_next, along_next) in zip(ends, ends[1:] + ends[:1]):
             a, b = -along[1], along_next[0]
             scale = np.linalg.norm(a) * np.linalg.norm(b)
-            if scale == 0.0 or not CORNERS[0] < np.degrees(np.arccos(np.clip(a @ b / scale, -1, 1))) < CORNERS[1]:
-                return False
-        return True
+            if np.linalg.norm(point[1] - point_next[0]) > 1e-4 * size or scale == 0.0 or \
+                    not CORNERS[0] < np.degrees(np.arccos(np.clip(a @ b / scale, -1, 1))) < CORNERS[1]:
+                return []
+        return [gmsh.model.getBoundary([(1, edge)], combined=False)[0][1] for edge in edges]
+
+    @staticmethod
+    def ends_of(gmsh, edge):
+        """Return the points and tangents at the start and the end of a signed edge."""
+        low, high = gmsh.model.getParametrizationBounds(1, abs(edge))
+        place = np.array([low[0], high[0]])
+        tangent = np.reshape(gmsh.model.getDerivative(1, abs(edge), place), (2, 3))
+        point = np.reshape(gmsh.model.getValue(1, abs(edge), place), (2, 3))
+        return (point, tangent) if edge > 0 else (point[::-1], -tangent[::-1])
 
     def counts(self):
         """Return the divisions of each edge; opposite edges of regular faces have the same."""
@@ -104,9 +111,10 @@ class Division:
             return edge
 
         for tag in self.regular:
-            loop = [abs(edge) for edge in self.loops[tag]]
-            for a, b in ((loop[0], loop[2]), (loop[1], loop[3])):
-                group[leader(a)] = leader(b)
+            a, b, c, d = (abs(edge) for edge in self.loops[tag])
+            # At a pole the edge without length and the one opposite are not alike.
+            group[leader(a)] = leader(c)
+            group[leader(b)] = leader(d)
         largest = defaultdict(int)
         for edge in group:
             largest[leader(edge)] = max(largest[leader(edge)], need[edge])
@@ -124,7 +132,8 @@ class Division:
             if self.length[edge] > 1e-9 * self.size:
                 gmsh.model.mesh.setTransfiniteCurve(edge, count + 1)
         for tag in self.regular:
-            gmsh.model.mesh.setTransfiniteSurface(tag)
+            corners = self.corners[tag]
+            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
         gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size / self.factor.get(tag, 1.0)
                                         if dim == 2 else size)
         try:
@@ -144,8 +153,10 @@ class Division:
         changed = False
         for index, tag in enumerate(self.tags):
             wanted = 1.0
+            if distance[index] >= STAGNANT * self.last.get(tag, np.inf):
+                self.stagnant[tag] += 1
             # A distance that does not fall is a gap of the CAD between edge and face.
-            if distance[index] > 1.0 and distance[index] < STAGNANT * self.last.get(tag, np.inf):
+            if distance[index] > 1.0 and self.stagnant[tag] < MOST_STAGNANT:
                 self.last[tag] = distance[index]
                 wanted = float(np.clip(1.1 * distance[index]**0.3, 1.25, 2.5))
             elif kink[index] > 1.0:

@@ -177,13 +177,13 @@ def fields(line, widths, count):
 def read_dyna(path):
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
     nodes, cells, titles, keyword, options, row = {}, [], {}, "", "", 0
-    wide = False
+    wide, part = False, None
     for place, line in dyna_lines(path):
         if line.startswith("*"):
             keyword, _, tail = line.strip().upper().partition(" ")
             wide = wide or keyword == "*KEYWORD" and "LONG=Y" in tail.replace(" ", "")
             keyword, plus, options = keyword.rstrip("+-"), keyword.endswith("+") or tail.strip() == "+", keyword
-            long, row = wide or plus, 0
+            long, row, part = wide or plus, 0, None
             continue
         row += 1
         try:
@@ -198,15 +198,14 @@ def read_dyna(path):
                     if len(words) < 5:
                         raise ValueError
                     cells.append((words[1], 2, corners_of(words[2:6])))
-            elif keyword.startswith("*ELEMENT_SOLID"):
+            elif keyword.startswith(("*ELEMENT_SOLID", "*ELEMENT_TSHELL")):
                 words = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
                 if len(words) == 2:  # the nodes are on the next line
-                    part, row = words[1], 1
+                    part, row = words[1], 0
+                elif row == 1 and part is not None:
+                    cells.append((part, 3, solid_of(words)))
                 else:
-                    members = words[2:] if row % 2 == 1 and len(words) == 10 else words
-                    if len(words) == 10:
-                        part = words[1]
-                    cells.append((part, 3, tuple(dict.fromkeys(members[:8]))))
+                    cells.append((words[1], 3, solid_of(words[2:])))
             elif keyword == "*PART":
                 if row % 2 == 1:
                     title = line.strip()
@@ -218,6 +217,14 @@ def read_dyna(path):
     result = from_cells(path, nodes, cells)
     result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
     return result
+
+
+def solid_of(labels):
+    """Return the corners of a solid of LS-DYNA, a hexahedron whose other shapes repeat nodes."""
+    corners = tuple(dict.fromkeys(label for label in labels[:8] if label > 0))
+    if len(corners) == 6 and labels[4] == labels[5]:  # a wedge whose triangles are the faces 1 2 5 and 4 3 6
+        corners = tuple(corners[k] for k in (0, 1, 4, 3, 2, 5))
+    return corners
 
 
 def corners_of(labels):

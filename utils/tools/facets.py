@@ -6,7 +6,7 @@ from tools.facet_files import read_facets
 from tools.joints import find_joints, kinks
 from tools.mend import (SAME_NODE, consistent, edge_table, gaps, keep, merged, pairs_of, with_whole_edges,
                         without_doubles, without_repeats, without_slivers)
-from tools.nagata import CREASE, estimate_normals, facet_areas, groups, patches_of, unit
+from tools.nagata import CREASE, estimate_normals, facet_areas, groups, unfolded_patches, unit
 from tools.report import REACH, plural, up, where
 from tools.surface import Surface
 
@@ -115,7 +115,7 @@ def patches(mesh, distance):
         label = mesh.facets.ravel()[real]
         nodes = nodes.copy()
         nodes[label] += moved.shift_of(label, net.normals.reshape(-1, 3)[real], distance)
-    control, facet = patches_of(nodes, net)
+    control, facet = unfolded_patches(nodes, net)
     face = net.region[facet]
     largest = np.zeros(net.region.max() + 1)
     np.maximum.at(largest, net.region, net.estimate)

@@ -14,6 +14,8 @@ from tools.surface import areas_at, points_at, turned
 # Distance of coincident edges, relative to the diagonal of the box; parameters at which edges are compared.
 COINCIDENT = 1e-6
 COMPARED = np.linspace(0, 1, 5)
+# The program refuses joints at which the normals differ by more, degrees.
+OPPOSITE = 171.0
 # u and v along the four edges of a patch, anticlockwise.
 EDGES = [lambda t: (t, 0 * t), lambda t: (1 + 0 * t, t), lambda t: (1 - t, 1 + 0 * t), lambda t: (0 * t, 1 - t)]
 

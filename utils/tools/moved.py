@@ -1,5 +1,6 @@
-"""Nodes of a surface at a distance along its normals."""
+"""Surfaces at another place: rotated and moved, or at a distance along their normals."""
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 # Cosine between normals of one node below which the node is on an edge.
 ONE_NORMAL = np.cos(np.radians(3.0))
@@ -25,3 +26,16 @@ def shift_of(labels, normals, distance):
         rows = normals[order[start[i]:start[i + 1]]]
         shift[i] = np.linalg.lstsq(rows, np.full(len(rows), distance), rcond=0.05)[0]
     return shift[inverse]
+
+
+def rotation(turns):
+    """Return the matrix of rotations (x, y, z of the axis, angle in degrees), one after the other."""
+    matrix = np.eye(3)
+    for *axis, angle in turns:
+        matrix = Rotation.from_rotvec(np.radians(angle) * np.array(axis) / np.linalg.norm(axis)).as_matrix() @ matrix
+    return matrix
+
+
+def placed(net, matrix, move):
+    """Return patches in homogeneous coordinates after a rotation and a translation."""
+    return np.concatenate([net[..., :3] @ matrix.T + net[..., 3:] * np.array(move), net[..., 3:]], axis=-1)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from tools.joints import OPPOSITE, find_joints, folded, kinks
 from tools.mend import edge_table, pairs_of
 from tools.surface import from_triangles, homogeneous, quarters
 
@@ -23,6 +24,8 @@ CREASE, FLAT = 40.0, 0.05
 ONE_CONDITION = 0.06
 # Largest deviation of an edge from its chord's linear course, relative to the chord.
 MOST_CURVED = 0.7
+# Rounds of straightening the edges of facets with folded patches, which may fold their neighbours.
+MOST_PLAIN = 5
 
 
 @dataclass
@@ -34,6 +37,7 @@ class Net:
     region: np.ndarray
     angle: np.ndarray  # of the smooth edges, degrees
     straight: int = 0  # edges without a quadratic
+    plain: np.ndarray = None  # facets whose edges are kept straight, None for none
     estimate: np.ndarray = None  # of the distance of the facets' edges from a smooth surface, mm
 
 
@@ -183,6 +187,8 @@ def edge_controls(nodes, net):
     along = np.einsum("ekc,ec->ek", rows, chord) * np.array([1, 1, -1, -1])
     curve = np.einsum("eck,ek->ec", np.linalg.pinv(rows, rcond=ONE_CONDITION), along)
     wild = np.linalg.norm(curve, axis=1) > MOST_CURVED * np.linalg.norm(chord, axis=1)
+    if net.plain is not None:
+        wild[inverse[net.plain[facet]]] = True
     curve[wild] = 0.0
     net.straight = int(wild.sum())
     net.estimate = np.zeros(len(net.facets))
@@ -195,6 +201,22 @@ def edge_controls(nodes, net):
     angle = np.arccos(np.clip(cosine, -1, 1))
     np.maximum.at(net.estimate, facet, (np.linalg.norm(curve, axis=1) / 4 * angle**2 / 8)[inverse])
     return result
+
+
+def unfolded_patches(nodes, net):
+    """Return the patches of a net and the facet of each, the edges of facets kept straight whose patches are folded or
+    turn back upon others."""
+    control, facet = patches_of(nodes, net)
+    net.plain = np.zeros(len(net.facets), bool)
+    for _ in range(MOST_PLAIN):
+        joints = find_joints(control)
+        back = kinks(control, joints) > OPPOSITE
+        bent = facet[np.concatenate([folded(control), joints.first[back] // 4, joints.second[back] // 4])]
+        if net.plain[bent].all():
+            break
+        net.plain[bent] = True
+        control, facet = patches_of(nodes, net)
+    return control, facet
 
 
 def patches_of(nodes, net):

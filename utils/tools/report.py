@@ -2,7 +2,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from tools.joints import find_joints, folded, kinks, near_misses, normals_along, signs
+from tools.joints import OPPOSITE, find_joints, folded, kinks, near_misses, normals_along, signs
 from tools.surface import grid, points_at
 
 SMALLEST, LARGEST = 5.0, 1e4  # boxes beyond these have other units, mm
@@ -110,7 +110,7 @@ def say_folds(report, surface):
 
 
 def say_kinks(report, surface, joints):
-    """Add the largest kink of smooth joints and the sharp edges."""
+    """Add the largest kink of smooth joints and the sharp edges; an error for opposite normals."""
     angle = kinks(surface.net, joints)
     smooth = angle[angle <= SHARP]
     report.add("kinks", f"largest {smooth.max() if len(smooth) else 0.0:.2g} degrees, "
@@ -119,6 +119,13 @@ def say_kinks(report, surface, joints):
     if not len(sharp):
         return
     report.add("", f"{plural(len(sharp), 'joint')} with a sharp edge, up to {angle[sharp].max():.3g} degrees")
+    back = np.flatnonzero(angle > OPPOSITE)
+    if len(back):
+        faces = surface.face[np.concatenate([joints.first[back], joints.second[back]]) // 4]
+        report.errors.append(
+            f"{plural(len(back), 'joint')} at which the surface turns back upon itself, the first at "
+            f"{place_of(joints, joints.first[back[0]])}: {named(surface, faces)}; leave out one of them, or export the "
+            "part anew, in another format")
     convex = sharp[is_convex(surface.net, joints, sharp)]
     if len(convex):
         report.warnings.append(
