@@ -31,23 +31,23 @@ module dd3_contact_bezier
     logical :: flat = .false.
     !> Intervals in u and v of the grid of stored points: 2, 4 or `n_sample`, by the curvature.
     integer :: n_interval = n_sample
+    !> Bounding box of the control points, mm.
+    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Centre of the bounding box, mm.
     real(wp) :: centre(3) = 0.0_wp
     !> Diagonal of the bounding box, mm.
     real(wp) :: size = 0.0_wp
+    !> Bound of the distance of a point interpolated in a grid coarser than `n_sample` from that of
+    !> equal parameters, mm; 0 otherwise.
+    real(wp) :: grid_error = 0.0_wp
     !> Control points relative to `centre`, multiplied by their weights, and the weights,
     !> `(4, 0:degree(1), 0:degree(2))`.
     real(wp), allocatable :: homogeneous(:, :, :)
     !> Points on a regular grid of parameters, `(3, 0:n_interval, 0:n_interval)`, relative to
     !> `centre`, mm; not allocated if flat.
     real(wp), allocatable :: sample(:, :, :)
-    !> Bound of the distance of a point interpolated in a grid coarser than `n_sample` from that of
-    !> equal parameters, mm; 0 otherwise.
-    real(wp) :: grid_error = 0.0_wp
     !> Control points, `(3, 0:degree(1), 0:degree(2))`, mm.
     real(wp), allocatable :: control(:, :, :)
-    !> Bounding box of the control points, mm.
-    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Lengths of the parameter lines at 0, 1/2 and 1 of the other parameter: along u, along v, mm.
     real(wp) :: length(3, 2) = 0.0_wp
     !> Smaller of the mean lengths in u and v, mm.

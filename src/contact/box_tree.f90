@@ -1,7 +1,9 @@
 !> Tree of the bounding boxes of patches (bounding volume hierarchy). The boxes are halved at the
-!> median of their centres along the longest side of their common box until few are left; node i has
-!> the halves 2i and 2i + 1.
+!> median of their centres along the longest side of their common box until few are left. The halves
+!> of a node are side by side, followed by all nodes below the first half, then those below the
+!> second: a walk near a point reads few places of a large tree.
 module dd3_contact_box_tree
+  use, intrinsic :: iso_fortran_env, only : real32
   use dd3_base_kinds, only : wp
   use dd3_base_sorting, only : ascending
   implicit none
@@ -14,15 +16,21 @@ module dd3_contact_box_tree
   !> Largest number of nodes on the stack of a walk: one for each level.
   integer, parameter :: most_levels = 32
 
+  !> A node of the tree.
+  type :: node_t
+    !> Lower and upper corner of the common box, rounded outwards, mm.
+    real(real32) :: box(3, 2)
+    !> First of its halves; 0 for a leaf.
+    integer :: half = 0
+  end type node_t
+
   !> The tree.
   type :: box_tree_t
     !> Number of the box at each place.
     integer, allocatable :: number(:)
     !> Lower and upper corner of the box at each place, `(3, 2, n)`, mm.
     real(wp), allocatable :: box(:, :, :)
-    !> Lower and upper corner of the common box of each node, `(3, 2, n_node)`, mm; those of
-    !> siblings, which a walk compares, are side by side.
-    real(wp), allocatable :: node_box(:, :, :)
+    type(node_t), allocatable :: node(:)
   end type box_tree_t
 
   !> A node with its places.
@@ -57,31 +65,55 @@ contains
       n_node = 2*n_node + 1
     end do
     self%number = [(i, i=1, n)]
-    allocate (self%node_box(3, 2, n_node), self%box(3, 2, n))
-    call divide(self, lower, upper, 1, 1, n)
+    allocate (self%node(n_node), self%box(3, 2, n))
+    n_node = 1
+    call divide(self, lower, upper, 1, 1, n, n_node)
+    self%node = self%node(:n_node)
     self%box(:, 1, :) = lower(:, self%number)
     self%box(:, 2, :) = upper(:, self%number)
   end subroutine new_box_tree
 
   !> Set the box of a node, and divide its places.
-  recursive subroutine divide(self, lower, upper, node, first, last)
+  recursive subroutine divide(self, lower, upper, node, first, last, n_node)
     type(box_tree_t), intent(inout) :: self
     real(wp), intent(in) :: lower(:, :), upper(:, :)
     integer, intent(in) :: node, first, last
+    !> Number of nodes so far.
+    integer, intent(inout) :: n_node
 
-    integer :: axis, middle
+    real(wp) :: low(3), high(3)
+    integer :: axis, half, middle
 
     associate (number => self%number(first:last))
-      self%node_box(:, 1, node) = minval(lower(:, number), dim=2)
-      self%node_box(:, 2, node) = maxval(upper(:, number), dim=2)
+      low = minval(lower(:, number), dim=2)
+      high = maxval(upper(:, number), dim=2)
+      self%node(node)%box(:, 1) = rounded(low, -1.0_real32)
+      self%node(node)%box(:, 2) = rounded(high, 1.0_real32)
       if (last - first < leaf_size) return
-      axis = maxloc(self%node_box(:, 2, node) - self%node_box(:, 1, node), dim=1)
+      axis = maxloc(high - low, dim=1)
       number = number(ascending(lower(axis, number) + upper(axis, number)))
     end associate
     middle = (first + last)/2
-    call divide(self, lower, upper, 2*node, first, middle)
-    call divide(self, lower, upper, 2*node + 1, middle + 1, last)
+    half = n_node + 1
+    n_node = n_node + 2
+    self%node(node)%half = half
+    call divide(self, lower, upper, half, first, middle, n_node)
+    call divide(self, lower, upper, half + 1, middle + 1, last, n_node)
   end subroutine divide
+
+  !> Return a number of single precision that is not larger (direction -1) or not less (1); its
+  !> bound for numbers beyond it.
+  elemental real(real32) function rounded(x, direction)
+    real(wp), intent(in) :: x
+    real(real32), intent(in) :: direction
+
+    real(wp), parameter :: bound = real(huge(1.0_real32), wp)
+
+    rounded = real(min(max(x, -bound), bound), real32)
+    if (abs(x) >= bound) return
+    if (direction < 0.0_real32 .and. real(rounded, wp) > x .or. &
+        direction > 0.0_real32 .and. real(rounded, wp) < x) rounded = nearest(rounded, direction)
+  end function rounded
 
   !> Return the distance of a point from a box, mm; not larger for a box that contains another one,
   !> in floating-point numbers too.
@@ -96,12 +128,20 @@ contains
   end function box_distance
 
   !> Return the distance of a point from the common box of a node, mm.
-  pure real(wp) function node_distance(tree, node, x)
-    type(box_tree_t), intent(in) :: tree
-    integer, intent(in) :: node
+  pure real(wp) function node_distance(box, x)
+    !> Corners, mm.
+    real(real32), intent(in) :: box(3, 2)
     real(wp), intent(in) :: x(3)
 
-    node_distance = box_distance(tree%node_box(:, 1, node), tree%node_box(:, 2, node), x)
+    real(wp) :: outside, square
+    integer :: i
+
+    square = 0.0_wp
+    do i = 1, 3
+      outside = max(real(box(i, 1), wp) - x(i), x(i) - real(box(i, 2), wp), 0.0_wp)
+      square = square + outside**2
+    end do
+    node_distance = sqrt(square)
   end function node_distance
 
   !> Start a walk at the root.
@@ -113,7 +153,7 @@ contains
 
     walk%x = x
     walk%depth = 1
-    walk%stack(1) = range_t(1, 1, size(tree%number), node_distance(tree, 1, x))
+    walk%stack(1) = range_t(1, 1, size(tree%number), node_distance(tree%node(1)%box, x))
   end subroutine start_walk
 
   !> Go to the next leaf whose box is within a distance, which may shrink during the walk.
@@ -126,7 +166,7 @@ contains
     integer, intent(out) :: first, last
 
     type(range_t) :: now, half(2)
-    integer :: middle, nearer
+    integer :: child, middle, nearer
 
     first = 1
     last = 0
@@ -140,12 +180,13 @@ contains
         return
       end if
       middle = (now%first + now%last)/2
-      half(1) = range_t(2*now%node, now%first, middle, node_distance(tree, 2*now%node, walk%x))
-      half(2) = range_t(2*now%node + 1, middle + 1, now%last, &
-          node_distance(tree, 2*now%node + 1, walk%x))
+      child = tree%node(now%node)%half
+      half(1) = range_t(child, now%first, middle, node_distance(tree%node(child)%box, walk%x))
+      half(2) = range_t(child + 1, middle + 1, now%last, &
+          node_distance(tree%node(child + 1)%box, walk%x))
       nearer = merge(1, 2, half(1)%distance < half(2)%distance)
       if (abs(half(1)%distance - half(2)%distance) <= 0.0_wp) &
-          nearer = nearer_centre(tree, 2*now%node, walk%x)
+          nearer = nearer_centre(tree, child, walk%x)
       walk%stack(walk%depth + 1) = half(3 - nearer)
       walk%stack(walk%depth + 2) = half(nearer)
       walk%depth = walk%depth + 2
@@ -163,8 +204,9 @@ contains
     integer :: i
 
     do i = 1, 2
-      square(i) = sum((tree%node_box(:, 1, first + i - 1) + tree%node_box(:, 2, first + i - 1) &
-          - 2.0_wp*x)**2)
+      associate (box => tree%node(first + i - 1)%box)
+        square(i) = sum((real(box(:, 1), wp) + real(box(:, 2), wp) - 2.0_wp*x)**2)
+      end associate
     end do
     nearer = merge(1, 2, square(1) <= square(2))
   end function nearer_centre
@@ -212,11 +254,13 @@ contains
       first = stack(2, depth)
       last = stack(3, depth)
       depth = depth - 1
-      if (is_apart(tree%node_box(:, 1, node), tree%node_box(:, 2, node))) cycle
+      associate (box => tree%node(node)%box)
+        if (is_apart(real(box(:, 1), wp), real(box(:, 2), wp))) cycle
+      end associate
       if (last - first >= leaf_size) then
         middle = (first + last)/2
-        stack(:, depth + 1) = [2*node, first, middle]
-        stack(:, depth + 2) = [2*node + 1, middle + 1, last]
+        stack(:, depth + 1) = [tree%node(node)%half, first, middle]
+        stack(:, depth + 2) = [tree%node(node)%half + 1, middle + 1, last]
         depth = depth + 2
         cycle
       end if

@@ -132,13 +132,13 @@ contains
     !> Only set if the candidate is accepted.
     type(tie_t), intent(inout) :: tie
 
-    associate (tree => surface%tree)
-      tie%box = box_distance(tree%box(:, 1, place), tree%box(:, 2, place), query%x)
+    associate (k => surface%tree%number(place))
+      tie%box = box_distance(surface%patch(k)%lower, surface%patch(k)%upper, query%x)
       candidate%accepted = tie%box <= limit
       candidate%near = tie%box
       if (.not. candidate%accepted) return
-      call examine(surface, query, tree%number(place), limit, candidate)
-      tie = tie_t(tree%number(place), tie%box, candidate%near, candidate%distance)
+      call examine(surface, query, k, limit, candidate)
+      tie = tie_t(k, tie%box, candidate%near, candidate%distance)
     end associate
   end subroutine examine_place
 
