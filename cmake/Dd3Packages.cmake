@@ -26,7 +26,7 @@ endif()
 
 # Optional. The sequential MUMPS contains procedures with the names of MPI's.
 #
-#   mumps_linalg     source of linalg: that of src/optional/, or the one in its place
+#   mumps_linalg     source of linalg: that of src/external/, or the one in its place
 #   mumps_packages   library to link
 option(DD3_MUMPS "Use the sequential MUMPS if it is installed" ON)
 set(mumps_packages "")
@@ -37,7 +37,7 @@ elseif(DD3_MUMPS)
   find_package(MUMPS QUIET)
   if(MUMPS_FOUND)
     set(mumps_packages MUMPS::dmumps)
-    set(mumps_linalg src/optional/mumps_library.f90)
+    set(mumps_linalg src/external/mumps_library.f90)
     set_source_files_properties(${mumps_linalg} PROPERTIES COMPILE_OPTIONS "-I${MUMPS_INCLUDE_DIR}")
     message(STATUS "MUMPS ${MUMPS_DMUMPS}")
   else()

@@ -1,6 +1,6 @@
 # Several processes (MPI) and the linear solvers of PETSc: optional.
 #
-#   petsc_base, petsc_linalg   sources of base and linalg: those of src/optional/, or those in their place
+#   petsc_base, petsc_linalg   sources of base and linalg: of src/parallel/ and src/external/, or those in their place
 #   petsc_packages             libraries to link
 #
 # Not together with the sequential MUMPS, which contains procedures with the names of MPI's.
@@ -24,7 +24,7 @@ if(NOT PETSC_FOUND)
   dd3_missing("PETSc (by pkg-config)" "libpetsc-real-dev")
 endif()
 
-# The interfaces of src/optional/petsc.f90 declare these types.
+# The interfaces of src/external/petsc.f90 declare these types.
 include(CheckTypeSize)
 function(dd3_check_petsc_type type size)
   set(CMAKE_REQUIRED_INCLUDES ${PETSC_INCLUDE_DIRS})
@@ -40,8 +40,8 @@ dd3_check_petsc_type(MPI_Comm 8)
 dd3_check_petsc_type(PetscInt 4)
 dd3_check_petsc_type(PetscScalar 8)
 
-set(petsc_base src/optional/ranks.f90)
-set(petsc_linalg src/optional/petsc.f90 src/optional/petsc_solver.f90)
+set(petsc_base src/parallel/ranks.f90)
+set(petsc_linalg src/external/petsc.f90 src/parallel/petsc_solver.f90)
 set(petsc_packages MPI::MPI_Fortran ${PETSC_LINK_LIBRARIES})
 message(STATUS "MPI ${MPI_Fortran_VERSION}")
 message(STATUS "PETSc ${PETSC_VERSION}")

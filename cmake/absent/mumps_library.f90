@@ -1,5 +1,5 @@
-!> In place of `src/optional/mumps_library.f90` where MUMPS is not installed: every job fails.
-module dd3_linalg_mumps_library
+!> In place of `src/external/mumps_library.f90` where MUMPS is not installed: every job fails.
+module dd3_external_mumps_library
   use dd3_base_kinds, only : i8, wp
   implicit none
   private
@@ -28,4 +28,4 @@ contains
     id%infog(1) = error_absent
   end subroutine dmumps
 
-end module dd3_linalg_mumps_library
+end module dd3_external_mumps_library

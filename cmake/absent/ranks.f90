@@ -1,4 +1,4 @@
-!> In place of `src/optional/ranks.f90` in a build without MPI: a single rank.
+!> In place of `src/parallel/ranks.f90` in a build without MPI: a single rank.
 submodule (dd3_base_ranks) dd3_absent_ranks
   implicit none
 

@@ -10,7 +10,7 @@ module dd3_base_ranks
   public :: sum_over_ranks, largest_over_ranks, broadcast_integers, broadcast_reals, &
       broadcast_text, rank_of_smallest
 
-  ! Implemented in src/optional/ranks.f90 or, without MPI, in cmake/absent/ranks.f90.
+  ! Implemented in src/parallel/ranks.f90 or, without MPI, in cmake/absent/ranks.f90.
   interface
     !> Whether the program was built with MPI and PETSc.
     logical module function ranks_present()

@@ -3,6 +3,7 @@
 !> on one another. The fronts that are in no branch form the trunk.
 module dd3_linalg_front_branches
   use dd3_base_kinds, only : wp, i8
+  use dd3_base_sorting, only : ascending
   use dd3_linalg_front_tree, only : front_tree_t, rows_of
   implicit none
   private
@@ -46,7 +47,7 @@ contains
     limit = sum(total, mask=tree%parent == 0)/(per_thread*real(threads, wp))
     root = pack([(f, f=1, tree%n_front)], total <= limit .and. total >= smallest*limit &
         .and. total_above(tree, total) > limit .and. threads > 1)
-    call sort_descending(total, root)
+    root = root(ascending(-total(root)))
     allocate (branch_of(tree%n_front), source=0)
     allocate (border_at(tree%n_front), work(0:size(root)))
     work(0)%first = 1
@@ -61,21 +62,6 @@ contains
       call allocate_work(tree, branch_of, b, side, border_at, work(b))
     end do
   end subroutine find_branches
-
-  !> Sort fronts by their totals, the largest first.
-  pure subroutine sort_descending(total, front)
-    real(wp), intent(in) :: total(:)
-    integer, intent(inout) :: front(:)
-
-    integer :: i, k, held
-
-    do i = 1, size(front)
-      k = i - 1 + maxloc(total(front(i:)), dim=1)
-      held = front(i)
-      front(i) = front(k)
-      front(k) = held
-    end do
-  end subroutine sort_descending
 
   !> Sum up the block products of each front and of those before it in the tree.
   pure subroutine sum_up(tree, total, first)

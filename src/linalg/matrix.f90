@@ -281,23 +281,17 @@ contains
     type(block_matrix_t), intent(in) :: from
     type(block_matrix_t), intent(inout) :: to
 
-    call copy_with_threads(size(from%value), from%value, to%value)
-  end subroutine copy_blocks
+    !> Blocks that a thread copies at a time.
+    integer, parameter :: chunk = 512
+    integer :: first, n
 
-  !> Kernel of `copy_blocks`.
-  subroutine copy_with_threads(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(out) :: to(n)
-
-    integer :: i
-
-    !$omp parallel do num_threads(threads_for(n, least_values))
-    do i = 1, n
-      to(i) = from(i)
+    n = size(from%column)
+    !$omp parallel do num_threads(threads_for(9*n, least_values))
+    do first = 1, n, chunk
+      call copy_values(9*min(chunk, n - first + 1), from%value(1, 1, first), to%value(1, 1, first))
     end do
     !$omp end parallel do
-  end subroutine copy_with_threads
+  end subroutine copy_blocks
 
   !> Kernel: copy values as one contiguous array, whatever its shape.
   pure subroutine copy_values(n, from, to)

@@ -2,10 +2,10 @@
 module dd3_linalg_mumps_solver
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
+  use dd3_external_mumps_library, only : library_present
   use dd3_linalg_cgs, only : cgs_t
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_mumps, only : mumps_t
-  use dd3_linalg_mumps_library, only : library_present
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   implicit none
   private

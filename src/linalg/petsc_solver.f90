@@ -8,7 +8,7 @@ module dd3_linalg_petsc_solver
   private
   public :: make_petsc_mumps_solver, make_petsc_bicgstab_solver, petsc_package
 
-  ! Implemented in src/optional/petsc_solver.f90 or, without PETSc, in
+  ! Implemented in src/parallel/petsc_solver.f90 or, without PETSc, in
   ! cmake/absent/petsc_solver.f90, where no solver is created.
   interface
     !> Create the complete factorisation for the registry.

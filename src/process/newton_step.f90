@@ -1,6 +1,6 @@
 !> Step of the corrector: the solution of the linear system, added to the trial state. With damping,
 !> a step with large displacement gradients in the first iterations is shortened, as is any step
-!> that inverts an element.
+!> that inverts an element or overshoots.
 module dd3_process_newton_step
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -23,7 +23,7 @@ module dd3_process_newton_step
   !> solution.
   integer, parameter :: damped_iterations = 2
   real(wp), parameter :: largest_gradient = 0.005_wp
-  !> Factor on a step that inverts an element, and the largest number of such reductions.
+  !> Factor on a step that inverts an element or overshoots, and the largest number of reductions.
   real(wp), parameter :: reduction = 0.5_wp
   integer, parameter :: most_reductions = 4
 
@@ -111,8 +111,8 @@ contains
     attempt%verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
   end subroutine check_step
 
-  !> Shorten the last step, which inverted an element. Before the first iteration the step is that
-  !> of the predictor; the tools keep their places.
+  !> Shorten the last step, which inverted an element or overshot. Before the first iteration the
+  !> step is that of the predictor; the tools keep their places.
   subroutine retreat(model, committed, trial, system, attempt, shortened)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed

@@ -9,14 +9,14 @@
 !> Source: P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (natural monotonicity
 !> test, simplified Newton correction).
 module dd3_process_overshoot
-  use dd3_base_clock, only : section_solve
   use dd3_base_kinds, only : wp
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
   use dd3_process_residual, only : evaluate_norm
-  use dd3_system_reduced, only : reduce_forces
+  use dd3_system_reduced, only : reduce_equilibrium
+  use dd3_system_solve, only : solve_factorised
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -33,12 +33,11 @@ contains
     type(state_t), intent(in) :: trial
     !> Its linear solver still has the matrix of the step.
     type(system_t), intent(inout) :: system
-    !> Has the norm of the residuals before the step.
-    type(attempt_t), intent(in) :: attempt
+    !> Has the norm of the residuals before the step; gets the work of the linear solver.
+    type(attempt_t), intent(inout) :: attempt
     logical, intent(out) :: overshot
 
-    real(wp) :: norm, worst_residual
-    real(wp), allocatable :: rhs(:), left(:)
+    real(wp) :: norm, worst_residual, left(size(system%problem%solution))
     integer :: worst_node
     type(solver_report_t) :: report
 
@@ -46,13 +45,9 @@ contains
     if (attempt%verdict%iterations == 1) return
     call evaluate_norm(model, trial, system, norm, worst_node, worst_residual)
     if (norm <= attempt%correction%residual) return
-    associate (problem => system%problem)
-      allocate (rhs(size(problem%rhs)), left(size(problem%rhs)))
-      call reduce_forces(model, model%phase(trial%phase), problem, -problem%residual, rhs)
-      call system%solver%solve(rhs, left, report)
-      overshot = norm2(left) > largest_ratio*norm2(problem%solution)
-    end associate
-    call system%profile%add(section_solve)
+    call reduce_equilibrium(model, model%phase(trial%phase), system%problem)
+    call solve_factorised(system, left, attempt%solver, report)
+    overshot = report%converged .and. norm2(left) > largest_ratio*norm2(system%problem%solution)
   end subroutine check_overshoot
 
 end module dd3_process_overshoot

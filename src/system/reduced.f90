@@ -19,7 +19,8 @@ module dd3_system_reduced
   use dd3_system_contact, only : contact_work_t
   implicit none
   private
-  public :: linear_problem_t, new_linear_problem, reduce, reduce_forces, contact_force_increment
+  public :: linear_problem_t, new_linear_problem, reduce, reduce_equilibrium, &
+      contact_force_increment
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
@@ -164,35 +165,33 @@ contains
     end if
   end subroutine reduce_node
 
-  !> Return the right-hand side by which forces on the nodes enter the reduced system built last.
-  subroutine reduce_forces(model, phase, problem, force, rhs)
+  !> Set the right-hand side to that of the residual of equilibrium alone, in the reduced system
+  !> built last.
+  subroutine reduce_equilibrium(model, phase, problem)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    !> Of the system built last.
-    type(linear_problem_t), intent(in) :: problem
-    !> `(3, n_node)`, N.
-    real(wp), intent(in) :: force(:, :)
-    !> `(3*n_row)`.
-    real(wp), intent(out) :: rhs(:)
+    !> Gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
 
-    real(wp) :: free(3), kept(3)
+    real(wp) :: residual(3), remaining(3)
     integer :: node, c, tool, row
 
-    rhs = 0.0_wp
+    problem%rhs = 0.0_wp
     do node = 1, model%n_node
-      free = merge(0.0_wp, force(:, node), phase%prescribed(:, node))
-      rhs(3*node - 2:3*node) = free
+      residual = merge(0.0_wp, problem%residual(:, node), phase%prescribed(:, node))
+      problem%rhs(3*node - 2:3*node) = -residual
       c = model%candidate_of(node)
       if (c == 0) cycle
       tool = problem%contact_tool(c)
       if (tool == 0) cycle
-      kept = matmul(problem%remaining(:, :, c), free)
-      rhs(3*node - 2:3*node) = merge(0.0_wp, kept, phase%prescribed(:, node))
+      remaining = matmul(problem%remaining(:, :, c), residual)
+      problem%rhs(3*node - 2:3*node) = -merge(0.0_wp, remaining, phase%prescribed(:, node))
       if (.not. phase%pressed(tool)) cycle
       row = 3*(model%tool_row(tool) - 1) + force_row(phase%direction(:, tool))
-      rhs(row) = rhs(row) - dot_product(phase%direction(:, tool), free - kept)
+      problem%rhs(row) = problem%rhs(row) &
+          + dot_product(phase%direction(:, tool), residual - remaining)
     end do
-  end subroutine reduce_forces
+  end subroutine reduce_equilibrium
 
   !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
   subroutine share_tool_rows(model, phase, reduced)

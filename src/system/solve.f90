@@ -1,6 +1,7 @@
 !> Solution of the reduced system.
 module dd3_system_solve
   use dd3_base_clock, only : section_assembly, section_factorisation, section_solve
+  use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
@@ -9,7 +10,7 @@ module dd3_system_solve
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: solve_info_t, solve_reduced
+  public :: solve_info_t, solve_reduced, solve_factorised
 
   !> Work of the linear solver in an attempt.
   type :: solve_info_t
@@ -49,17 +50,30 @@ contains
       end if
       return
     end if
-    call system%solver%solve(system%problem%rhs, system%problem%solution, report)
-    call system%profile%add(section_solve)
-    info%iterations = info%iterations + report%iterations
-    if (len_trim(info%solver) == 0 .or. report%fallback) info%solver = report%method
-    if (report%fallback) info%reason = report%reason
+    call solve_factorised(system, system%problem%solution, info, report)
     if (.not. report%converged) then
       verdict%outcome = verdict_retry
       call name_solver(verdict, report%reason)
       verdict%norm = report%residual
     end if
   end subroutine solve_reduced
+
+  !> Solve the system factorised last for the present right-hand side.
+  subroutine solve_factorised(system, solution, info, report)
+    type(system_t), intent(inout) :: system
+    !> `(3*n_row)`.
+    real(wp), intent(out) :: solution(:)
+    !> Summed over the attempt.
+    type(solve_info_t), intent(inout) :: info
+    type(solver_report_t), intent(out) :: report
+
+    call system%profile%start()
+    call system%solver%solve(system%problem%rhs, solution, report)
+    call system%profile%add(section_solve)
+    info%iterations = info%iterations + report%iterations
+    if (len_trim(info%solver) == 0 .or. report%fallback) info%solver = report%method
+    if (report%fallback) info%reason = report%reason
+  end subroutine solve_factorised
 
   !> Set the reason of a linear solver that failed.
   pure subroutine name_solver(verdict, reason)

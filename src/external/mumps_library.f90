@@ -1,6 +1,6 @@
 !> Entry and data structure of the library MUMPS, as its header declares them. Where the library is
 !> not installed, the build takes `cmake/absent/mumps_library.f90` instead.
-module dd3_linalg_mumps_library
+module dd3_external_mumps_library
   implicit none
   private
   include "dmumps_struc.h"
@@ -17,4 +17,4 @@ module dd3_linalg_mumps_library
     end subroutine dmumps
   end interface
 
-end module dd3_linalg_mumps_library
+end module dd3_external_mumps_library

@@ -1,6 +1,6 @@
 !> Procedures of the library PETSc (C interface, integers of 4 bytes). Objects are pointers; all
 !> indices are 0-based; the functions return an error code, 0 for none.
-module dd3_parallel_petsc
+module dd3_external_petsc
   use, intrinsic :: iso_c_binding, only : c_char, c_double, c_int, c_intptr_t, c_null_char, &
       c_null_ptr, c_ptr
   implicit none
@@ -242,4 +242,4 @@ contains
     ignored = vec_assembly_end(vector)
   end subroutine vec_assemble
 
-end module dd3_parallel_petsc
+end module dd3_external_petsc
