@@ -27,11 +27,11 @@ RUNS = [(f"{name} {core} x {ring}", material, f"{core} {ring} 1") for core, ring
 class Cup:
     """Rim of a cup: angles (degrees, initial), heights above the lower face of the bottom, thicknesses (mm)."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, blank=BLANK):
         fields = Fields(folder)
         start, now = fields.points(0), fields.points(fields.count - 1)
         radius, last = np.hypot(start[:, 0], start[:, 1]), fields.count - 1
-        rim = np.flatnonzero(radius > BLANK - 0.01)
+        rim = np.flatnonzero(radius > blank - 0.01)
         angle = np.degrees(np.arctan2(start[rim, 1], start[rim, 0])).round(6)
         self.angles, column = np.unique(angle, return_inverse=True)
         count = np.bincount(column)

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""The cylindrical cup of AA6016-T4 of the ESAFORM benchmark 2021: height by angle, beside measured and published ones.
+
+    round_cup_aa6016.py --program build/release/dd3imp --work build/aa6016            make the runs that are missing
+    round_cup_aa6016.py --program build/release/dd3imp --work build/aa6016 --write    and put them into docs/reports
+"""
+import sys
+
+import numpy as np
+import studies
+from round_cup import ANGLES, Cup, row
+from scripts import put_table, run
+
+DECK, REPORT, PICTURE = studies.paths("round_cup_aa6016")
+BLANK = 53.75  # radius of the blank, mm
+RUNS = {f"{core} x {ring}": f"{core} {ring} 1" for core, ring in ((8, 16),)}
+# Heights, mm, at ANGLES, of the repository stefanSCS/PolyN, CM_Data/AA6016_CupProfiles; means of four quadrants.
+PUBLISHED = {"measured": (34.88, 34.37, 33.89, 33.47, 33.78, 34.43, 34.82),
+             "POSTECH, same criterion": (34.01, 34.18, 33.96, 33.77, 33.91, 34.18, 34.08),
+             "Soare, same criterion": (34.45, 33.99, 32.76, 32.04, 32.66, 34.10, 34.79)}
+
+
+def draw(cups):
+    """Draw height over angle."""
+    figure, axes = studies.new_figure(7, 4)
+    for name, heights in PUBLISHED.items():
+        axes.plot(ANGLES, heights, "ko-" if name == "measured" else "o--", label=name, linewidth=1, markersize=4)
+    for name, cup in cups.items():
+        axes.plot(cup.angles, cup.heights, label=f"dd3imp {name}", linewidth=1.4)
+    axes.set(xlabel="angle from rolling, degrees", ylabel="height, mm", xticks=ANGLES)
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(PICTURE, dpi=110)
+
+
+def main():
+    """Make the runs and the table."""
+    options = studies.arguments(__doc__)
+    cups, rows = {}, [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
+    for name, divisions in RUNS.items():
+        folder = studies.make(options, name.replace(" ", "_"), DECK, {"divisions": divisions})
+        if folder:
+            cup = cups[name] = Cup(folder, BLANK)
+            rows.append(row(name, cup.angles, cup.heights,
+                            [*(f"{value:.3f}" for value in cup.thickness), *studies.effort(folder)]))
+    text = studies.table(["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest",
+                          "thickest", "increments", "iterations", "seconds"], rows)
+    print(text)
+    if options.write:
+        put_table(REPORT, "heights", text)
+        draw(cups)
+    sys.exit(0 if len(cups) == len(RUNS) else 1)
+
+
+if __name__ == "__main__":
+    run(main)
