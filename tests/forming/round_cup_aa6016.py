@@ -13,7 +13,12 @@ from scripts import put_table, run
 
 DECK, REPORT, PICTURE = studies.paths("round_cup_aa6016")
 BLANK = 53.75  # radius of the blank, mm
-RUNS = {f"{core} x {ring}": f"{core} {ring} 1" for core, ring in ((8, 16),)}
+RUNS = {"8 x 16": {"divisions": "8 16 1"}, "12 x 24": {"divisions": "12 24 1"}, "16 x 32": {"divisions": "16 32 1"},
+        "8 x 16, holder 10 kN": {"divisions": "8 16 1", "force": "2500"},
+        "12 x 24, holder 10 kN": {"divisions": "12 24 1", "force": "2500"},
+        "8 x 16, friction 0.07": {"divisions": "8 16 1", "friction": "0.07"},
+        "8 x 16, die opening 63.6 mm": {"divisions": "8 16 1", "die": "die_wide.bez"},
+        "12 x 24, die opening 63.6 mm": {"divisions": "12 24 1", "die": "die_wide.bez"}}
 # Heights, mm, at ANGLES, of the repository stefanSCS/PolyN, CM_Data/AA6016_CupProfiles; means of four quadrants.
 PUBLISHED = {"measured": (34.88, 34.37, 33.89, 33.47, 33.78, 34.43, 34.82),
              "POSTECH, same criterion": (34.01, 34.18, 33.96, 33.77, 33.91, 34.18, 34.08),
@@ -22,22 +27,23 @@ PUBLISHED = {"measured": (34.88, 34.37, 33.89, 33.47, 33.78, 34.43, 34.82),
 
 def draw(cups):
     """Draw height over angle."""
-    figure, axes = studies.new_figure(7, 4)
+    figure, axes = studies.new_figure(9, 4)
     for name, heights in PUBLISHED.items():
         axes.plot(ANGLES, heights, "ko-" if name == "measured" else "o--", label=name, linewidth=1, markersize=4)
     for name, cup in cups.items():
-        axes.plot(cup.angles, cup.heights, label=f"dd3imp {name}", linewidth=1.4)
+        if not name.startswith("8 x 16"):
+            axes.plot(cup.angles, cup.heights, label=name, linewidth=1.4)
     axes.set(xlabel="angle from rolling, degrees", ylabel="height, mm", xticks=ANGLES)
-    axes.legend(frameon=False, fontsize=8)
-    figure.savefig(PICTURE, dpi=110)
+    axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    figure.savefig(PICTURE, dpi=110, bbox_inches="tight")
 
 
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
     cups, rows = {}, [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
-    for name, divisions in RUNS.items():
-        folder = studies.make(options, name.replace(" ", "_"), DECK, {"divisions": divisions})
+    for name, values in RUNS.items():
+        folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK, values)
         if folder:
             cup = cups[name] = Cup(folder, BLANK)
             rows.append(row(name, cup.angles, cup.heights,
