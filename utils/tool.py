@@ -218,7 +218,7 @@ def arguments():
 
 
 def main():
-    """Read, judge, write."""
+    """Read, judge, write, report."""
     options = arguments()
     progress = Progress(options.source.name)
     surface, parts, lines, errors = options.reader(options, progress)
@@ -227,23 +227,23 @@ def main():
     if options.turn:
         surface.net = turned(surface.net)
     result, joints = report.judge(surface, options, parts)
-    print(f"{options.target or options.source}")
     for title, text in [*lines, *(("", note) for note in surface.notes)]:
         result.add(title, text)
     result.errors += errors
-    print("\n".join(result.lines))
-    sys.stdout.flush()
     if options.picture:
         from tools.picture import draw
         draw(surface, joints, options.picture)
-    for kind, texts in (("warning", result.warnings), ("error", result.errors)):
-        for text in texts:
-            print(f"{kind}: {options.source}: {text}", file=sys.stderr)
-    if result.errors:
-        sys.exit(2)
-    if options.target:
+    if options.target and not result.errors:
         words = [str(word) for word in sys.argv[1:]]
         write(options.target, surface, [f"{options.source.name}: tool.py {' '.join(words)}"])
+    try:
+        print(options.target or options.source, *result.lines, sep="\n", flush=True)
+    finally:  # also where the reader of the report, such as head, has closed the pipe
+        for kind, texts in (("warning", result.warnings), ("error", result.errors)):
+            for text in texts:
+                print(f"{kind}: {options.source}: {text}", file=sys.stderr)
+    if result.errors:
+        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -167,6 +167,18 @@ def check_places(folder):
         assert "Permission denied" in convert(stl, expect=2)
 
 
+def check_closed_pipe(folder):
+    """Check that the surface is written where the reader of the report has closed the pipe."""
+    stl, bez = folder / "pipe.stl", folder / "pipe.bez"
+    write_stl(stl, die_triangles(15))
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as pipe:
+        words = [sys.executable, ROOT / "utils" / "tool.py", stl, bez]
+        done = subprocess.run(words, stdout=pipe, stderr=subprocess.PIPE, text=True, check=False)
+    assert bez.exists() and not done.stderr, done.stderr
+
+
 def check_limits():
     """Check that a library that does not end, or ends by a fault, is reported by a sentence and exit code 2."""
     for body, code, words in (
@@ -232,7 +244,7 @@ def check_crown(folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         for check in (check_nodes_in_edges, check_numbers, check_stl_files, check_dyna_solids, check_straightened,
-                      check_cut_texts, check_places):
+                      check_cut_texts, check_places, check_closed_pipe):
             check(Path(name))
         check_limits()
         if importlib.util.find_spec("gmsh"):
