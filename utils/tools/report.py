@@ -62,8 +62,7 @@ def judge(surface, options, parts):
 
 def say_box(report, surface):
     """Add the box and warn of wrong units."""
-    points = points_at(surface.net, *grid(5))
-    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    low, high = extent(surface.net)
     low, high = (np.where(np.abs(end) < 1e-9 * (high - low).max(), 0.0, end) for end in (low, high))
     spans = [f"{axis} {a:.6g} to {b:.6g}" for axis, a, b in zip("xyz", low, high)]
     report.add("box", ", ".join(spans) + " mm")
@@ -72,6 +71,25 @@ def say_box(report, surface):
         report.warnings.append(f"the tool is {size:.3g} mm large; in metres --scale 1000, in inches --scale 25.4")
     elif size > LARGEST:
         report.warnings.append(f"the tool is {size:.3g} mm large; in micrometres --scale 0.001")
+
+
+def extent(net):
+    """Return the smallest and the largest coordinates of the patches."""
+    places = np.stack(grid(5))
+    points = points_at(net, *places).reshape(-1, 3)
+    low, high = points.argmin(axis=0), points.argmax(axis=0)
+    return tuple(np.array([extreme(net[[k // 25]], axis, sign, places[:, k % 25]) for axis, k in enumerate(ends)])
+                 for sign, ends in ((-1, low), (1, high)))
+
+
+def extreme(net, axis, sign, place):
+    """Return the smallest (sign -1) or largest (1) coordinate of a patch, searched from a place (u, v) of grid(5)."""
+    around, step = np.stack(grid(3)) - 0.5, 0.25
+    while step > 1e-9:
+        places = np.clip(place[:, None] + 2 * step * around, 0, 1)
+        values = points_at(net, *places)[0, :, axis]
+        place, step = places[:, (sign * values).argmax()], step / 2
+    return values[(sign * values).argmax()]
 
 
 def say_edges(report, surface, joints, options):
