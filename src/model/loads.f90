@@ -7,11 +7,14 @@ module dd3_model_loads
   implicit none
   private
   public :: load_set_t, face_load_weights, nodal_forces, spring_stiffness
+  public :: fading_factor, fading_rate
 
   !> Displacement at which the spring at a released node carries its contact force once more, in
   !> thicknesses of the sheet. Half a thickness is where the couple of two opposing forces balances
   !> that of their springs.
   real(wp), parameter :: spring_length = 0.25_wp
+  !> Decades by which fading forces fall over a phase before the rest is taken away, and that rest.
+  real(wp), parameter :: decades = 6.0_wp, rest = 10.0_wp**(-decades)
 
   !> Node set that carries a load in some phase.
   type :: load_set_t
@@ -71,6 +74,22 @@ contains
 
     spring_stiffness = norm2(force)/(spring_length*thickness)
   end function spring_stiffness
+
+  !> Return the fraction of fading forces and springs that remains at a progress of the phase. It
+  !> falls by the same factor in equal increments: a sheet in bending is softer than its springs at
+  !> first by four or more decades, and springs back where they are alike.
+  pure real(wp) function fading_factor(progress)
+    real(wp), intent(in) :: progress
+
+    fading_factor = (10.0_wp**(-decades*progress) - rest)/(1.0_wp - rest)
+  end function fading_factor
+
+  !> Return the negative derivative of `fading_factor`.
+  pure real(wp) function fading_rate(progress)
+    real(wp), intent(in) :: progress
+
+    fading_rate = log(10.0_wp)*decades*10.0_wp**(-decades*progress)/(1.0_wp - rest)
+  end function fading_rate
 
   !> Evaluate the external forces on the nodes.
   pure subroutine nodal_forces(set, load, contact_node, fading, force)

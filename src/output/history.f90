@@ -7,6 +7,7 @@ module dd3_output_history
   use dd3_base_text, only : newline
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
+  use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
@@ -225,7 +226,7 @@ contains
     reaction = 0.0_wp
     do i = 1, size(node)
       reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i)) &
-          + (1.0_wp - state%progress)*state%start%reaction(:, node(i))
+          + fading_factor(state%progress)*state%start%reaction(:, node(i))
     end do
     do i = 1, model%n_contact
       if (any(node == model%contact_node(i))) reaction = reaction + state%lambda(:, i)

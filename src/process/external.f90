@@ -2,7 +2,7 @@
 !> forces of released tools fade with springs that hold the sheet where the tools left it.
 module dd3_process_external
   use dd3_base_kinds, only : wp
-  use dd3_model_loads, only : nodal_forces, spring_stiffness
+  use dd3_model_loads, only : fading_factor, nodal_forces, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
@@ -38,9 +38,9 @@ contains
     type(state_t), intent(inout) :: state
 
     associate (force => state%external_force)
-      state%fading = (1.0_wp - state%progress)*unfaded_forces(model, state)
+      state%fading = fading_factor(state%progress)*unfaded_forces(model, state)
       call nodal_forces(model%load_set, state%load, model%contact_node, state%fading, force)
-      force = force + (1.0_wp - state%progress)*state%start%reaction
+      force = force + fading_factor(state%progress)*state%start%reaction
       if (size(state%bead_load) > 0) force = force + state%bead_load
       if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           state%pressure, state%x, force)

@@ -7,6 +7,7 @@ module dd3_process_phase_start
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
+  use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
@@ -181,7 +182,7 @@ contains
     reaction = state%internal_force - state%external_force
     reaction(:, model%contact_node) = reaction(:, model%contact_node) + state%lambda
     where (.not. freed) reaction = 0.0_wp
-    reaction = reaction + (1.0_wp - state%progress)*state%start%reaction
+    reaction = reaction + fading_factor(state%progress)*state%start%reaction
     where (model%phase(number)%prescribed) reaction = 0.0_wp
     state%start%reaction = reaction
     if (any(freed)) state%plastic = .false.

@@ -12,7 +12,7 @@ module dd3_process_predictor
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_work, only : element_work_t
-  use dd3_model_loads, only : nodal_forces
+  use dd3_model_loads, only : fading_rate, nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
@@ -127,15 +127,17 @@ contains
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
 
+    real(wp) :: faded
     integer :: tool
 
+    faded = self%progress*fading_rate(committed%progress)
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
       call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
-          model%contact_node, self%progress*unfaded_forces(model, committed), problem%residual)
+          model%contact_node, faded*unfaded_forces(model, committed), problem%residual)
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
-      problem%residual = problem%residual + self%progress*start%reaction
+      problem%residual = problem%residual + faded*start%reaction
       problem%contact_residual = 0.0_wp
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)

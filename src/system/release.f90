@@ -2,7 +2,7 @@
 module dd3_system_release
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
-  use dd3_model_loads, only : spring_stiffness
+  use dd3_model_loads, only : fading_factor, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_system, only : system_t
@@ -24,7 +24,8 @@ contains
     do c = 1, model%n_contact
       associate (node => model%contact_node(c), fading => state%start%fading(:, c))
         if (all(abs(fading) <= 0.0_wp)) cycle
-        stiffness = (1.0_wp - state%progress)*spring_stiffness(fading, model%thickness_at(node))
+        stiffness = fading_factor(state%progress) &
+            *spring_stiffness(fading, model%thickness_at(node))
         k = system%stiffness%diagonal(node)
         system%stiffness%value(:, :, k) = system%stiffness%value(:, :, k) + stiffness*identity
       end associate
