@@ -19,7 +19,7 @@ FLANGE = 36.0  # x beyond which the strip is flat at the end of the draw, mm
 HOLDERS = {"2.45 kN": -35, "19.6 kN": -280}  # N for 1 mm of the half strip
 MESHES = {"isotropic": (88, 175, 350, 700), "kinematic": (350,)}  # elements along the half strip
 SHEETS = {"SPCC": "spcc_kinematic", "SPFC": "spfc_kinematic"}  # of the library
-SHEET_RUN = "2.45 kN", 175  # holder and elements of their runs
+SHEET_MESHES = {"2.45 kN": (175,), "19.6 kN": (350,)}  # elements of their runs
 SWIFT = (565.32, 0.007117, 0.2589)  # MPa, -, -
 BACK_STRESS = (30.0, 50.0)  # CX, Xsat (MPa) of Lemaitre and Chaboche, assumed
 STRAINS = (0, .002, .005, .01, .02, .03, .05, .075, .1, .15, .2, .3, .5, .8, 1.2)
@@ -133,7 +133,7 @@ def runs(options):
     """Make the runs; yield holder, law, elements along the strip and folder of each, None if it is not there."""
     for holder, force in HOLDERS.items():
         for law, lines in laws().items():
-            for mesh in MESHES.get(law, (SHEET_RUN[1],) if holder == SHEET_RUN[0] else ()):
+            for mesh in MESHES.get(law, SHEET_MESHES[holder]):
                 name = f"{holder}_{law}_{mesh}".replace(", ", "_").replace(" ", "_")
                 yield holder, law, mesh, studies.make(options, name, with_law(options.work, law, lines),
                                                       {"divisions": f"{mesh} 1 1", "holder": force})
