@@ -4,7 +4,7 @@
     rail.py --program build/release/dd3imp --work build/rail            make the runs that are missing
     rail.py --program build/release/dd3imp --work build/rail --write    and put them into docs/reports
 
-The fine runs take hours; `--only` selects some. An interrupted run is continued.
+The finest run takes half an hour; `--only` selects some. An interrupted run is continued.
 """
 import sys
 
@@ -17,7 +17,8 @@ DECK, REPORT, PICTURE = studies.paths("rail")
 DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm
 OFFSET = 10.0480947162  # of the straight ends from the middle, mm
 STATION, REACH = 60.0, 8.0  # middle and half length of the piece of a straight end that is measured, mm
-RUNS = [("20 x 12", "20 12 1"), ("30 x 18", "30 18 1"), ("60 x 36", "60 36 1")]
+RUNS = [("20 x 12", "20 12 1"), ("30 x 18", "30 18 1"), ("40 x 24", "40 24 1"), ("60 x 36", "60 36 1"),
+        ("90 x 54", "90 54 1")]
 
 
 class Rail:
