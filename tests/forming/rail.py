@@ -4,7 +4,7 @@
     rail.py --program build/release/dd3imp --work build/rail            make the runs that are missing
     rail.py --program build/release/dd3imp --work build/rail --write    and put them into docs/reports
 
-The finest run takes half an hour; `--only` selects some. An interrupted run is continued.
+The finest run takes 20 minutes; `--only` selects some. An interrupted run is continued.
 """
 import sys
 

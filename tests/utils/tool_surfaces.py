@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import importlib.util
 import io
+import math
 import subprocess
 import sys
 import tempfile
@@ -146,6 +147,10 @@ def check_boxes(folder, program):
             assert np.abs(ahead - distance - 1e-4)[np.abs(point[..., 2]) < 39].max() < 1e-6, (kind, offset)
         convert(shape, bez)
         check_program(program, bez, "z_min" if kind == "die" else "z_max", -1 if kind == "die" else 2)
+    shape.write_text(BOXES.format(kind="punch", more=""))
+    along, across = math.cos(math.radians(20)), math.sin(math.radians(20))
+    x, y = 25 * along + 15 * across + 10, 25 * across + 15 * along + 10
+    assert f"x {-x:.6g} to {x:.6g}, y {-y:.6g} to {y:.6g}," in convert(shape, bez, "--rotate", 0, 0, 1, 20)
     shape.write_text(BOXES.format(kind="die", more=""))
     assert "leaves nothing of the radius 5" in convert(shape, bez, "--offset", -6, expect=2)
 

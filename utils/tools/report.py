@@ -78,7 +78,7 @@ def extent(net):
     places = np.stack(grid(5))
     points = points_at(net, *places).reshape(-1, 3)
     low, high = points.argmin(axis=0), points.argmax(axis=0)
-    return tuple(np.array([extreme(net[[k // 25]], axis, sign, places[:, k % 25]) for axis, k in enumerate(ends)])
+    return tuple(np.array([extreme(net[[k // places.shape[1]]], axis, sign, places[:, k % places.shape[1]]) for axis, k in enumerate(ends)])
                  for sign, ends in ((-1, low), (1, high)))
 
 
