@@ -5,11 +5,11 @@ module dd3_base_threads
   implicit none
   private
   public :: set_threads, most_threads, threads_for
-  public :: least_elements, least_nodes, least_values
+  public :: least_points, least_nodes, least_values
 
-  !> Passes of a loop over elements, over nodes, candidates or rows, and over the values of a matrix,
-  !> that occupy a thread longer than it waits for the others.
-  integer, parameter :: least_elements = 128, least_nodes = 256, least_values = 50000
+  !> Integration points of a loop over elements, passes of one over nodes, candidates or rows, and of
+  !> one over the values of a matrix that occupy a thread longer than it waits for the others.
+  integer, parameter :: least_points = 128, least_nodes = 256, least_values = 50000
 
 contains
 
@@ -30,7 +30,7 @@ contains
   !> Return the number of threads of a loop.
   integer function threads_for(n_pass, least) result(threads)
     integer, intent(in) :: n_pass
-    !> Least number of passes for each thread, such as `least_elements`.
+    !> Least number of passes for each thread, such as `least_nodes`.
     integer, intent(in) :: least
 
     threads = max(1, min(most_threads(), n_pass/least))

@@ -2,6 +2,7 @@
 !> phases.
 module dd3_model_model
   use dd3_base_kinds, only : wp
+  use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
@@ -106,6 +107,7 @@ module dd3_model_model
     procedure :: thickness_at
     procedure :: largest_thickness
     procedure :: least_shear
+    procedure :: element_threads
   end type model_t
 
 contains
@@ -139,5 +141,12 @@ contains
           least_shear = min(least_shear, self%material(m)%laws%elasticity%shear)
     end do
   end function least_shear
+
+  !> Return the number of threads of a loop over the elements.
+  integer function element_threads(self)
+    class(model_t), intent(in) :: self
+
+    element_threads = threads_for(self%n_element*self%element%n_point, least_points)
+  end function element_threads
 
 end module dd3_model_model

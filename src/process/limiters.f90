@@ -4,7 +4,6 @@
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
   use dd3_base_ranks, only : broadcast_integers, broadcast_reals, broadcast_text, rank_of_smallest
-  use dd3_base_threads, only : least_elements, threads_for
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
@@ -145,7 +144,7 @@ contains
       if (.not. allowed%active) return
       bound = max(allowed%value/stepper%attempt%limit%r, &
           least_principal*sqrt(maxval(sum(stepper%prediction%strain**2, dim=1))))
-      !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e)
+      !$omp parallel do num_threads(model%element_threads()) private(e)
       do e = 1, model%n_element
         call largest_strain(stepper%prediction%strain(:, :, e), bound, largest(e), point(e))
       end do
@@ -216,7 +215,7 @@ contains
       if (limits%stress_tangential%active) inverse_a = 1.0_wp/limits%stress_tangential%value
       if (limits%stress_normal%active) inverse_b = 1.0_wp/limits%stress_normal%value
     end associate
-    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e)
+    !$omp parallel do num_threads(model%element_threads()) private(e)
     do e = 1, model%n_element
       call smallest_stress_bound(model, state, stepper, e, [inverse_a, inverse_b], bound(e), &
           point(e))

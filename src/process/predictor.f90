@@ -8,7 +8,6 @@ module dd3_process_predictor
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_material, section_assembly, section_contact
   use dd3_base_ranks, only : sum_over_ranks
-  use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_work, only : element_work_t
@@ -187,7 +186,7 @@ contains
 
     integer :: e, p
 
-    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) private(e, p)
+    !$omp parallel do num_threads(model%element_threads()) private(e, p)
     do e = 1, model%n_element
       if (.not. system%partition%evaluated(e)) cycle
       associate (material => model%material(model%material_of(e)))
@@ -210,7 +209,7 @@ contains
 
     integer :: e, thread
 
-    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) private(e, thread)
+    !$omp parallel num_threads(model%element_threads()) private(e, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     !$omp do
@@ -257,7 +256,7 @@ contains
     integer :: e, p
 
     switched = 0
-    !$omp parallel do num_threads(threads_for(model%n_element, least_elements)) &
+    !$omp parallel do num_threads(model%element_threads()) &
     !$omp& private(direction, e, p) reduction(+: switched)
     do e = 1, model%n_element
       if (.not. partition%evaluated(e)) cycle

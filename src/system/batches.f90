@@ -7,7 +7,7 @@ module dd3_system_batches
   public :: batches_t, new_batches
 
   !> Elements in a batch.
-  integer, parameter :: batch_size = 32
+  integer, parameter :: batch_size = 8
 
   !> Coloured batches.
   type :: batches_t

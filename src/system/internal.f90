@@ -6,7 +6,6 @@
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
-  use dd3_base_threads, only : least_elements, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear, copy_values
@@ -40,7 +39,7 @@ contains
     verdict%outcome = verdict_converged
     trial%internal_force = 0.0_wp
     if (with_stiffness) call clear_stiffness(system)
-    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) default(shared) &
+    !$omp parallel num_threads(model%element_threads()) default(shared) &
     !$omp& private(mine, colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
@@ -127,7 +126,7 @@ contains
     integer :: colour, k, e, batch, thread
 
     call clear_stiffness(system)
-    !$omp parallel num_threads(threads_for(model%n_element, least_elements)) default(shared) &
+    !$omp parallel num_threads(model%element_threads()) default(shared) &
     !$omp& private(colour, k, e, batch, thread)
     thread = 1
     !$ thread = omp_get_thread_num() + 1

@@ -17,6 +17,8 @@ module dd3_system_thread_choice
   integer, parameter :: trial_length = 4
   !> Iterations between two trials: at first, and at most; doubled if the choice stays the same.
   integer, parameter :: first_interval = 16, most_interval = 256
+  !> Ratio of two equal times of an iteration by scatter alone.
+  real(wp), parameter :: scatter = 0.9_wp
 
   !> The choice, and the measurements so far.
   type :: thread_choice_t
@@ -81,13 +83,15 @@ contains
     call set_threads(self%chosen)
   end subroutine end_iteration
 
-  !> Choose the faster, and set when to compare again.
+  !> Choose the faster if the difference exceeds the scatter, and set when to compare again.
   subroutine decide(self)
     class(thread_choice_t), intent(inout) :: self
 
     integer :: faster
 
-    faster = merge(1, self%all, self%seconds(1) < self%seconds(2))
+    faster = self%chosen
+    if (self%seconds(1) < scatter*self%seconds(2)) faster = 1
+    if (self%seconds(2) < scatter*self%seconds(1)) faster = self%all
     self%interval = min(2*self%interval, most_interval)
     if (faster /= self%chosen) then
       self%interval = first_interval

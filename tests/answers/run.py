@@ -89,8 +89,9 @@ DECKS = [
     Deck("`until = force` never met", "end, silent", line="without meeting",
          changes=added("  until = force punch 500")),
     Deck("a released tool that a later phase moves back", "end, 0 N, through the sheet",
-         changes=added("*PHASE off\n  control = punch\n  trial = 0.5\n  release = punch\n  move = punch 0 0 5\n"
-                       "*PHASE back\n  control = punch\n  trial = 0.5\n  move = punch 0 0 -5.5"), values=("punch_fz",)),
+         changes=block("BOUNDARY z", "set = x_max", "fix = z") +
+         added("*PHASE off\n  control = punch\n  trial = 0.5\n  release = punch\n  move = punch 0 0 5\n"
+               "*PHASE back\n  control = punch\n  trial = 0.5\n  move = punch 0 0 -5.5"), values=("punch_fz",)),
     Deck("the same, with the tool inside the sheet", "end, 0 N",
          changes=added("*PHASE off\n  control = load\n  trial = 0.5\n  release = punch\n"
                        "*PHASE back\n  control = punch\n  trial = 0.5\n  move = punch 0 0 -0.5"), line="inside it"),
