@@ -4,19 +4,19 @@
 !> the Green strain in the material frame is
 !>   e = sum e_ij Q^T G^i (x) Q^T G^j
 !>       + (j_0/j) zeta (a_1 + a_2 xi + a_3 eta) Q^T G_0^3 (x) Q^T G_0^3,
-!> e_ij the natural strains, j and 0 the Jacobian determinant and the centre of the element. The
-!> last term is the enhanced strain (Simo & Rifai 1990 for its transformation; Buechter, Ramm &
-!> Roehl 1994 and Klinkel & Wagner 1997 for the linear thickness strain). One parameter is
-!> sufficient on parallelograms; the two others make bending exact on any flat element. Then C = I +
-!> 2 e, U = C^(1/2), and the strain increment of the material is ln U. The material axes rotate with
-!> R of the compatible F = R U_F.
+!> e_ij the natural strains with the modes of `shell_modes`, j and 0 the Jacobian determinant and
+!> the centre of the element. Of the thickness strain one parameter is sufficient on parallelograms;
+!> the two others make bending exact on any flat element. Then C = I + 2 e, U = C^(1/2), and the
+!> strain increment of the material is ln U. The material axes rotate with R of the compatible F = R
+!> U_F.
 module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
   use dd3_element_log_strain, only : polar_rotation, rotate_axes, stretch_of_green
+  use dd3_element_shell_modes, only : enhance, enhanced_rates, set_modes
   use dd3_element_shell_strain, only : column_geometry, set_weights, natural_rates, &
       natural_strains
-  use dd3_element_shell_work, only : columns_t, n_column, n_natural, plane_point, shell_work_t
+  use dd3_element_shell_work, only : columns_t, n_column, n_general, n_natural, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : cross, determinant
@@ -35,20 +35,19 @@ contains
     !> assumed strain.
     type(verdict_t), intent(out) :: verdict
 
-    real(wp) :: enhanced
     integer :: k, p, q
 
     verdict%outcome = verdict_converged
     associate (shell => work%shell, n => element%n_point/n_column)
       call column_geometry(work%x_committed, work%x_trial, shell)
-      call set_centre(shell)
+      call set_modes(shell)
       call set_weights(work%x_initial, work%x_committed, shell)
       call natural_strains(work%x_committed, work%x_trial, shell)
+      call enhance(shell, work%enhanced)
       do q = 1, n_column
-        enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))
         do k = 1, n
           p = (q - 1)*n + k
-          call deform_point(q, p, element%point(3, p), enhanced, rotation_committed(:, :, p), &
+          call deform_point(q, p, element%point(3, p), rotation_committed(:, :, p), &
               element%weight(p), work, verdict)
           if (verdict%outcome == verdict_converged) cycle
           verdict%point = p
@@ -74,29 +73,11 @@ contains
     work%enhanced = enhanced
   end subroutine shell_linearise
 
-  !> Evaluate base and Jacobian determinant at the centre of the committed configuration.
-  pure subroutine set_centre(shell)
-    type(shell_work_t), intent(inout) :: shell
-
-    real(wp) :: normal(3)
-
-    associate (at => shell%committed)
-      ! The means of the columns, whose points lie symmetrically about the centre.
-      normal = cross(0.25_wp*sum(at%membrane(:, 1, :), dim=2), &
-          0.25_wp*sum(at%membrane(:, 2, :), dim=2))
-      shell%centre_jacobian = dot_product(normal, 0.25_wp*sum(at%director, dim=2))
-      shell%centre_normal = 0.0_wp
-      if (shell%centre_jacobian > 0.0_wp) shell%centre_normal = normal/shell%centre_jacobian
-    end associate
-  end subroutine set_centre
-
   !> Deform a point.
-  subroutine deform_point(q, p, zeta, enhanced, axes, weight, work, verdict)
+  subroutine deform_point(q, p, zeta, axes, weight, work, verdict)
     !> Column and point.
     integer, intent(in) :: q, p
     real(wp), intent(in) :: zeta
-    !> a_1 + a_2 xi + a_3 eta.
-    real(wp), intent(in) :: enhanced
     !> Committed material axes, as columns.
     real(wp), intent(in) :: axes(3, 3)
     !> Quadrature weight.
@@ -119,7 +100,7 @@ contains
       base = matmul(transpose(axes), base)
       normal = sqrt(shell%centre_jacobian/jacobian)*matmul(shell%centre_normal, axes)
       green = green_strain(base, natural_at(shell%strain(:, q), zeta))
-      green = green + enhanced*zeta*dyad(normal, normal)
+      green = green + shell%strain(n_general, q)*zeta*dyad(normal, normal)
       call stretch_of_green(green, strain, inverse_stretch, positive)
       if (.not. positive) then
         verdict%outcome = verdict_retry
@@ -186,7 +167,7 @@ contains
 
   !> Return e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 at a height from their coefficients.
   pure function natural_at(coefficient, zeta) result(strain)
-    real(wp), intent(in) :: coefficient(n_natural)
+    real(wp), intent(in) :: coefficient(n_general)
     real(wp), intent(in) :: zeta
     real(wp) :: strain(6)
 
@@ -243,20 +224,23 @@ contains
     !> Holds the increment of the enhanced parameters; gets the increments.
     type(element_work_t), intent(inout) :: work
 
-    real(wp) :: natural(n_natural, n_column), plain(6), enhanced, spin(3), gradient(3, 3)
+    real(wp) :: natural(n_natural, n_column), general(n_general, n_column), plain(6), spin(3), &
+        gradient(3, 3)
     type(columns_t) :: motion
     integer :: i, k, n, p, q
 
     associate (shell => work%shell)
       call natural_rates(du, work%x_trial, shell, natural, motion)
+      general(:n_natural, :) = natural
+      general(n_general, :) = 0.0_wp
+      call enhanced_rates(shell, work%enhanced, general)
       n = element%n_point/n_column
       do q = 1, n_column
-        enhanced = work%enhanced(1) + dot_product(work%enhanced(2:3), plane_point(:, q))
         do k = 1, n
           p = (q - 1)*n + k
           associate (zeta => element%point(3, p), base => shell%base(:, :, p))
-            plain = green_strain(base, natural_at(natural(:, q), zeta)) &
-                + enhanced*zeta*dyad(shell%normal(:, p), shell%normal(:, p))
+            plain = green_strain(base, natural_at(general(:, q), zeta)) &
+                + general(n_general, q)*zeta*dyad(shell%normal(:, p), shell%normal(:, p))
             gradient = matmul(transpose(rotation_committed(:, :, p)), &
                 covariant_base(motion, q, zeta))
             spin = 0.0_wp

@@ -5,8 +5,9 @@
 !> stresses conjugate to the natural strains are w j J (U^-1 G^i) . T . (U^-1 G^j).
 module dd3_element_shell_force
   use dd3_base_kinds, only : inverse_sqrt2, wp
+  use dd3_element_shell_modes, only : mode_forces
   use dd3_element_shell_strain, only : strain_operators
-  use dd3_element_shell_work, only : n_column, n_general, n_natural, plane_point, shell_work_t
+  use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   implicit none
@@ -58,15 +59,12 @@ contains
     associate (shell => work%shell)
       call strain_operators(work%x_trial, shell)
       force = 0.0_wp
-      work%enhanced_force = 0.0_wp
       do q = 1, n_column
         do k = 1, n_natural
           force = force + shell%resultant(k, q)*shell%operator(:, k, q)
         end do
-        work%enhanced_force(1) = work%enhanced_force(1) + shell%resultant(n_general, q)
-        work%enhanced_force(2:3) = work%enhanced_force(2:3) &
-            + shell%resultant(n_general, q)*plane_point(:, q)
       end do
+      work%enhanced_force(:) = mode_forces(shell)
       work%force(:, :) = reshape(force, [3, element%n_node])
     end associate
   end subroutine shell_force

@@ -12,9 +12,10 @@ module dd3_element_shell_stiffness
   use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_element_moduli, only : material_moduli
   use dd3_element_shell_force, only : point_operator, shell_force
+  use dd3_element_shell_modes, only : square_strain
   use dd3_element_shell_strain, only : initial_stress
-  use dd3_element_shell_work, only : n_column, n_general, n_natural, n_parameter, plane_point, &
-      shell_work_t
+  use dd3_element_shell_work, only : mode_of, mode_shape, n_column, n_general, n_mode, n_natural, &
+      n_parameter, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : solve_small
@@ -135,14 +136,17 @@ contains
     real(wp), intent(inout) :: uu(24, 24), ua(24, n_parameter), au(n_parameter, 24), &
         aa(n_parameter, n_parameter)
 
-    real(wp) :: hb(n_general), factor(n_parameter), coupling(24)
-    integer :: b, i, k
+    real(wp) :: hb(n_general), hm(n_general), coupling(24, n_mode), own(n_mode, n_mode)
+    integer :: b, i, k, m
 
-    factor = [1.0_wp, plane_point(:, q)]
-    associate (operator => shell%operator(:, :, q))
-      coupling = 0.0_wp
-      do k = 1, n_natural
-        coupling = coupling + moduli(k, n_general)*operator(:, k)
+    associate (operator => shell%operator(:, :, q), mode => shell%mode(:, :, q), &
+        shape => mode_shape(:, q))
+      do m = 1, n_mode
+        hm = matmul(moduli, mode(:, m))
+        own(:, m) = matmul(hm, mode)
+        if (square_strain(m) > 0) own(m, m) = own(m, m) &
+            + shell%mode_square(m, q)*shell%resultant(square_strain(m), q)
+        coupling(:, m) = matmul(operator, hm(:n_natural))
       end do
       do b = 1, 24
         hb = 0.0_wp
@@ -152,11 +156,13 @@ contains
         do k = 1, n_natural
           uu(:, b) = uu(:, b) + hb(k)*operator(:, k)
         end do
-        au(:, b) = au(:, b) + hb(n_general)*factor
+        do i = 1, n_parameter
+          au(i, b) = au(i, b) + shape(i)*dot_product(hb, mode(:, mode_of(i)))
+        end do
       end do
       do i = 1, n_parameter
-        ua(:, i) = ua(:, i) + factor(i)*coupling
-        aa(:, i) = aa(:, i) + (moduli(n_general, n_general)*factor(i))*factor
+        ua(:, i) = ua(:, i) + shape(i)*coupling(:, mode_of(i))
+        aa(:, i) = aa(:, i) + shape(i)*shape*own(mode_of, mode_of(i))
       end do
     end associate
   end subroutine add_column

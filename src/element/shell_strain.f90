@@ -22,6 +22,7 @@
 !> d_A = (top - bottom)/2 at its corners.
 module dd3_element_shell_strain
   use dd3_base_kinds, only : wp
+  use dd3_element_shell_dilatation, only : average_dilatation, average_resultants, set_dilatation
   use dd3_element_shell_work, only : columns_t, corner, n_column, n_corner, n_natural, &
       plane_point, shell_work_t
   implicit none
@@ -56,6 +57,7 @@ contains
     call set_columns(shell, mid, director, shell%committed)
     call split(x_trial, mid, director)
     call set_columns(shell, mid, director, shell%trial)
+    call set_dilatation(shell)
   end subroutine column_geometry
 
   !> Set the weight of the mean director in the mean thickness strain, and the factors of the
@@ -100,7 +102,8 @@ contains
     weight = max(0.0_wp, 1.0_wp - 0.25_wp*spread*length/sum(mean**2)**2)
   end function mean_director_weight
 
-  !> Evaluate the natural strains of an increment; call `column_geometry` and `set_weights` first.
+  !> Evaluate the natural strains of an increment, without enhanced ones; call `column_geometry` and
+  !> `set_weights` first.
   pure subroutine natural_strains(x_committed, x_trial, shell)
     !> Positions of the nodes, mm.
     real(wp), intent(in) :: x_committed(3, 8), x_trial(3, 8)
@@ -119,8 +122,9 @@ contains
       call in_plane_squares(motion, q, strain(:, q))
     end do
     call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
+    call average_dilatation(shell, strain)
     do q = 1, n_column
-      shell%strain(:, q) = shell%strain_factor*strain(:, q)
+      shell%strain(:, q) = [shell%strain_factor*strain(:, q), 0.0_wp]
     end do
   end subroutine natural_strains
 
@@ -143,6 +147,7 @@ contains
       call in_plane_strains(shell%trial, motion, q, strain(:, q))
     end do
     call assumed_strains(mid, director, u, ud, shell, strain)
+    call average_dilatation(shell, strain)
     do q = 1, n_column
       strain(:, q) = shell%strain_factor*strain(:, q)
     end do
@@ -311,6 +316,9 @@ contains
         call to_nodes(row)
       end associate
     end do
+    do j = 1, size(shell%operator, 1)
+      call average_dilatation(shell, shell%operator(j, :, :))
+    end do
   end subroutine strain_operators
 
   !> Add the derivatives of a scalar product of a vector with interpolated corner vectors.
@@ -382,15 +390,16 @@ contains
     !> Node by node, N/mm.
     real(wp), intent(out) :: factor(8, 8)
 
-    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), n(n_natural), t, weight
+    real(wp) :: mm(4, 4), md(4, 4), dd(4, 4), n(n_natural), force(n_natural, n_column), t, weight
     integer :: a, b, i, j, k, l, q
 
     weight = 0.25_wp*shell%centre_weight
+    force = average_resultants(shell)
     mm = 0.0_wp
     md = 0.0_wp
     dd = 0.0_wp
     do q = 1, n_column
-      n = shell%strain_factor*shell%resultant(:n_natural, q)
+      n = shell%strain_factor*force(:, q)
       associate (slope => shell%slope(:, :, q))
         do b = 1, n_corner
           do j = 1, 2

@@ -6,22 +6,35 @@
 !> all its points (Green-Lagrange, shear strains doubled):
 !>   e_11, e_22, 2 e_12 : three coefficients each, of 1, zeta, zeta^2;
 !>   e_33, 2 e_23, 2 e_13 : constant, from the assumed strains.
-!> The 13th is the enhanced thickness strain a_1 + a_2 xi + a_3 eta, times zeta.
+!> The 13th is the enhanced thickness strain, times zeta.
 module dd3_element_shell_work
   use dd3_base_kinds, only : wp
   implicit none
   private
   public :: columns_t, shell_work_t, new_shell_work
-  public :: n_column, n_corner, n_natural, n_general, n_parameter, corner, plane_point
+  public :: n_column, n_corner, n_natural, n_general, n_mode, n_parameter, corner, plane_point
+  public :: mode_of, mode_shape
 
-  !> Number of columns of points, of corners in the plane, of generalised strains without and with
-  !> the enhanced one, and of enhanced parameters.
-  integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13, n_parameter = 3
+  !> Number of columns of points, of corners in the plane, and of generalised strains without and
+  !> with the enhanced one.
+  integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13
+  !> Number of modes of enhanced strain (thickness, directors along xi and along eta), and of their
+  !> parameters.
+  integer, parameter :: n_mode = 3, n_parameter = 7
   !> xi and eta of the corners in the order of the nodes; those of the columns are smaller by
   !> sqrt(3).
   real(wp), parameter :: corner(2, n_corner) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, &
       1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, n_corner])
   real(wp), parameter :: plane_point(2, n_column) = corner/sqrt(3.0_wp)
+  !> Mode of a parameter, and its shape in the plane at the columns: 1, xi, eta for the thickness,
+  !> 1 at an edge and 0 at the one across for the directors.
+  integer, parameter :: mode_of(n_parameter) = [1, 1, 1, 2, 2, 3, 3]
+  integer, private :: i
+  real(wp), parameter :: mode_shape(n_parameter, n_column) = reshape([([1.0_wp, &
+      plane_point(1, i), plane_point(2, i), &
+      0.5_wp - 0.5_wp*plane_point(2, i), 0.5_wp + 0.5_wp*plane_point(2, i), &
+      0.5_wp - 0.5_wp*plane_point(1, i), 0.5_wp + 0.5_wp*plane_point(1, i)], i=1, n_column)], &
+      [n_parameter, n_column])
 
   !> Position as a function of zeta in the columns, x = x_0 + zeta d: tangents and directors.
   type :: columns_t
@@ -41,9 +54,20 @@ module dd3_element_shell_work
     real(wp) :: centre_weight = 0.0_wp
     !> Factors of the natural strains: below 1 for those linear in zeta where directors differ.
     real(wp) :: strain_factor(n_natural) = 1.0_wp
-    !> Coefficients of the natural strains: `strain(n_natural,n_column)`.
-    real(wp) :: strain(n_natural, n_column)
-    !> Their derivatives in the nodal positions, 1/mm: `operator(24,n_natural,n_column)`.
+    !> Generalised strains: `strain(n_general,n_column)`.
+    real(wp) :: strain(n_general, n_column)
+    !> Their derivatives in the amounts of the modes of enhanced strain, 1/mm2:
+    !> `mode(n_general,n_mode,n_column)`; and the second derivatives of the coefficients of zeta^2,
+    !> 1/mm4: `mode_square(n_mode,n_column)`.
+    real(wp) :: mode(n_general, n_mode, n_column), mode_square(n_mode, n_column)
+    !> Jacobian determinant in the middle of the columns in the committed configuration, mm3, and
+    !> their shares of its sum.
+    real(wp) :: column_jacobian(n_column), column_fraction(n_column)
+    !> Factors of the strains that are constant in zeta in the dilatation of a column, 1/mm2, and
+    !> those strains in a dilatation of 1, mm2, `(6,n_column)`.
+    real(wp) :: trace(6, n_column), dilatation(6, n_column)
+    !> Derivatives of the natural strains in the nodal positions, 1/mm:
+    !> `operator(24,n_natural,n_column)`.
     real(wp) :: operator(24, n_natural, n_column)
     !> Forces conjugate to the generalised strains, N mm: `resultant(n_general,n_column)`.
     real(wp) :: resultant(n_general, n_column)

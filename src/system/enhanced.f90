@@ -87,8 +87,7 @@ contains
   end subroutine subtract_condensed
 
   !> Return the sum of squares of the parameters' residuals as forces on the faces of the elements,
-  !> N2. A parameter is the strain at the face times the square of half the thickness, that is the
-  !> motion of the face times half the thickness.
+  !> N2. A parameter is the motion of the face, across it or along it, times half the thickness.
   pure real(wp) function enhanced_square(self, thickness) result(total)
     type(enhanced_t), intent(in) :: self
     !> mm.

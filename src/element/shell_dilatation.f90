@@ -1,0 +1,100 @@
+!> Mean dilatation of the solid-shell: the part of the natural strains that is constant through the
+!> thickness gets the same dilatation in all columns of the element, as the points of a hex8 do.
+!>
+!> In its plane the element is bilinear, and nodes share their thickness: where the element bends in
+!> its plane, the thickness strain cannot balance the in-plane strain, and plastic flow at constant
+!> volume would lock (selective reduced integration, Hughes 1980; Simo, Taylor & Pister 1985).
+!>
+!> With the metric G_ij of the committed configuration the dilatation of a column is G^ij e_ij, and
+!> the strains of a dilatation are G_ij/3. The map is linear; its adjoint applies to the resultants.
+module dd3_element_shell_dilatation
+  use dd3_base_kinds, only : wp
+  use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
+  use dd3_linalg_tensor, only : cross
+  implicit none
+  private
+  public :: set_dilatation, average_dilatation, average_resultants
+
+  !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta.
+  integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12]
+
+contains
+
+  !> Evaluate the metric of the columns; call `column_geometry` first.
+  pure subroutine set_dilatation(shell)
+    !> Gets `column_jacobian`, `column_fraction`, `trace` and `dilatation`; the strains stay as they
+    !> are if a determinant is not positive.
+    type(shell_work_t), intent(inout) :: shell
+
+    real(wp) :: g(3, 3), base(3, 3)
+    integer :: q
+
+    shell%trace = 0.0_wp
+    shell%dilatation = 0.0_wp
+    shell%column_fraction = 0.0_wp
+    do q = 1, n_column
+      g(:, 1:2) = shell%committed%membrane(:, :, q)
+      g(:, 3) = shell%committed%director(:, q)
+      base(:, 1) = cross(g(:, 2), g(:, 3))
+      base(:, 2) = cross(g(:, 3), g(:, 1))
+      base(:, 3) = cross(g(:, 1), g(:, 2))
+      shell%column_jacobian(q) = dot_product(g(:, 1), base(:, 1))
+      if (.not. shell%column_jacobian(q) > 0.0_wp) cycle
+      shell%trace(:, q) = metric(base)/shell%column_jacobian(q)**2
+      shell%dilatation(:, q) = metric(g)*[1, 1, 2, 1, 2, 2]/3.0_wp
+    end do
+    if (all(shell%column_jacobian > 0.0_wp)) then
+      shell%column_fraction = shell%column_jacobian/sum(shell%column_jacobian)
+    else
+      shell%trace = 0.0_wp
+    end if
+  end subroutine set_dilatation
+
+  !> Return the scalar products 11, 22, 12, 33, 23, 13 of three vectors.
+  pure function metric(g) result(product)
+    real(wp), intent(in) :: g(3, 3)
+    real(wp) :: product(6)
+
+    product = [dot_product(g(:, 1), g(:, 1)), dot_product(g(:, 2), g(:, 2)), &
+        dot_product(g(:, 1), g(:, 2)), dot_product(g(:, 3), g(:, 3)), &
+        dot_product(g(:, 2), g(:, 3)), dot_product(g(:, 1), g(:, 3))]
+  end function metric
+
+  !> Give natural strains the mean dilatation.
+  pure subroutine average_dilatation(shell, strain)
+    type(shell_work_t), intent(in) :: shell
+    !> Of the columns, or their derivatives.
+    real(wp), intent(inout) :: strain(:, :)
+
+    real(wp) :: excess(n_column)
+    integer :: q
+
+    do q = 1, n_column
+      excess(q) = dot_product(shell%trace(:, q), strain(constant, q))
+    end do
+    excess = excess - dot_product(shell%column_fraction, excess)
+    do q = 1, n_column
+      strain(constant, q) = strain(constant, q) - excess(q)*shell%dilatation(:, q)
+    end do
+  end subroutine average_dilatation
+
+  !> Return the forces conjugate to the natural strains before their dilatation is averaged.
+  pure function average_resultants(shell) result(force)
+    !> Holds the resultants.
+    type(shell_work_t), intent(in) :: shell
+    real(wp) :: force(n_natural, n_column)
+
+    real(wp) :: pressure(n_column)
+    integer :: q
+
+    force = shell%resultant(:n_natural, :)
+    do q = 1, n_column
+      pressure(q) = dot_product(shell%dilatation(:, q), force(constant, q))
+    end do
+    pressure = pressure - shell%column_fraction*sum(pressure)
+    do q = 1, n_column
+      force(constant, q) = force(constant, q) - pressure(q)*shell%trace(:, q)
+    end do
+  end function average_resultants
+
+end module dd3_element_shell_dilatation
