@@ -40,7 +40,7 @@ contains
     verdict%outcome = verdict_converged
     associate (shell => work%shell, n => element%n_point/n_column)
       call column_geometry(work%x_committed, work%x_trial, shell)
-      call set_modes(shell)
+      call set_modes(shell, element%stacked)
       call set_weights(work%x_initial, work%x_committed, shell)
       call natural_strains(work%x_committed, work%x_trial, shell)
       call enhance(shell, work%enhanced)

@@ -1,12 +1,14 @@
-!> Mean dilatation of the solid-shell: the part of the natural strains that is constant through the
-!> thickness gets the same dilatation in all columns of the element, as the points of a hex8 do.
+!> Mean dilatation of the solid-shell's plane: of the natural strains that are constant through the
+!> thickness those in the plane give all columns of the element the same dilatation.
 !>
 !> In its plane the element is bilinear, and nodes share their thickness: where the element bends in
 !> its plane, the thickness strain cannot balance the in-plane strain, and plastic flow at constant
-!> volume would lock (selective reduced integration, Hughes 1980; Simo, Taylor & Pister 1985).
+!> volume would lock (selective reduced integration, Hughes 1980). The thickness strain keeps its own
+!> dilatation: averaged, too, it would resist no thickness that changes in turns from node to node.
 !>
-!> With the metric G_ij of the committed configuration the dilatation of a column is G^ij e_ij, and
-!> the strains of a dilatation are G_ij/3. The map is linear; its adjoint applies to the resultants.
+!> With the metric G_ij of the committed configuration the in-plane strains have the dilatation G^11
+!> e_11 + G^22 e_22 + 2 G^12 e_12, and the strains of a dilatation are G_ij/3. The map is linear; its
+!> adjoint applies to the resultants.
 module dd3_element_shell_dilatation
   use dd3_base_kinds, only : wp
   use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
@@ -15,8 +17,9 @@ module dd3_element_shell_dilatation
   private
   public :: set_dilatation, average_dilatation, average_resultants
 
-  !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta.
-  integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12]
+  !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta; the first
+  !> three are in the plane.
+  integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12], plane(3) = constant(:3)
 
 contains
 
@@ -26,7 +29,7 @@ contains
     !> are if a determinant is not positive.
     type(shell_work_t), intent(inout) :: shell
 
-    real(wp) :: g(3, 3), base(3, 3)
+    real(wp) :: g(3, 3), base(3, 3), inverse(6)
     integer :: q
 
     shell%trace = 0.0_wp
@@ -40,7 +43,8 @@ contains
       base(:, 3) = cross(g(:, 1), g(:, 2))
       shell%column_jacobian(q) = dot_product(g(:, 1), base(:, 1))
       if (.not. shell%column_jacobian(q) > 0.0_wp) cycle
-      shell%trace(:, q) = metric(base)/shell%column_jacobian(q)**2
+      inverse = metric(base)/shell%column_jacobian(q)**2
+      shell%trace(:, q) = inverse(:3)
       shell%dilatation(:, q) = metric(g)*[1, 1, 2, 1, 2, 2]/3.0_wp
     end do
     if (all(shell%column_jacobian > 0.0_wp)) then
@@ -60,7 +64,7 @@ contains
         dot_product(g(:, 2), g(:, 3)), dot_product(g(:, 1), g(:, 3))]
   end function metric
 
-  !> Give natural strains the mean dilatation.
+  !> Give in-plane strains the mean dilatation.
   pure subroutine average_dilatation(shell, strain)
     type(shell_work_t), intent(in) :: shell
     !> Of the columns, or their derivatives.
@@ -70,7 +74,7 @@ contains
     integer :: q
 
     do q = 1, n_column
-      excess(q) = dot_product(shell%trace(:, q), strain(constant, q))
+      excess(q) = dot_product(shell%trace(:, q), strain(plane, q))
     end do
     excess = excess - dot_product(shell%column_fraction, excess)
     do q = 1, n_column
@@ -93,7 +97,7 @@ contains
     end do
     pressure = pressure - shell%column_fraction*sum(pressure)
     do q = 1, n_column
-      force(constant, q) = force(constant, q) - pressure(q)*shell%trace(:, q)
+      force(plane, q) = force(plane, q) - pressure(q)*shell%trace(:, q)
     end do
   end function average_resultants
 

@@ -17,7 +17,8 @@
 !>
 !> In torsion the change of the twisting moment across the edge balances the shear force, and no
 !> bending belongs to it. It does so within about a thickness: the shear of b is multiplied by
-!> w^2/(w^2 + t^2) in an element of width w.
+!> w^2/(w^2 + t^2) in an element of width w. Where elements lie on one another, tractions between
+!> them balance it, and b has no shear: it would be too large at any size of the elements.
 !>
 !> Strains that are linear in zeta are transformed with the base at the centre and (j_0/j), so that
 !> they do no work in a constant state of bending (Simo & Rifai 1990).
@@ -39,10 +40,12 @@ module dd3_element_shell_modes
 contains
 
   !> Evaluate the modes in the committed configuration; call `column_geometry` first.
-  pure subroutine set_modes(shell)
+  pure subroutine set_modes(shell, stacked)
     !> Gets `mode`, `mode_square`, `centre_normal` and `centre_jacobian`; without positive
     !> determinants there are no modes.
     type(shell_work_t), intent(inout) :: shell
+    !> Whether elements lie on one another.
+    logical, intent(in) :: stacked
 
     real(wp) :: g(3, 2), base(3, 3), director(3), scale, shear, c(2)
     integer :: i, j, q
@@ -66,6 +69,7 @@ contains
         ! A parameter is the motion of the face times half the thickness, as for the thickness.
         scale = norm2(g(:, j))/norm2(director)
         shear = 2.0_wp/3.0_wp*scale*sum(g(:, 3 - j)**2)/(sum(g(:, 3 - j)**2) + sum(director**2))
+        if (stacked) shear = 0.0_wp
         do q = 1, n_column
           do i = 1, 2
             c(i) = dot_product(base(:, j), at%membrane(:, i, q))

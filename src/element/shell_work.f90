@@ -63,9 +63,9 @@ module dd3_element_shell_work
     !> Jacobian determinant in the middle of the columns in the committed configuration, mm3, and
     !> their shares of its sum.
     real(wp) :: column_jacobian(n_column), column_fraction(n_column)
-    !> Factors of the strains that are constant in zeta in the dilatation of a column, 1/mm2, and
-    !> those strains in a dilatation of 1, mm2, `(6,n_column)`.
-    real(wp) :: trace(6, n_column), dilatation(6, n_column)
+    !> Of the strains that are constant in zeta: factors of those in the plane in the dilatation of a
+    !> column, 1/mm2, and the strains of a dilatation of 1, mm2.
+    real(wp) :: trace(3, n_column), dilatation(6, n_column)
     !> Derivatives of the natural strains in the nodal positions, 1/mm:
     !> `operator(24,n_natural,n_column)`.
     real(wp) :: operator(24, n_natural, n_column)

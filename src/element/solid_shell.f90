@@ -1,5 +1,5 @@
 !> Solid-shell: 8 nodes, 2 x 2 columns of integration points through the thickness, assumed natural
-!> transverse shear and thickness strain, mean dilatation of the mid-surface, enhanced thickness strain
+!> transverse shear and thickness strain, mean in-plane dilatation, enhanced thickness strain
 !> and directors that are quadratic along the edges. For small angles between its sections one layer
 !> bends exactly whatever the ratio of its length to its thickness. zeta runs through the thickness,
 !> from nodes 1-4 to nodes 5-8.

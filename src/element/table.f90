@@ -32,6 +32,8 @@ module dd3_element_table
     integer :: n_face = 0, n_face_node = 0
     !> Number of integration points through the thickness if the input may choose it, 0 otherwise.
     integer :: n_thickness_point = 0
+    !> Whether elements of the mesh lie on one another across their thickness; set with the mesh.
+    logical :: stacked = .false.
     !> Number of parameters of the enhanced strain, internal to each element.
     integer :: n_enhanced = 0
     !> Cell type of the VTK file format.

@@ -213,6 +213,7 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    if (model%element%n_enhanced > 0) model%element%stacked = stacked(mesh)
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     call set_columns(model)
@@ -230,6 +231,22 @@ contains
       return
     end do
   end subroutine set_mesh
+
+  !> Return whether a node is at the top of an element and at the bottom of another.
+  pure logical function stacked(mesh)
+    type(mesh_t), intent(in) :: mesh
+
+    logical :: bottom(mesh%n_node), top(mesh%n_node)
+    integer :: e
+
+    bottom = .false.
+    top = .false.
+    do e = 1, mesh%n_element
+      bottom(mesh%connectivity(:4, e)) = .true.
+      top(mesh%connectivity(5:, e)) = .true.
+    end do
+    stacked = any(bottom .and. top)
+  end function stacked
 
   !> Return where the sheet is defined.
   function sheet_location(case) result(at)

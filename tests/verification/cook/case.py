@@ -93,6 +93,6 @@ corner, which limits the order. `hex8` and `solid_shell` are bilinear in their p
 The same panel in plane strain with E = 70 GPa, a yield stress of 243 MPa and linear hardening of 135 MPa (von Mises),
 F = 1800 N in 10 increments, large displacements. Displacement in the middle of the right edge against 1.381 mm,
 extrapolated from `hex27` with up to 32 x 32 elements (1.3806 mm); hex8 and the quadratic elements approach the same
-limit. `solid_shell` has no mean dilatation: it needs a face that is free to move, which plane strain does not give it.
+limit. `solid_shell`, with the mean dilatation of its plane, agrees with `hex8` within 0.02 %: both faces are held.
 """, plastic_study, slow=True, picture="cook_plastic.png"),
 ]

@@ -88,7 +88,7 @@ half the strip. The nodes are displaced, or pressed by a tool. Deck `tests/verif
 """, values),
     Section("V13 Prandtl's punch: refinement and elements", """
 Mean pressure over the yield stress at the end. The thickness of `solid_shell` is along z, its plane that of the
-half-space's surface; it has no mean dilatation and locks in the plastic flow of a thick body: it is for sheets, which
-are free to change their thickness.
+half-space's surface; it averages the dilatation of its plane only and locks in the plastic flow of a thick body: it is
+for sheets, which are free to change their thickness.
 """, study, slow=True, picture="prandtl_elements.png"),
 ]

@@ -88,8 +88,8 @@ bore another 3.4 %: 0.20474 mm. The program's deviation from the closed form is 
 """),
     Section("V11 Thick cylinder: refinement and elements", """
 Small strains (2.4 MPa), displacement of the rim at c = 180 mm against the radial integration. The edges of `hex20` and
-`hex27` on the circles are curved. `solid_shell` has its thickness along the axis; in its plane it is bilinear without a
-mean dilatation. The integration has 0.005 % of error; the errors of the quadratic elements change sign, as they depend
-on where the edge of the plastic zone lies within an element.
+`hex27` on the circles are curved. `solid_shell` has its thickness along the axis. The integration has 0.005 % of error;
+the errors of the quadratic elements change sign, as they depend on where the edge of the plastic zone lies within an
+element.
 """, study, slow=True, picture="thick_cylinder_elements.png"),
 ]
