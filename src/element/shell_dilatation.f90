@@ -45,7 +45,7 @@ contains
       if (.not. shell%column_jacobian(q) > 0.0_wp) cycle
       inverse = metric(base)/shell%column_jacobian(q)**2
       shell%trace(:, q) = inverse(:3)
-      shell%dilatation(:, q) = metric(g)*[1, 1, 2, 1, 2, 2]/3.0_wp
+      shell%dilatation(:, q) = metric(g)*[1.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 2.0_wp, 2.0_wp]/3.0_wp
     end do
     if (all(shell%column_jacobian > 0.0_wp)) then
       shell%column_fraction = shell%column_jacobian/sum(shell%column_jacobian)

@@ -75,8 +75,8 @@ contains
             c(i) = dot_product(base(:, j), at%membrane(:, i, q))
           end do
           shell%mode(bending_strain, 1 + j, q) = -2.0_wp*plane_point(j, q)*scale &
-              *shell%centre_jacobian/shell%column_jacobian(q)*[c(1)**2, c(2)**2, 2*c(1)*c(2)]
-          shell%mode_square(1 + j, q) = sum((2*plane_point(j, q)*scale*base(:, j))**2)
+              *shell%centre_jacobian/shell%column_jacobian(q)*[c(1)**2, c(2)**2, 2.0_wp*c(1)*c(2)]
+          shell%mode_square(1 + j, q) = sum((2.0_wp*plane_point(j, q)*scale*base(:, j))**2)
           shell%mode(shear_of(j), 1 + j, q) = shear
         end do
       end do
