@@ -1,14 +1,18 @@
-!> Mean dilatation of the solid-shell's plane: of the natural strains that are constant through the
-!> thickness those in the plane give all columns of the element the same dilatation.
+!> Mean dilatation of the solid-shell: of the natural strains that are constant through the
+!> thickness all columns of the element get the same dilatation, in which the thickness strain
+!> counts in part.
 !>
-!> In its plane the element is bilinear, and nodes share their thickness: where the element bends in
-!> its plane, the thickness strain cannot balance the in-plane strain, and plastic flow at constant
-!> volume would lock (selective reduced integration, Hughes 1980). The thickness strain keeps its own
-!> dilatation: averaged, too, it would resist no thickness that changes in turns from node to node.
+!> In its plane the element is bilinear, and nodes share their thickness: where it bends in its
+!> plane or thins unevenly, thickness strain and in-plane strain cannot balance in each column, and
+!> plastic flow at constant volume would lock (selective reduced integration, Hughes 1980). With the
+!> whole dilatation averaged, however, nothing but shear would resist a thickness that changes in
+!> turns from node to node. With a fraction f of the thickness strain the elastic volume resists
+!> such turns with (1 - f)^2.
 !>
-!> With the metric G_ij of the committed configuration the in-plane strains have the dilatation G^11
-!> e_11 + G^22 e_22 + 2 G^12 e_12, and the strains of a dilatation are G_ij/3. The map is linear; its
-!> adjoint applies to the resultants.
+!> With the metric G_ij of the committed configuration the dilatation averaged is
+!>   G^11 e_11 + G^22 e_22 + 2 G^12 e_12 + f (G^33 e_33 + 2 G^23 e_23 + 2 G^13 e_13),
+!> and the strains of a dilatation are G_ij/3. The map is linear; its adjoint applies to the
+!> resultants.
 module dd3_element_shell_dilatation
   use dd3_base_kinds, only : wp
   use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
@@ -17,16 +21,17 @@ module dd3_element_shell_dilatation
   private
   public :: set_dilatation, average_dilatation, average_resultants
 
-  !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta; the first
-  !> three are in the plane.
-  integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12], plane(3) = constant(:3)
+  !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta.
+  integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12]
+  !> Fraction f of the thickness strain (docs/solid_shell.md, Formulation).
+  real(wp), parameter :: thickness_fraction = 0.5_wp
 
 contains
 
-  !> Evaluate the metric of the columns; call `column_geometry` first.
+  !> Evaluate the metric of the columns in the committed configuration.
   pure subroutine set_dilatation(shell)
-    !> Gets `column_jacobian`, `column_fraction`, `trace` and `dilatation`; the strains stay as they
-    !> are if a determinant is not positive.
+    !> Holds the committed columns; gets `column_jacobian`, `column_fraction`, `trace` and
+    !> `dilatation`. The strains stay as they are if a determinant is not positive.
     type(shell_work_t), intent(inout) :: shell
 
     real(wp) :: g(3, 3), base(3, 3), inverse(6)
@@ -44,7 +49,7 @@ contains
       shell%column_jacobian(q) = dot_product(g(:, 1), base(:, 1))
       if (.not. shell%column_jacobian(q) > 0.0_wp) cycle
       inverse = metric(base)/shell%column_jacobian(q)**2
-      shell%trace(:, q) = inverse(:3)
+      shell%trace(:, q) = [inverse(:3), thickness_fraction*inverse(4:)]
       shell%dilatation(:, q) = metric(g)*[1.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 2.0_wp, 2.0_wp]/3.0_wp
     end do
     if (all(shell%column_jacobian > 0.0_wp)) then
@@ -64,7 +69,7 @@ contains
         dot_product(g(:, 2), g(:, 3)), dot_product(g(:, 1), g(:, 3))]
   end function metric
 
-  !> Give in-plane strains the mean dilatation.
+  !> Give the strains that are constant in zeta the mean dilatation.
   pure subroutine average_dilatation(shell, strain)
     type(shell_work_t), intent(in) :: shell
     !> Of the columns, or their derivatives.
@@ -74,7 +79,7 @@ contains
     integer :: q
 
     do q = 1, n_column
-      excess(q) = dot_product(shell%trace(:, q), strain(plane, q))
+      excess(q) = dot_product(shell%trace(:, q), strain(constant, q))
     end do
     excess = excess - dot_product(shell%column_fraction, excess)
     do q = 1, n_column
@@ -82,23 +87,21 @@ contains
     end do
   end subroutine average_dilatation
 
-  !> Return the forces conjugate to the natural strains before their dilatation is averaged.
-  pure function average_resultants(shell) result(force)
-    !> Holds the resultants.
+  !> Turn forces conjugate to the natural strains into those before the dilatation is averaged.
+  pure subroutine average_resultants(shell, force)
     type(shell_work_t), intent(in) :: shell
-    real(wp) :: force(n_natural, n_column)
+    real(wp), intent(inout) :: force(n_natural, n_column)
 
     real(wp) :: pressure(n_column)
     integer :: q
 
-    force = shell%resultant(:n_natural, :)
     do q = 1, n_column
       pressure(q) = dot_product(shell%dilatation(:, q), force(constant, q))
     end do
     pressure = pressure - shell%column_fraction*sum(pressure)
     do q = 1, n_column
-      force(plane, q) = force(plane, q) - pressure(q)*shell%trace(:, q)
+      force(constant, q) = force(constant, q) - pressure(q)*shell%trace(:, q)
     end do
-  end function average_resultants
+  end subroutine average_resultants
 
 end module dd3_element_shell_dilatation

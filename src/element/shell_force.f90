@@ -5,7 +5,7 @@
 !> stresses conjugate to the natural strains are w j J (U^-1 G^i) . T . (U^-1 G^j).
 module dd3_element_shell_force
   use dd3_base_kinds, only : inverse_sqrt2, wp
-  use dd3_element_shell_modes, only : mode_forces
+  use dd3_element_shell_modes, only : mode_forces, tilt_operators
   use dd3_element_shell_strain, only : strain_operators
   use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
   use dd3_element_table, only : element_t
@@ -58,6 +58,7 @@ contains
 
     associate (shell => work%shell)
       call strain_operators(work%x_trial, shell)
+      call tilt_operators(shell)
       force = 0.0_wp
       do q = 1, n_column
         do k = 1, n_natural

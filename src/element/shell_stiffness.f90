@@ -15,7 +15,7 @@ module dd3_element_shell_stiffness
   use dd3_element_shell_modes, only : square_strain
   use dd3_element_shell_strain, only : initial_stress
   use dd3_element_shell_work, only : mode_of, mode_shape, n_column, n_general, n_mode, n_natural, &
-      n_parameter, shell_work_t
+      n_parameter, shear_of, shell_work_t, thickness_strain
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : solve_small
@@ -137,7 +137,8 @@ contains
         aa(n_parameter, n_parameter)
 
     real(wp) :: hb(n_general), hm(n_general), coupling(24, n_mode), own(n_mode, n_mode)
-    integer :: b, i, k, m
+    real(wp) :: tilt(24, n_mode), shear(2), factor(2)
+    integer :: b, i, j, k, m
 
     associate (operator => shell%operator(:, :, q), mode => shell%mode(:, :, q), &
         shape => mode_shape(:, q))
@@ -148,6 +149,15 @@ contains
             + shell%mode_square(m, q)*shell%resultant(square_strain(m), q)
         coupling(:, m) = matmul(operator, hm(:n_natural))
       end do
+      ! Second derivatives of the thickness strain.
+      tilt = 0.0_wp
+      shear = [mode(shear_of(1), 2), mode(shear_of(2), 3)]
+      do j = 1, 2
+        factor = shell%resultant(thickness_strain, q)*shear(j)*shell%surface_metric(:, j, q)
+        own(2:3, 1 + j) = own(2:3, 1 + j) + factor*shear
+        tilt(:, 1 + j) = matmul(operator(:, shear_of), factor)
+      end do
+      coupling = coupling + tilt
       do b = 1, 24
         hb = 0.0_wp
         do k = 1, n_natural
@@ -157,7 +167,8 @@ contains
           uu(:, b) = uu(:, b) + hb(k)*operator(:, k)
         end do
         do i = 1, n_parameter
-          au(i, b) = au(i, b) + shape(i)*dot_product(hb, mode(:, mode_of(i)))
+          m = mode_of(i)
+          au(i, b) = au(i, b) + shape(i)*(dot_product(hb, mode(:, m)) + tilt(b, m))
         end do
       end do
       do i = 1, n_parameter

@@ -23,8 +23,9 @@
 module dd3_element_shell_strain
   use dd3_base_kinds, only : wp
   use dd3_element_shell_dilatation, only : average_dilatation, average_resultants, set_dilatation
-  use dd3_element_shell_work, only : columns_t, corner, n_column, n_corner, n_natural, &
-      plane_point, shell_work_t
+  use dd3_element_shell_modes, only : natural_resultants
+  use dd3_element_shell_work, only : bending_strain, columns_t, corner, n_column, n_corner, &
+      n_natural, plane_point, shear_of, shell_work_t, thickness_strain
   implicit none
   private
   public :: column_geometry, set_weights, natural_strains, strain_operators, natural_rates, &
@@ -36,11 +37,6 @@ module dd3_element_shell_strain
   integer, parameter :: along(4) = [1, 1, 2, 2], across(4) = [2, 2, 1, 1]
   !> Position of the edges across, -1 or 1.
   real(wp), parameter :: side(4) = [-1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp]
-  !> Positions of the coefficients of zeta in e_11, e_22 and 2 e_12.
-  integer, parameter :: bending_strain(3) = [2, 5, 8]
-  !> Position of the natural strain that holds the shear of an edge: 2 e_13, 2 e_23.
-  integer, parameter :: shear_of(2) = [12, 11]
-  integer, parameter :: thickness_strain = 10
 
 contains
 
@@ -394,7 +390,8 @@ contains
     integer :: a, b, i, j, k, l, q
 
     weight = 0.25_wp*shell%centre_weight
-    force = average_resultants(shell)
+    force = natural_resultants(shell)
+    call average_resultants(shell, force)
     mm = 0.0_wp
     md = 0.0_wp
     dd = 0.0_wp

@@ -13,11 +13,14 @@ module dd3_element_shell_work
   private
   public :: columns_t, shell_work_t, new_shell_work
   public :: n_column, n_corner, n_natural, n_general, n_mode, n_parameter, corner, plane_point
-  public :: mode_of, mode_shape
+  public :: bending_strain, thickness_strain, shear_of, mode_of, mode_shape
 
   !> Number of columns of points, of corners in the plane, and of generalised strains without and
   !> with the enhanced one.
   integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13
+  !> Positions of the coefficients of zeta in e_11, e_22 and 2 e_12; of e_33; and of the shears 2
+  !> e_13, 2 e_23 of the edges along xi and eta.
+  integer, parameter :: bending_strain(3) = [2, 5, 8], thickness_strain = 10, shear_of(2) = [12, 11]
   !> Number of modes of enhanced strain (thickness, directors along xi and along eta), and of their
   !> parameters.
   integer, parameter :: n_mode = 3, n_parameter = 7
@@ -60,12 +63,18 @@ module dd3_element_shell_work
     !> `mode(n_general,n_mode,n_column)`; and the second derivatives of the coefficients of zeta^2,
     !> 1/mm4: `mode_square(n_mode,n_column)`.
     real(wp) :: mode(n_general, n_mode, n_column), mode_square(n_mode, n_column)
+    !> In the committed configuration: contravariant metric of the mid-surface, 1/mm2, and g_13,
+    !> g_23, mm2.
+    real(wp) :: surface_metric(2, 2, n_column), transverse_metric(2, n_column)
+    !> Derivatives of the thickness strain in the shear strains 2 e_13, 2 e_23, due to the modes of
+    !> the directors.
+    real(wp) :: tilt(2, n_column)
     !> Jacobian determinant in the middle of the columns in the committed configuration, mm3, and
     !> their shares of its sum.
     real(wp) :: column_jacobian(n_column), column_fraction(n_column)
-    !> Of the strains that are constant in zeta: factors of those in the plane in the dilatation of a
-    !> column, 1/mm2, and the strains of a dilatation of 1, mm2.
-    real(wp) :: trace(3, n_column), dilatation(6, n_column)
+    !> Of the strains that are constant in zeta: their factors in the dilatation of a column that is
+    !> averaged, 1/mm2, and the strains of a dilatation of 1, mm2.
+    real(wp) :: trace(6, n_column), dilatation(6, n_column)
     !> Derivatives of the natural strains in the nodal positions, 1/mm:
     !> `operator(24,n_natural,n_column)`.
     real(wp) :: operator(24, n_natural, n_column)

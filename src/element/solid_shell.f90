@@ -1,6 +1,6 @@
 !> Solid-shell: 8 nodes, 2 x 2 columns of integration points through the thickness, assumed natural
-!> transverse shear and thickness strain, mean in-plane dilatation, enhanced thickness strain
-!> and directors that are quadratic along the edges. For small angles between its sections one layer
+!> transverse shear and thickness strain, mean dilatation, enhanced thickness strain and
+!> directors that are quadratic along the edges. For small angles between its sections one layer
 !> bends exactly whatever the ratio of its length to its thickness. zeta runs through the thickness,
 !> from nodes 1-4 to nodes 5-8.
 !>
@@ -8,8 +8,8 @@
 !> `shell_modes`), `shell_force`, `shell_stiffness`.
 !> Sources: Dvorkin & Bathe 1984 and Hauptmann & Schweizerhof 1998 (assumed shear), Betsch & Stein
 !> 1995 (assumed thickness strain), Hughes 1980 (mean dilatation), Buechter, Ramm & Roehl 1994 and
-!> Klinkel & Wagner 1997 (enhanced thickness strain), Simo & Rifai 1990 (enhanced strain), Katili 1993
-!> (directors).
+!> Klinkel & Wagner 1997 (enhanced thickness strain), Simo & Rifai 1990 (enhanced strain), Katili
+!> 1993 (directors).
 module dd3_element_solid_shell
   use dd3_base_kinds, only : wp
   use dd3_element_gauss, only : gauss_legendre

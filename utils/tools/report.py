@@ -77,8 +77,9 @@ def extent(net):
     """Return the smallest and the largest coordinates of the patches."""
     places = np.stack(grid(5))
     points = points_at(net, *places).reshape(-1, 3)
+    count = places.shape[1]
     low, high = points.argmin(axis=0), points.argmax(axis=0)
-    return tuple(np.array([extreme(net[[k // places.shape[1]]], axis, sign, places[:, k % places.shape[1]]) for axis, k in enumerate(ends)])
+    return tuple(np.array([extreme(net[[k // count]], axis, sign, places[:, k % count]) for axis, k in enumerate(ends)])
                  for sign, ends in ((-1, low), (1, high)))
 
 
