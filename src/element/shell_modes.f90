@@ -15,9 +15,9 @@
 !> e_11. Its second derivative times the stress is the initial stress of b: without it a stretched
 !> sheet would be unstable at a tangent modulus of twice the stress, not of the stress.
 !>
-!> They also add to e_33. With the contravariant metric a^ij of the mid-surface a director has the
-!> square g_33 = (normal part)^2 + a^ij g_i3 g_j3, in which b changes g_i3 by its shear s_i = 2/3 b:
-!>   e_33 += a^ij (g_i3 + 2 e_i3 + s_i/2) s_j,   e_i3 without the new part.
+!> They also add to e_33. With the contravariant metric a^ij of the mid-surface the mean director
+!> has the square g_33 = (normal part)^2 + a^ij g_i3 g_j3, in which b changes g_i3 by its shear s_i:
+!>   e_33 += a^ij (g_i3 + 2 e_i3 + s_i/2) s_j,   s_i = 2/3 b,   e_i3 without it.
 !> Where b relieves the shear of a tilt between two tools the fibres are upright again and have
 !> their former length. Without these terms the pressure would do work, and the sheet would buckle.
 !>
@@ -70,12 +70,8 @@ contains
       base = base/shell%centre_jacobian
       shell%centre_normal = base(:, 3)
       shell%mode(n_general, 1, :) = 1.0_wp
-      do q = 1, n_column
-        associate (m => at%membrane(:, :, q))
-          shell%surface_metric(:, :, q) = contravariant_metric(m)
-          shell%transverse_metric(:, q) = matmul(at%director(:, q), m)
-        end associate
-      end do
+      shell%surface_metric = contravariant_metric(g)
+      shell%transverse_metric = matmul(director, g)
       do j = 1, 2
         ! A parameter is the motion of the face times half the thickness, as for the thickness.
         scale = norm2(g(:, j))/norm2(director)
@@ -119,11 +115,11 @@ contains
 
     do q = 1, n_column
       amount = amounts(enhanced, q)
-      transverse = shell%transverse_metric(:, q) + shell%strain(shear_of, q)
+      transverse = shell%transverse_metric + shell%strain(shear_of, q)
       do j = 1, 2
         shear(j) = amount(1 + j)*shell%mode(shear_of(j), 1 + j, q)
       end do
-      shell%tilt(:, q) = matmul(shell%surface_metric(:, :, q), shear)
+      shell%tilt(:, q) = matmul(shell%surface_metric, shear)
       shell%strain(thickness_strain, q) = shell%strain(thickness_strain, q) &
           + dot_product(shell%tilt(:, q), transverse + 0.5_wp*shear)
       do m = 1, n_mode
@@ -133,7 +129,7 @@ contains
         shell%strain(k, q) = shell%strain(k, q) + 0.5_wp*shell%mode_square(m, q)*amount(m)**2
         shell%mode(k, m, q) = shell%mode_square(m, q)*amount(m)
       end do
-      slope = matmul(shell%surface_metric(:, :, q), transverse + shear)
+      slope = matmul(shell%surface_metric, transverse + shear)
       do j = 1, 2
         shell%mode(thickness_strain, 1 + j, q) = shell%mode(shear_of(j), 1 + j, q)*slope(j)
       end do

@@ -153,7 +153,7 @@ contains
       tilt = 0.0_wp
       shear = [mode(shear_of(1), 2), mode(shear_of(2), 3)]
       do j = 1, 2
-        factor = shell%resultant(thickness_strain, q)*shear(j)*shell%surface_metric(:, j, q)
+        factor = shell%resultant(thickness_strain, q)*shear(j)*shell%surface_metric(:, j)
         own(2:3, 1 + j) = own(2:3, 1 + j) + factor*shear
         tilt(:, 1 + j) = matmul(operator(:, shear_of), factor)
       end do

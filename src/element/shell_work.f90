@@ -63,9 +63,9 @@ module dd3_element_shell_work
     !> `mode(n_general,n_mode,n_column)`; and the second derivatives of the coefficients of zeta^2,
     !> 1/mm4: `mode_square(n_mode,n_column)`.
     real(wp) :: mode(n_general, n_mode, n_column), mode_square(n_mode, n_column)
-    !> In the committed configuration: contravariant metric of the mid-surface, 1/mm2, and g_13,
-    !> g_23, mm2.
-    real(wp) :: surface_metric(2, 2, n_column), transverse_metric(2, n_column)
+    !> Contravariant metric of the mid-surface, 1/mm2, and g_13, g_23 of the mean director, mm2, at
+    !> the centre in the committed configuration.
+    real(wp) :: surface_metric(2, 2), transverse_metric(2)
     !> Derivatives of the thickness strain in the shear strains 2 e_13, 2 e_23, due to the modes of
     !> the directors.
     real(wp) :: tilt(2, n_column)
