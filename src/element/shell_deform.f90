@@ -7,8 +7,9 @@
 !> e_ij the natural strains with the modes of `shell_modes`, j and 0 the Jacobian determinant and
 !> the centre of the element. Of the thickness strain one parameter is sufficient on parallelograms;
 !> the two others make bending exact on any flat element. Then C = I + 2 e, U = C^(1/2), and the
-!> strain increment of the material is ln U. The material axes rotate with R of the compatible F = R
-!> U_F.
+!> strain increment of the material is ln U. The material axes of a column rotate with R of the
+!> compatible F = R U_F in its middle: directors turn with the mid-surface but for their shear,
+!> which is constant in zeta.
 module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
@@ -35,6 +36,7 @@ contains
     !> assumed strain.
     type(verdict_t), intent(out) :: verdict
 
+    real(wp) :: rotation(3, 3)
     integer :: k, p, q
 
     verdict%outcome = verdict_converged
@@ -49,9 +51,14 @@ contains
           p = (q - 1)*n + k
           call deform_point(q, p, element%point(3, p), rotation_committed(:, :, p), &
               element%weight(p), work, verdict)
-          if (verdict%outcome == verdict_converged) cycle
           verdict%point = p
-          return
+          if (verdict%outcome /= verdict_converged) return
+        end do
+        call rotate_column(shell, q, rotation, verdict)
+        if (verdict%outcome /= verdict_converged) return
+        do k = 1, n
+          p = (q - 1)*n + k
+          call rotate_axes(rotation, rotation_committed(:, :, p), work%rotation(:, :, p))
         end do
       end do
     end associate
@@ -85,16 +92,16 @@ contains
     type(element_work_t), intent(inout) :: work
     type(verdict_t), intent(inout) :: verdict
 
-    real(wp) :: base(3, 3), normal(3), deformation(3, 3), jacobian, trial_jacobian
+    real(wp) :: base(3, 3), normal(3), jacobian
     real(wp) :: green(6), strain(6), inverse_stretch(6)
     logical :: positive
     integer :: i
 
     associate (shell => work%shell)
-      call point_base(shell, q, zeta, base, deformation, jacobian, trial_jacobian)
-      if (.not. (jacobian > 0.0_wp .and. trial_jacobian > 0.0_wp)) then
-        verdict%outcome = verdict_retry
-        verdict%reason = "an element is turned inside out"
+      call contravariant_base(shell%committed, q, zeta, base, jacobian)
+      if (.not. (jacobian > 0.0_wp &
+          .and. determinant(covariant_base(shell%trial, q, zeta)) > 0.0_wp)) then
+        call refuse_inverted(verdict)
         return
       end if
       base = matmul(transpose(axes), base)
@@ -115,42 +122,60 @@ contains
       end do
       shell%normal(:, p) = symmetric_times(inverse_stretch, normal)
     end associate
-    call rotate_axes(polar_rotation(deformation), axes, work%rotation(:, :, p))
   end subroutine deform_point
 
-  !> Evaluate the contravariant base of the committed configuration at a point, and the compatible
-  !> deformation gradient F = g_i (x) G^i.
-  pure subroutine point_base(shell, q, zeta, base, deformation, jacobian, trial_jacobian)
+  !> Evaluate the rotation of a column in its middle, R of F = g_i (x) G^i.
+  subroutine rotate_column(shell, q, rotation, verdict)
     type(shell_work_t), intent(in) :: shell
     !> Column.
     integer, intent(in) :: q
+    real(wp), intent(out) :: rotation(3, 3)
+    type(verdict_t), intent(inout) :: verdict
+
+    real(wp) :: g(3, 3), base(3, 3), jacobian
+
+    rotation = 0.0_wp
+    call contravariant_base(shell%committed, q, 0.0_wp, base, jacobian)
+    g = covariant_base(shell%trial, q, 0.0_wp)
+    if (jacobian > 0.0_wp .and. determinant(g) > 0.0_wp) then
+      rotation = polar_rotation(matmul(g, transpose(base)))
+    else
+      call refuse_inverted(verdict)
+    end if
+  end subroutine rotate_column
+
+  !> State that a Jacobian determinant is not positive.
+  subroutine refuse_inverted(verdict)
+    type(verdict_t), intent(inout) :: verdict
+
+    verdict%outcome = verdict_retry
+    verdict%reason = "an element is turned inside out"
+  end subroutine refuse_inverted
+
+  !> Evaluate the contravariant base at a point.
+  pure subroutine contravariant_base(at, q, zeta, base, jacobian)
+    type(columns_t), intent(in) :: at
+    !> Column.
+    integer, intent(in) :: q
     real(wp), intent(in) :: zeta
-    !> Base vectors as columns, 1/mm.
+    !> Base vectors as columns, 1/mm; zero if they do not exist.
     real(wp), intent(out) :: base(3, 3)
-    real(wp), intent(out) :: deformation(3, 3)
-    !> Jacobian determinants, mm3; the first is zero or less if the base does not exist.
-    real(wp), intent(out) :: jacobian, trial_jacobian
+    !> Jacobian determinant, mm3; zero or less if the base does not exist.
+    real(wp), intent(out) :: jacobian
 
     real(wp) :: g(3, 3)
-    integer :: i, j
 
-    g = covariant_base(shell%committed, q, zeta)
+    g = covariant_base(at, q, zeta)
     base(:, 1) = cross(g(:, 2), g(:, 3))
     base(:, 2) = cross(g(:, 3), g(:, 1))
     base(:, 3) = cross(g(:, 1), g(:, 2))
     jacobian = dot_product(g(:, 1), base(:, 1))
-    trial_jacobian = 0.0_wp
-    deformation = 0.0_wp
-    if (.not. jacobian > 0.0_wp) return
-    base = base/jacobian
-    g = covariant_base(shell%trial, q, zeta)
-    trial_jacobian = determinant(g)
-    do j = 1, 3
-      do i = 1, 3
-        deformation(:, j) = deformation(:, j) + g(:, i)*base(j, i)
-      end do
-    end do
-  end subroutine point_base
+    if (jacobian > 0.0_wp) then
+      base = base/jacobian
+    else
+      base = 0.0_wp
+    end if
+  end subroutine contravariant_base
 
   !> Return dx/dxi, dx/deta, dx/dzeta at a point as columns, mm.
   pure function covariant_base(at, q, zeta) result(g)

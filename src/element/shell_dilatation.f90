@@ -24,7 +24,7 @@ module dd3_element_shell_dilatation
   !> Coefficients of e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13 that are constant in zeta.
   integer, parameter :: constant(6) = [1, 4, 7, 10, 11, 12]
   !> Fraction f of the thickness strain (docs/solid_shell.md, Formulation).
-  real(wp), parameter :: thickness_fraction = 0.5_wp
+  real(wp), parameter :: thickness_fraction = 1.0_wp/3.0_wp
 
 contains
 

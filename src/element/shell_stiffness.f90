@@ -137,7 +137,7 @@ contains
         aa(n_parameter, n_parameter)
 
     real(wp) :: hb(n_general), hm(n_general), coupling(24, n_mode), own(n_mode, n_mode)
-    real(wp) :: tilt(24, n_mode), shear(2), factor(2)
+    real(wp) :: tilt(24, n_mode), row(n_mode), shear(2), factor(2)
     integer :: b, i, j, k, m
 
     associate (operator => shell%operator(:, :, q), mode => shell%mode(:, :, q), &
@@ -166,10 +166,11 @@ contains
         do k = 1, n_natural
           uu(:, b) = uu(:, b) + hb(k)*operator(:, k)
         end do
-        do i = 1, n_parameter
-          m = mode_of(i)
-          au(i, b) = au(i, b) + shape(i)*(dot_product(hb, mode(:, m)) + tilt(b, m))
+        row = tilt(b, :)
+        do m = 1, n_mode
+          row(m) = row(m) + dot_product(hb, mode(:, m))
         end do
+        au(:, b) = au(:, b) + shape*row(mode_of)
       end do
       do i = 1, n_parameter
         ua(:, i) = ua(:, i) + shape(i)*coupling(:, mode_of(i))
