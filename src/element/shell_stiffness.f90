@@ -12,10 +12,10 @@ module dd3_element_shell_stiffness
   use dd3_base_kinds, only : half_sqrt2, wp
   use dd3_element_moduli, only : material_moduli
   use dd3_element_shell_force, only : point_operator, shell_force
-  use dd3_element_shell_modes, only : square_strain
+  use dd3_element_shell_modes, only : second_derivatives
   use dd3_element_shell_strain, only : initial_stress
   use dd3_element_shell_work, only : mode_of, mode_shape, n_column, n_general, n_mode, n_natural, &
-      n_parameter, shear_of, shell_work_t, thickness_strain
+      n_parameter, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : solve_small
@@ -31,8 +31,8 @@ contains
     !> Sets `stiffness`, `enhanced_gain`, `enhanced_offset`, `condensed_force`, and the forces.
     type(element_work_t), intent(inout) :: work
 
-    real(wp) :: moduli(n_general, n_general), uu(24, 24), ua(24, n_parameter), &
-        au(n_parameter, 24), aa(n_parameter, n_parameter)
+    real(wp) :: moduli(n_general, n_general), uu(24, 24), aa(n_parameter, n_parameter)
+    real(wp), dimension(24, n_parameter) :: ua, au
     integer :: q
 
     call shell_force(element, work)
@@ -132,49 +132,36 @@ contains
     !> N mm.
     real(wp), intent(in) :: moduli(n_general, n_general)
     type(shell_work_t), intent(in) :: shell
-    !> Derivatives of the forces of nodes and parameters, in nodes and parameters.
-    real(wp), intent(inout) :: uu(24, 24), ua(24, n_parameter), au(n_parameter, 24), &
-        aa(n_parameter, n_parameter)
+    !> Derivatives of the forces of nodes and parameters, in nodes and parameters; au transposed.
+    real(wp), intent(inout) :: uu(24, 24), aa(n_parameter, n_parameter)
+    real(wp), dimension(24, n_parameter), intent(inout) :: ua, au
 
-    real(wp) :: hb(n_general), hm(n_general), coupling(24, n_mode), own(n_mode, n_mode)
-    real(wp) :: tilt(24, n_mode), row(n_mode), shear(2), factor(2)
-    integer :: b, i, j, k, m
+    real(wp) :: hb(n_natural), hm(n_general, n_mode), mh(n_general, n_mode), own(n_mode, n_mode)
+    real(wp), dimension(24, n_mode) :: second, node_mode, mode_node
+    integer :: b, i, k, m
 
     associate (operator => shell%operator(:, :, q), mode => shell%mode(:, :, q), &
         shape => mode_shape(:, q))
-      do m = 1, n_mode
-        hm = matmul(moduli, mode(:, m))
-        own(:, m) = matmul(hm, mode)
-        if (square_strain(m) > 0) own(m, m) = own(m, m) &
-            + shell%mode_square(m, q)*shell%resultant(square_strain(m), q)
-        coupling(:, m) = matmul(operator, hm(:n_natural))
-      end do
-      ! Second derivatives of the thickness strain.
-      tilt = 0.0_wp
-      shear = [mode(shear_of(1), 2), mode(shear_of(2), 3)]
-      do j = 1, 2
-        factor = shell%resultant(thickness_strain, q)*shear(j)*shell%surface_metric(:, j)
-        own(2:3, 1 + j) = own(2:3, 1 + j) + factor*shear
-        tilt(:, 1 + j) = matmul(operator(:, shear_of), factor)
-      end do
-      coupling = coupling + tilt
       do b = 1, 24
         hb = 0.0_wp
         do k = 1, n_natural
-          hb = hb + operator(b, k)*moduli(:, k)
+          hb = hb + operator(b, k)*moduli(:n_natural, k)
         end do
         do k = 1, n_natural
           uu(:, b) = uu(:, b) + hb(k)*operator(:, k)
         end do
-        row = tilt(b, :)
-        do m = 1, n_mode
-          row(m) = row(m) + dot_product(hb, mode(:, m))
-        end do
-        au(:, b) = au(:, b) + shape*row(mode_of)
       end do
+      call second_derivatives(shell, q, own, second)
+      hm = matmul(moduli, mode)
+      mh = matmul(transpose(moduli), mode)
+      own = own + matmul(transpose(mode), hm)
+      node_mode = second + matmul(operator, hm(:n_natural, :))
+      mode_node = second + matmul(operator, mh(:n_natural, :))
       do i = 1, n_parameter
-        ua(:, i) = ua(:, i) + shape(i)*coupling(:, mode_of(i))
-        aa(:, i) = aa(:, i) + shape(i)*shape*own(mode_of, mode_of(i))
+        m = mode_of(i)
+        ua(:, i) = ua(:, i) + shape(i)*node_mode(:, m)
+        au(:, i) = au(:, i) + shape(i)*mode_node(:, m)
+        aa(:, i) = aa(:, i) + shape(i)*shape*own(mode_of, m)
       end do
     end associate
   end subroutine add_column
@@ -199,7 +186,8 @@ contains
 
   !> Eliminate the enhanced parameters. If their stiffness is singular they keep their values.
   subroutine condense(ua, au, aa, uu, work)
-    real(wp), intent(in) :: ua(24, n_parameter), au(n_parameter, 24), aa(n_parameter, n_parameter)
+    !> `au` is transposed.
+    real(wp), intent(in) :: ua(24, n_parameter), au(24, n_parameter), aa(n_parameter, n_parameter)
     real(wp), intent(inout) :: uu(24, 24)
     !> Holds the forces of the parameters; sets gain, offset and condensed force.
     type(element_work_t), intent(inout) :: work
@@ -209,7 +197,7 @@ contains
     integer :: b, i
 
     matrix = aa
-    solution(:, 1:24) = au
+    solution(:, 1:24) = transpose(au)
     solution(:, 25) = work%enhanced_force
     call solve_small(n_parameter, 25, matrix, solution, regular)
     if (.not. regular) solution = 0.0_wp

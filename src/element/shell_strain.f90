@@ -22,7 +22,6 @@
 !> d_A = (top - bottom)/2 at its corners.
 module dd3_element_shell_strain
   use dd3_base_kinds, only : wp
-  use dd3_element_shell_dilatation, only : average_dilatation, average_resultants, set_dilatation
   use dd3_element_shell_modes, only : natural_resultants
   use dd3_element_shell_work, only : bending_strain, columns_t, corner, n_column, n_corner, &
       n_natural, plane_point, shear_of, shell_work_t, thickness_strain
@@ -53,7 +52,6 @@ contains
     call set_columns(shell, mid, director, shell%committed)
     call split(x_trial, mid, director)
     call set_columns(shell, mid, director, shell%trial)
-    call set_dilatation(shell)
   end subroutine column_geometry
 
   !> Set the weight of the mean director in the mean thickness strain, and the factors of the
@@ -118,7 +116,6 @@ contains
       call in_plane_squares(motion, q, strain(:, q))
     end do
     call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
-    call average_dilatation(shell, strain)
     do q = 1, n_column
       shell%strain(:, q) = [shell%strain_factor*strain(:, q), 0.0_wp]
     end do
@@ -143,7 +140,6 @@ contains
       call in_plane_strains(shell%trial, motion, q, strain(:, q))
     end do
     call assumed_strains(mid, director, u, ud, shell, strain)
-    call average_dilatation(shell, strain)
     do q = 1, n_column
       strain(:, q) = shell%strain_factor*strain(:, q)
     end do
@@ -312,9 +308,6 @@ contains
         call to_nodes(row)
       end associate
     end do
-    do j = 1, size(shell%operator, 1)
-      call average_dilatation(shell, shell%operator(j, :, :))
-    end do
   end subroutine strain_operators
 
   !> Add the derivatives of a scalar product of a vector with interpolated corner vectors.
@@ -391,7 +384,6 @@ contains
 
     weight = 0.25_wp*shell%centre_weight
     force = natural_resultants(shell)
-    call average_resultants(shell, force)
     mm = 0.0_wp
     md = 0.0_wp
     dd = 0.0_wp

@@ -13,30 +13,33 @@ module dd3_element_shell_work
   private
   public :: columns_t, shell_work_t, new_shell_work
   public :: n_column, n_corner, n_natural, n_general, n_mode, n_parameter, corner, plane_point
-  public :: bending_strain, thickness_strain, shear_of, mode_of, mode_shape
+  public :: membrane_strain, bending_strain, thickness_strain, shear_of, mode_of, mode_shape
 
   !> Number of columns of points, of corners in the plane, and of generalised strains without and
   !> with the enhanced one.
   integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13
-  !> Positions of the coefficients of zeta in e_11, e_22 and 2 e_12; of e_33; and of the shears 2
-  !> e_13, 2 e_23 of the edges along xi and eta.
-  integer, parameter :: bending_strain(3) = [2, 5, 8], thickness_strain = 10, shear_of(2) = [12, 11]
-  !> Number of modes of enhanced strain (thickness, directors along xi and along eta), and of their
-  !> parameters.
-  integer, parameter :: n_mode = 3, n_parameter = 7
+  !> Positions of the coefficients of 1 and of zeta in e_11, e_22 and 2 e_12; of e_33; and of the
+  !> shears 2 e_13, 2 e_23 of the edges along xi and eta.
+  integer, parameter :: membrane_strain(3) = [1, 4, 7], bending_strain(3) = [2, 5, 8], &
+      thickness_strain = 10, shear_of(2) = [12, 11]
+  !> Number of modes of enhanced strain (thickness, directors along xi and along eta, mid-surface
+  !> along xi and along eta), and of their parameters.
+  integer, parameter :: n_mode = 5, n_parameter = 11
   !> xi and eta of the corners in the order of the nodes; those of the columns are smaller by
   !> sqrt(3).
   real(wp), parameter :: corner(2, n_corner) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, &
       1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, n_corner])
   real(wp), parameter :: plane_point(2, n_column) = corner/sqrt(3.0_wp)
   !> Mode of a parameter, and its shape in the plane at the columns: 1, xi, eta for the thickness,
-  !> 1 at an edge and 0 at the one across for the directors.
-  integer, parameter :: mode_of(n_parameter) = [1, 1, 1, 2, 2, 3, 3]
+  !> 1 at an edge and 0 at the one across for directors and mid-surface.
+  integer, parameter :: mode_of(n_parameter) = [1, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
   integer, private :: i
-  real(wp), parameter :: mode_shape(n_parameter, n_column) = reshape([([1.0_wp, &
-      plane_point(1, i), plane_point(2, i), &
+  real(wp), parameter :: edge_shape(4, n_column) = reshape([( &
       0.5_wp - 0.5_wp*plane_point(2, i), 0.5_wp + 0.5_wp*plane_point(2, i), &
-      0.5_wp - 0.5_wp*plane_point(1, i), 0.5_wp + 0.5_wp*plane_point(1, i)], i=1, n_column)], &
+      0.5_wp - 0.5_wp*plane_point(1, i), 0.5_wp + 0.5_wp*plane_point(1, i), i=1, n_column)], &
+      [4, n_column])
+  real(wp), parameter :: mode_shape(n_parameter, n_column) = reshape([([1.0_wp, &
+      plane_point(:, i), edge_shape(:, i), edge_shape(:, i)], i=1, n_column)], &
       [n_parameter, n_column])
 
   !> Position as a function of zeta in the columns, x = x_0 + zeta d: tangents and directors.
@@ -60,21 +63,15 @@ module dd3_element_shell_work
     !> Generalised strains: `strain(n_general,n_column)`.
     real(wp) :: strain(n_general, n_column)
     !> Their derivatives in the amounts of the modes of enhanced strain, 1/mm2:
-    !> `mode(n_general,n_mode,n_column)`; and the second derivatives of the coefficients of zeta^2,
-    !> 1/mm4: `mode_square(n_mode,n_column)`.
-    real(wp) :: mode(n_general, n_mode, n_column), mode_square(n_mode, n_column)
+    !> `mode(n_general,n_mode,n_column)`; and the squares of the derivatives in xi and eta of the
+    !> motion that the modes of an edge add, for amounts of 1, 1/mm4: `mode_square(2,n_column)`.
+    real(wp) :: mode(n_general, n_mode, n_column), mode_square(2, n_column)
     !> Contravariant metric of the mid-surface, 1/mm2, and g_13, g_23 of the mean director, mm2, at
     !> the centre in the committed configuration.
     real(wp) :: surface_metric(2, 2), transverse_metric(2)
     !> Derivatives of the thickness strain in the shear strains 2 e_13, 2 e_23, due to the modes of
     !> the directors.
     real(wp) :: tilt(2, n_column)
-    !> Jacobian determinant in the middle of the columns in the committed configuration, mm3, and
-    !> their shares of its sum.
-    real(wp) :: column_jacobian(n_column), column_fraction(n_column)
-    !> Of the strains that are constant in zeta: their factors in the dilatation of a column that is
-    !> averaged, 1/mm2, and the strains of a dilatation of 1, mm2.
-    real(wp) :: trace(6, n_column), dilatation(6, n_column)
     !> Derivatives of the natural strains in the nodal positions, 1/mm:
     !> `operator(24,n_natural,n_column)`.
     real(wp) :: operator(24, n_natural, n_column)

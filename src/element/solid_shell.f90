@@ -1,15 +1,15 @@
 !> Solid-shell: 8 nodes, 2 x 2 columns of integration points through the thickness, assumed natural
-!> transverse shear and thickness strain, mean dilatation, enhanced thickness strain and
-!> directors that are quadratic along the edges. For small angles between its sections one layer
-!> bends exactly whatever the ratio of its length to its thickness. zeta runs through the thickness,
-!> from nodes 1-4 to nodes 5-8.
+!> transverse shear and thickness strain, enhanced thickness strain, mid-surface and directors that
+!> are quadratic along the edges. For small angles between its sections one layer bends exactly
+!> whatever the ratio of its length to its thickness. zeta runs through the thickness, from nodes
+!> 1-4 to nodes 5-8.
 !>
-!> Kernels: `shell_deform` (strain increments, with `shell_strain`, `shell_dilatation` and
-!> `shell_modes`), `shell_force`, `shell_stiffness`.
+!> Kernels: `shell_deform` (strain increments, with `shell_strain` and `shell_modes`),
+!> `shell_force`, `shell_stiffness`.
 !> Sources: Dvorkin & Bathe 1984 and Hauptmann & Schweizerhof 1998 (assumed shear), Betsch & Stein
-!> 1995 (assumed thickness strain), Hughes 1980 (mean dilatation), Buechter, Ramm & Roehl 1994 and
-!> Klinkel & Wagner 1997 (enhanced thickness strain), Simo & Rifai 1990 (enhanced strain), Katili
-!> 1993 (directors).
+!> 1995 (assumed thickness strain), Buechter, Ramm & Roehl 1994 and Klinkel & Wagner 1997 (enhanced
+!> thickness strain), Simo & Rifai 1990 and Andelfinger & Ramm 1993 (enhanced membrane strain),
+!> Katili 1993 (directors).
 module dd3_element_solid_shell
   use dd3_base_kinds, only : wp
   use dd3_element_gauss, only : gauss_legendre
