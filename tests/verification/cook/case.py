@@ -87,12 +87,13 @@ displacements. Deck `tests/verification/cook/case.dat`.
 """, values),
     Section("V14 Cook's membrane: refinement and elements", """
 Displacement in the middle of the right edge against the extrapolated one. The stress is singular at the upper left
-corner, which limits the order. `hex8` and `solid_shell` are bilinear in their plane and bend too stiffly there.
+corner, which limits the order. The shear strain of `hex8` and `solid_shell` is bilinear in their plane: they bend too stiffly there.
 """, study, slow=True, picture="cook_elements.png"),
     Section("V14 Cook's membrane, elastoplastic: refinement and elements", """
 The same panel in plane strain with E = 70 GPa, a yield stress of 243 MPa and linear hardening of 135 MPa (von Mises),
 F = 1800 N in 10 increments, large displacements. Displacement in the middle of the right edge against 1.381 mm,
 extrapolated from `hex27` with up to 32 x 32 elements (1.3806 mm); hex8 and the quadratic elements approach the same
-limit. `solid_shell`, with the mean dilatation of its plane, agrees with `hex8` within 0.02 %: both faces are held.
+limit, `solid_shell`, whose mid-surface is quadratic along the edges, with a third less error than `hex8`. Both faces
+are held.
 """, plastic_study, slow=True, picture="cook_plastic.png"),
 ]

@@ -29,7 +29,9 @@ def values(bench):
     heights, forces, smooth = run(bench, 0.0)
     _, rough_forces, rough = run(bench, 0.15)
     result = [Value(f"height at {force} kN, mm", height, interpolate(forces, heights, force), 0.1)
-              for force, height in PUBLISHED]
+              for force, height in PUBLISHED[:-1]]
+    force, height = PUBLISHED[-1]
+    result.append(Value(f"force at {height} mm, near its maximum, kN", force, interpolate(heights, forces, height), 0.1))
     profiles = [("µ = 0", smooth), ("µ = 0.15", rough)]
     return Outcome(result, pictures=[("punch_force.png", lambda axes: draw_force(axes, heights, forces)),
                                      ("punch_thinning.png", lambda axes: draw_thinning(axes, profiles))])
@@ -60,10 +62,10 @@ Sheet of 1 mm, clamped at a radius of 59.18 mm, where the die's shoulder of 6.35
 E = 69004 MPa, ν = 0.3, σ = 589 (1e-4 + p)^0.216 MPa, von Mises; a quarter, one layer of `solid_shell`, 180 elements.
 The test of Wagoner, Nakamachi and Lee (1988) as in the validation manual of Code_Aster, SSNV501 (V6.04.501), model A:
 the displacement of the punch at given forces, without friction, read from a curve within 5 % and compared there within
-10 %. Deck `tests/verification/hemispherical_punch/case.dat`.
+10 %; at the last reading the force, which hardly rises any more. With 10 x 20 elements in place of 6 x 12 the largest
+force is 0.3 % higher. Deck `tests/verification/hemispherical_punch/case.dat`.
 """, values, slow=True, after="""
 Code to code: no number is known for the strains. Friction keeps the sheet on the pole from stretching, and the place of
-the largest thinning moves outwards: at 30 mm a thickness strain of -0.45 at the pole without friction, of -0.36 at an
-initial radius of 10 mm with µ = 0.15.
+the largest thinning moves outwards.
 """),
 ]
