@@ -18,8 +18,8 @@ def run(bench, friction, elements):
     """Run the strip; return displacements of both ends, mm, and force, N/mm, in the draw."""
     found = bench.run(f"under_tension_{friction:g}_{elements}", HERE / "case.dat",
                       {"friction": friction, "tension": TENSION, "elements": elements})
-    places, starts = ([sign * u for u in found.column(name, "draw")] for sign, name in ((-1, "end_uz"), (1, "start_ux")))
-    return [z - places[0] for z in places], starts, [-force for force in found.column("end_rz", "draw")]
+    ends, starts = found.column("end_uz", "draw"), found.column("start_ux", "draw")
+    return [ends[0] - z for z in ends], starts, [-force for force in found.column("end_rz", "draw")]
 
 
 def steady(places, forces):
@@ -41,16 +41,15 @@ def elongation(places, starts):
 def values(bench):
     """Compare the steady force and the elongation with those of the fibres."""
     result, curves = [], []
-    for friction, elements, length in ((0.0, 80, "half a thickness"), (0.144, 80, "half a thickness"),
-                                       (0.0, 20, "two thicknesses")):
+    for friction, elements, length in ((0.0, 80, "t/2"), (0.144, 80, "t/2"), (0.0, 20, "2 t")):
         growth = math.exp(friction * math.pi / 2)
         (_, expected), stretch = fibres.bend_and_unbend(TENSION, MIDDLE, growth)
         places, starts, forces = run(bench, friction, elements)
         found, name = steady(places, forces), f"µ = {friction:g}, elements of {length}"
         result += [Value(f"{name}: steady force, N/mm", expected, found, 0.05),
-                   Value("part of bending and unbending, N/mm", expected - TENSION * growth,
+                   Value(f"{name}: part of bending and unbending, N/mm", expected - TENSION * growth,
                          found - TENSION * growth, 0.15),
-                   Value("elongation of the strip", stretch - 1, elongation(places, starts), 0.15)]
+                   Value(f"{name}: elongation of the strip", stretch - 1, elongation(places, starts), 0.15)]
         curves.append((name, places, forces, expected))
     return Outcome(result, pictures=[("bending_under_tension.png", lambda axes: draw(axes, curves))])
 
