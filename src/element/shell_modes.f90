@@ -33,8 +33,8 @@
 !> w^2/(w^2 + t^2) in an element of width w. Where elements lie on one another, tractions between
 !> them balance it, and b has no shear: it would be too large at any size of the elements.
 !>
-!> Strains that are linear in zeta are transformed with the base at the centre and (j_0/j), so that
-!> they do no work in a constant state of bending (Simo & Rifai 1990).
+!> The strains of the modes are transformed with the base at the centre and (j_0/j), so that they do
+!> no work in a constant state of membrane stress and of bending (Simo & Rifai 1990).
 module dd3_element_shell_modes
   use dd3_base_kinds, only : wp
   use dd3_element_shell_work, only : bending_strain, membrane_strain, mode_of, mode_shape, &
