@@ -1,5 +1,6 @@
-!> Contact of a node with a rigid tool: the augmented Lagrangian operators with Coulomb friction and
-!> their exact linearisation, including the terms of the tool's curvature.
+!> Contact of a node with a rigid tool in the mixed formulation: the augmented Lagrangian operators
+!> with Coulomb friction and their exact linearisation, including the terms of the tool's curvature.
+!> The compliant formulation shares Coulomb's law.
 !>
 !> With the contact force lambda (of the sheet on the tool), the outward unit normal n of the tool,
 !> the gap d, the slip vector w, T = I - n n^T and the penalty p, the augmented forces are
@@ -22,7 +23,8 @@ module dd3_contact_operator
   implicit none
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
-  public :: contact_operator_of_status, contact_violation
+  public :: contact_operator_of_status, contact_violation, coulomb_operator
+  public :: normal_force_t, traction_t
 
   !> Contact status of a node: not in contact, sticking or slipping.
   integer, parameter :: status_gap = 0, status_stick = 1, status_slip = 2
@@ -35,6 +37,19 @@ module dd3_contact_operator
   !> Largest quotient of the friction force and |sigma_t| in the linearisation. It exceeds 1 only
   !> inside the friction cone, if slip is prescribed there.
   real(wp), parameter :: largest_quotient = 10.0_wp
+
+  !> Normal force sigma_n of a contact law, N, and its derivatives in the displacement, N/mm, and in
+  !> lambda.n.
+  type :: normal_force_t
+    real(wp) :: value = 0.0_wp, by_u(3) = 0.0_wp, by_lambda = 0.0_wp
+  end type normal_force_t
+
+  !> Force v whose tangential part a contact law compares with the friction, N; its derivatives, as
+  !> multiples of the identity, in the displacement, N/mm, and in lambda; and the smallest length
+  !> that has a direction, N.
+  type :: traction_t
+    real(wp) :: value(3) = 0.0_wp, by_u = 0.0_wp, by_lambda = 0.0_wp, smallest = 0.0_wp
+  end type traction_t
 
 contains
 
@@ -84,74 +99,93 @@ contains
     real(wp), intent(in) :: penalty, friction
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
-    real(wp) :: sigma_n, dsigma_n(3), tangential(3), dtangential(3, 3)
-    real(wp) :: v(3), v_normal, dnormal_v(3)
-    integer :: i, j
+    type(normal_force_t) :: sigma_n
+    type(traction_t) :: traction
 
     force = 0.0_wp
     d = 0.0_wp
     e = 0.0_wp
     if (status == status_gap) return
-    sigma_n = dot_product(lambda, normal) + penalty*distance
-    dsigma_n = matmul(dnormal, lambda) + penalty*normal
-    v = lambda + penalty*slip
-    v_normal = dot_product(normal, v)
-    tangential = v - v_normal*normal
-    dnormal_v = matmul(dnormal, v)
-    do j = 1, 3
-      do i = 1, 3
-        dtangential(i, j) = -normal(i)*(penalty*normal(j) + dnormal_v(j)) - v_normal*dnormal(i, j)
-      end do
-      dtangential(j, j) = dtangential(j, j) + penalty
-    end do
-    if (status == status_stick) then
-      force = sigma_n*normal + tangential
-      do j = 1, 3
-        d(:, j) = normal*dsigma_n(j) + sigma_n*dnormal(:, j) + dtangential(:, j)
-        e(j, j) = 1.0_wp
-      end do
-    else
-      call slip_operator(normal, dnormal, sigma_n, dsigma_n, tangential, dtangential, friction, &
-          no_direction*(norm(lambda) + penalty*norm(slip)), force, d, e)
-    end if
+    sigma_n%value = dot_product(lambda, normal) + penalty*distance
+    sigma_n%by_u = matmul(dnormal, lambda) + penalty*normal
+    sigma_n%by_lambda = 1.0_wp
+    traction = traction_t(lambda + penalty*slip, penalty, 1.0_wp, &
+        no_direction*(norm(lambda) + penalty*norm(slip)))
+    call coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
   end subroutine contact_operator_of_status
 
-  !> Kernel: evaluate force and linearisation of a slipping node.
-  pure subroutine slip_operator(normal, dnormal, sigma_n, dsigma_n, tangential, dtangential, &
-      friction, smallest, force, d, e)
+  !> Kernel: evaluate force and linearisation of a node in contact by Coulomb's law.
+  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
+    !> Stick or slip.
+    integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), dnormal(3, 3)
-    !> sigma_n, N, and its derivative in the displacement, N/mm.
-    real(wp), intent(in) :: sigma_n, dsigma_n(3)
+    type(normal_force_t), intent(in) :: sigma_n
+    type(traction_t), intent(in) :: traction
+    real(wp), intent(in) :: friction
+    real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
+
+    real(wp) :: tangential(3), dtangential(3, 3), v_normal, dnormal_v(3)
+    integer :: i, j
+
+    associate (v => traction%value, k => traction%by_u)
+      v_normal = dot_product(normal, v)
+      tangential = v - v_normal*normal
+      dnormal_v = matmul(dnormal, v)
+      do j = 1, 3
+        do i = 1, 3
+          dtangential(i, j) = -normal(i)*(k*normal(j) + dnormal_v(j)) - v_normal*dnormal(i, j)
+        end do
+        dtangential(j, j) = dtangential(j, j) + k
+      end do
+    end associate
+    if (status == status_stick) then
+      force = sigma_n%value*normal + tangential
+      do j = 1, 3
+        d(:, j) = normal*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j) + dtangential(:, j)
+        e(:, j) = (sigma_n%by_lambda - traction%by_lambda)*normal*normal(j)
+        e(j, j) = e(j, j) + traction%by_lambda
+      end do
+    else
+      call slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, friction, &
+          force, d, e)
+    end if
+  end subroutine coulomb_operator
+
+  !> Kernel: evaluate force and linearisation of a slipping node.
+  pure subroutine slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, &
+      friction, force, d, e)
+    real(wp), intent(in) :: normal(3), dnormal(3, 3)
+    type(normal_force_t), intent(in) :: sigma_n
+    type(traction_t), intent(in) :: traction
     !> sigma_t, N, and its derivative in the displacement, N/mm.
     real(wp), intent(in) :: tangential(3), dtangential(3, 3)
     real(wp), intent(in) :: friction
-    !> |sigma_t| up to this has no direction, N.
-    real(wp), intent(in) :: smallest
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
     real(wp) :: length, quotient, limit, cone(3), t(3), p_t(3, 3)
     integer :: j
 
     length = norm(tangential)
-    limit = -friction*sigma_n
+    limit = -friction*sigma_n%value
     t = 0.0_wp
-    if (length > smallest) t = tangential/length
+    if (length > traction%smallest) t = tangential/length
     quotient = 0.0_wp
-    if (length > smallest .and. abs(limit) < largest_quotient*length) then
+    if (length > traction%smallest .and. abs(limit) < largest_quotient*length) then
       quotient = limit/length
     else if (limit > 0.0_wp) then
-      quotient = merge(largest_quotient, 1.0_wp, length > smallest)
+      quotient = merge(largest_quotient, 1.0_wp, length > traction%smallest)
     end if
     cone = normal - friction*t
-    force = sigma_n*cone
+    force = sigma_n%value*cone
     do j = 1, 3
       p_t(:, j) = -quotient*t*t(j)
       p_t(j, j) = p_t(j, j) + quotient
     end do
     d = matmul(p_t, dtangential)
     do j = 1, 3
-      d(:, j) = d(:, j) + cone*dsigma_n(j) + sigma_n*dnormal(:, j)
-      e(:, j) = p_t(:, j) + (cone - matmul(p_t, normal))*normal(j)
+      d(:, j) = d(:, j) + cone*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j)
+      e(:, j) = traction%by_lambda*p_t(:, j) &
+          + (sigma_n%by_lambda*cone - traction%by_lambda*matmul(p_t, normal))*normal(j)
     end do
   end subroutine slip_operator
 

@@ -170,7 +170,11 @@ module dd3_input_case
 
   !> Settings of the contact.
   type :: contact_spec_t
-    !> Penalty, N/mm.
+    !> Whether the formulation is the mixed one; the compliant one otherwise.
+    logical :: mixed = .false.
+    !> Height of the contact layer over the thickness, of the compliant formulation.
+    real(wp) :: layer = 0.0_wp
+    !> Penalty of the mixed formulation, N/mm.
     real(wp) :: penalty = 0.0_wp
     !> Search distance of the tools, mm; negative for the thickness of the sheet.
     real(wp) :: search_distance = -1.0_wp

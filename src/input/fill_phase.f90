@@ -312,11 +312,14 @@ contains
     if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp
   end subroutine fill_newton
 
-  !> Set the contact's settings that a block gives.
+  !> Set the contact's settings that a block gives. A penalty belongs to the mixed formulation.
   subroutine fill_contact(contact, block)
     type(contact_spec_t), intent(inout) :: contact
     type(block_t), intent(in) :: block
 
+    if (block%has("penalty")) contact%mixed = .true.
+    if (block%has("formulation")) contact%mixed = block%word("formulation") == "mixed"
+    if (block%has("layer")) contact%layer = block%number("layer")
     if (block%has("penalty")) contact%penalty = block%number("penalty")
     if (block%has("search_distance")) contact%search_distance = block%number("search_distance")
   end subroutine fill_contact

@@ -68,7 +68,11 @@ module dd3_model_phase
     type(until_spec_t) :: until
     type(limits_spec_t) :: limits
     type(newton_spec_t) :: newton
-    !> Penalty coefficient, N/mm.
+    !> Whether the formulation of the contact is the mixed one.
+    logical :: mixed = .false.
+    !> Height of the contact layer over the thickness; 0 in the mixed formulation.
+    real(wp) :: layer = 0.0_wp
+    !> Penalty of the mixed formulation, N/mm; 0 for the automatic one.
     real(wp) :: penalty = 0.0_wp
     !> Distance up to which a tool's surface is looked for, mm.
     real(wp) :: search_distance = 0.0_wp

@@ -119,6 +119,9 @@ contains
     if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
     if (size(spec%press_table) > 0) call set_press_table(spec%press_table, phase)
     if (spec%until%kind == until_never) phase%until%tool = 0
+    phase%mixed = spec%contact%mixed
+    phase%layer = merge(0.0_wp, spec%contact%layer, phase%mixed)
+    phase%newton%active_set = phase%newton%active_set .and. phase%mixed
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()

@@ -16,6 +16,8 @@ module dd3_model_state
     real(wp), allocatable :: tool_displacement(:, :)
     !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
+    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm.
+    real(wp), allocatable :: layer_offset(:)
     !> Total forces on the sets with loads at the start and at the end of the phase, `(3, n_load)`,
     !> N.
     real(wp), allocatable :: load(:, :), load_end(:, :)
@@ -95,6 +97,8 @@ module dd3_model_state
     real(wp), allocatable :: tool_load(:, :)
     !> Force of the sheet on the tools, fading forces included, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_force(:, :)
+    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm.
+    real(wp), allocatable :: layer_offset(:)
     !> Whether each tool has been in contact since the start of the job, `(n_tool)`.
     logical, allocatable :: touched(:)
     !> Depth of each tool in the faces of the sheet between the nodes, its largest value in the
@@ -143,7 +147,7 @@ contains
       allocate (self%hint(n_tool, n_contact))
       allocate (self%slip_path(n_contact), source=0.0_wp)
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
-      allocate (self%tool_force(3, n_tool), source=0.0_wp)
+      allocate (self%tool_force(3, n_tool), self%layer_offset(n_tool), source=0.0_wp)
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
       allocate (self%deepest_face(n_tool), source=0)
@@ -209,6 +213,7 @@ contains
 
     allocate (self%tool_displacement, mold=state%tool_displacement)
     allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
+    allocate (self%layer_offset(size(state%layer_offset)), source=0.0_wp)
     allocate (self%load, self%load_end, mold=state%load)
     allocate (self%pressure(size(state%pressure)), self%pressure_end(size(state%pressure)), &
         source=0.0_wp)

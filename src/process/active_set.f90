@@ -13,7 +13,7 @@ module dd3_process_active_set
   use dd3_base_verdict, only : verdict_retry, verdict_t
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_process_attempt, only : correction_t, status_memory
-  use dd3_system_contact, only : contact_work_t, not_held
+  use dd3_system_contact_work, only : contact_work_t, not_held
   implicit none
   private
   public :: record_status, update_active_set, open_unloaded, keeps_changing, unsettled

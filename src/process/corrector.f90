@@ -22,7 +22,8 @@ module dd3_process_corrector
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_contact, only : contact_work_t, is_normal_held, not_held
+  use dd3_system_contact, only : is_normal_held
+  use dd3_system_contact_work, only : contact_work_t, not_held
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_solve, only : solve_reduced
@@ -304,7 +305,8 @@ contains
           (norm2(correction%lambda_increment) + correction%residual)/scale]
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
-      outside = all(contact%distance >= -model%tolerance%depth .or. contact%tool == 0)
+      outside = all(contact%distance + contact%layer >= -model%tolerance%depth &
+          .or. contact%tool == 0)
       if (system%problem%missed) outside = outside .and. all(abs(system%problem%target - trial%x) &
           <= model%tolerance%closed .or. .not. phase%prescribed)
       if (j > 1 .and. forces_met .and. outside .and. verdict%norm < phase%newton%tolerance) &

@@ -2,6 +2,7 @@
 !> forces of released tools fade with springs that hold the sheet where the tools left it.
 module dd3_process_external
   use dd3_base_kinds, only : wp
+  use dd3_model_contact_layer, only : offset_factor
   use dd3_model_loads, only : fading_factor, nodal_forces, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_pressures, only : add_pressure_forces
@@ -12,7 +13,8 @@ module dd3_process_external
 
 contains
 
-  !> Set the loads and pressures of a trial state from its progress.
+  !> Set the loads and pressures of a trial state, and the places of its contact layers, from its
+  !> progress.
   subroutine set_loads(model, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: trial
@@ -22,6 +24,7 @@ contains
 
     factor = model%phase(trial%phase)%factor(trial%progress)
     associate (start => trial%start)
+      trial%layer_offset = offset_factor(trial%progress)*start%layer_offset
       trial%load = start%load + factor*(start%load_end - start%load)
       trial%pressure = start%pressure + factor*(start%pressure_end - start%pressure)
       do tool = 1, model%n_tool

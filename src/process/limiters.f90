@@ -7,6 +7,7 @@ module dd3_process_limiters
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
+  use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : limit_t
@@ -53,6 +54,7 @@ contains
         limiter_t("stress", stress_limit, above_r_min=.true.), &
         limiter_t("force", force_limit, above_r_min=.true.), &
         limiter_t("gap", gap_limit), &
+        limiter_t("layer", layer_limit), &
         limiter_t("until", until_limit), &
         limiter_t("output", output_limit)]
   end function limiter_table
@@ -341,6 +343,20 @@ contains
       end do
     end associate
   end function gap_limit
+
+  !> Return the bound at which the contact layers arrive at their places.
+  function layer_limit(model, state, stepper) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
+    type(limit_t) :: limit
+
+    real(wp) :: left
+
+    left = progress_left(state%progress)
+    if (left > 0.0_wp .and. any(state%start%layer_offset > 0.0_wp)) &
+        limit%r = left/stepper%prediction%progress
+  end function layer_limit
 
   !> Return the bound at the early end of the phase, extrapolated linearly. The value is met with
   !> either sign: that of its rate or, from above, the opposite one.

@@ -7,6 +7,7 @@ module dd3_process_phase_start
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
+  use dd3_model_contact_layer, only : missing_clearance
   use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
@@ -70,6 +71,8 @@ contains
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
+      call place_layers(model, number, state)
+      start%layer_offset = state%layer_offset
       start%tool_displacement = state%tool_displacement
       start%plastic_strain = state%internal_variables(1, :, :)
     end associate
@@ -86,6 +89,27 @@ contains
     returns = number > 1 .and. model%phase(number)%active(tool)
     if (returns) returns = .not. model%phase(number - 1)%active(tool)
   end function returns
+
+  !> Set the layers of tools that begin to act back by the clearance that is missing.
+  subroutine place_layers(model, number, state)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> The tools stand at their positions at the start of the phase.
+    type(state_t), intent(inout) :: state
+
+    integer :: tool
+    logical :: begins
+
+    associate (phase => model%phase(number))
+      do tool = 1, model%n_tool
+        begins = phase%active(tool) .and. (number == 1 .or. returns(model, number, tool))
+        if (number > 1) begins = begins .or. phase%layer > model%phase(number - 1)%layer
+        if (begins) state%layer_offset(tool) = missing_clearance(model, phase, state, tool)
+        if (phase%mixed) state%layer_offset(tool) = 0.0_wp
+      end do
+    end associate
+  end subroutine place_layers
 
   !> Report tools that return after their release and would start inside the sheet.
   subroutine check_returns(model, number, state, error)

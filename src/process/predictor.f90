@@ -11,6 +11,7 @@ module dd3_process_predictor
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_work, only : element_work_t
+  use dd3_model_contact_layer, only : offset_rate
   use dd3_model_loads, only : fading_rate, nodal_forces
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
@@ -137,7 +138,7 @@ contains
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + faded*start%reaction
-      problem%contact_residual = 0.0_wp
+      call advance_layers(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
       do tool = 1, model%n_tool
@@ -149,6 +150,27 @@ contains
       end do
     end associate
   end subroutine impose_trial
+
+  !> Set the change of the contact forces by the layers that advance.
+  subroutine advance_layers(self, committed, system)
+    type(prediction_t), intent(in) :: self
+    type(state_t), intent(in) :: committed
+    type(system_t), intent(inout) :: system
+
+    real(wp) :: rate
+    integer :: c
+
+    system%problem%contact_residual = 0.0_wp
+    if (all(committed%start%layer_offset <= 0.0_wp)) return
+    rate = self%progress*offset_rate(committed%progress)
+    associate (contact => system%contact)
+      do c = 1, size(contact%tool)
+        if (contact%tool(c) == 0 .or. contact%layer(c) <= 0.0_wp) cycle
+        system%problem%contact_residual(:, c) = rate*committed%start%layer_offset( &
+            contact%tool(c))*matmul(contact%d(:, :, c), contact%normal(:, c))
+      end do
+    end associate
+  end subroutine advance_layers
 
   !> Add the curved motions to the prescribed displacements of the trial increment, along their
   !> tangents.

@@ -6,7 +6,8 @@ module dd3_process_residual
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_external, only : evaluate_external
-  use dd3_system_contact, only : contact_work_t, evaluate_contact
+  use dd3_system_contact, only : evaluate_contact
+  use dd3_system_contact_work, only : contact_work_t
   use dd3_system_drawbead, only : evaluate_beads
   use dd3_system_enhanced, only : enhanced_square
   use dd3_system_system, only : system_t

@@ -6,7 +6,7 @@ module dd3_process_work
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_system_contact, only : contact_work_t
+  use dd3_system_contact_work, only : contact_work_t
   implicit none
   private
   public :: add_work

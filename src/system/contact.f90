@@ -4,68 +4,30 @@ module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       contact_violation, round_off, status_gap, status_slip, status_stick
+  use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
+  use dd3_system_contact_work, only : contact_work_t, not_held, open_candidate
   implicit none
   private
-  public :: contact_work_t, new_contact_work, evaluate_contact, predictor_contact, not_held
-  public :: is_normal_held
+  public :: evaluate_contact, predictor_contact, is_normal_held
 
-  !> Value of `held` of a candidate whose status is not held.
-  integer, parameter :: not_held = -1
   !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does not
   !> follow from equilibrium, but grows or falls by the penalty times the gap in every iteration.
   real(wp), parameter :: held_factor = 1.0e4_wp
+  !> Relative distance within which a layer counts as touched.
+  real(wp), parameter :: at_onset = 1.0e-9_wp
   !> Candidates that a thread takes at a time.
   integer, parameter :: chunk = 64
 
-  !> Contact of the candidates.
-  type :: contact_work_t
-    !> One of the `status_*` values, `(n_contact)`.
-    integer, allocatable :: status(:)
-    !> Nearest tool, `(n_contact)`; 0 if none is within the search distance.
-    integer, allocatable :: tool(:)
-    !> Gap, mm, `(n_contact)`; meaningful if there is a tool.
-    real(wp), allocatable :: distance(:)
-    !> Outward normal of the tool, `(3, n_contact)`.
-    real(wp), allocatable :: normal(:, :)
-    !> Contact force lambda, N, `(3, n_contact)`.
-    real(wp), allocatable :: lambda(:, :)
-    !> Contact force F_equ by the contact law, N, `(3, n_contact)`.
-    real(wp), allocatable :: force(:, :)
-    !> D, N/mm, and E: `(3, 3, n_contact)`.
-    real(wp), allocatable :: d(:, :, :), e(:, :, :)
-    !> Status that a candidate is held in, `(n_contact)`, or `not_held`; the status by the contact
-    !> law; and the force by which it violates the one held, N.
-    integer, allocatable :: held(:), natural(:)
-    real(wp), allocatable :: violation(:)
-    !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
-    real(wp), allocatable :: outward(:, :)
-    !> Distance up to which the tools are looked for, mm.
-    real(wp) :: search_distance = 0.0_wp
-  end type contact_work_t
-
 contains
-
-  !> Allocate the contact work.
-  subroutine new_contact_work(self, n_contact)
-    type(contact_work_t), intent(out) :: self
-    integer, intent(in) :: n_contact
-
-    allocate (self%status(n_contact), self%tool(n_contact), source=0)
-    allocate (self%distance(n_contact), source=0.0_wp)
-    allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
-        source=0.0_wp)
-    allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%outward(3, n_contact), self%violation(n_contact), source=0.0_wp)
-    allocate (self%held(n_contact), self%natural(n_contact), source=not_held)
-  end subroutine new_contact_work
 
   !> Evaluate the contact in a trial state: search, status, force and linearisation. The outward
   !> normals are those of the predictor.
@@ -113,11 +75,16 @@ contains
     else
       slip = trial%x(:, node) - committed%x(:, node) - trial%tool_displacement(:, tool) &
           + committed%tool_displacement(:, tool)
-      self%distance(c) = hit%distance
       self%normal(:, c) = hit%normal
-      call evaluate_candidate(self, c, hit, slip, candidate_penalty(model, &
-          model%phase(trial%phase), c, hit%normal, trial%penalty_reduced), &
-          model%tool(tool)%friction)
+      associate (phase => model%phase(trial%phase))
+        if (is_compliant(phase, node, hit%normal)) then
+          call evaluate_layer(self, c, layer_at(model, phase, c), trial%layer_offset(tool), hit, &
+              slip, model%tool(tool)%friction)
+        else
+          call evaluate_candidate(self, c, hit, slip, candidate_penalty(model, phase, c, &
+              hit%normal, trial%penalty_reduced), model%tool(tool)%friction)
+        end if
+      end associate
     end if
     trial%status(c) = self%status(c)
   end subroutine find_and_evaluate
@@ -145,7 +112,46 @@ contains
     is_normal_held = norm2(merge(0.0_wp, normal, phase%prescribed(:, node))) <= tangential
   end function is_normal_held
 
-  !> Evaluate status, force and linearisation of a candidate near a tool.
+  !> Whether the compliant law holds at a candidate near a tool. A node that is held along the
+  !> normal has no displacement that could follow from the law.
+  pure logical function is_compliant(phase, node, normal)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: node
+    !> Of the tool.
+    real(wp), intent(in) :: normal(3)
+
+    is_compliant = .not. phase%mixed
+    if (is_compliant) is_compliant = .not. is_normal_held(phase, node, normal)
+  end function is_compliant
+
+  !> Evaluate status, force and linearisation of a candidate near the layer of a tool. One that
+  !> changes its tool has no tangential force of its history.
+  subroutine evaluate_layer(self, c, layer, offset, hit, slip, friction)
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+    !> Distance by which the layer lies behind its place, mm.
+    real(wp), intent(in) :: offset
+    type(hit_t), intent(in) :: hit
+    !> Slip, mm, and coefficient of friction.
+    real(wp), intent(in) :: slip(3), friction
+
+    real(wp) :: committed(3)
+
+    committed = 0.0_wp
+    if (self%tool(c) == self%committed_tool(c)) committed = &
+        rotated(self%committed_tangential(:, c), self%committed_normal(:, c), hit%normal)
+    self%layer(c) = layer%height
+    self%distance(c) = hit%distance + offset - layer%height
+    self%status(c) = status_gap
+    self%violation(c) = 0.0_wp
+    call compliant_operator(layer, hit%normal, hit%distance + offset, hit%dnormal, &
+        self%lambda(:, c), committed, slip, friction, self%status(c), self%force(:, c), &
+        self%d(:, :, c), self%e(:, :, c))
+    self%natural(c) = self%status(c)
+  end subroutine evaluate_layer
+
+  !> Evaluate status, force and linearisation of a candidate near a tool by the mixed law.
   subroutine evaluate_candidate(self, c, hit, slip, penalty, friction)
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c
@@ -153,6 +159,8 @@ contains
     !> Slip, mm; penalty, N/mm; coefficient of friction.
     real(wp), intent(in) :: slip(3), penalty, friction
 
+    self%distance(c) = hit%distance
+    self%layer(c) = 0.0_wp
     self%natural(c) = contact_status(hit%normal, hit%distance, self%lambda(:, c), slip, penalty, &
         friction)
     self%status(c) = self%natural(c)
@@ -220,14 +228,22 @@ contains
     tool = self%tool(c)
     self%lambda(:, c) = committed%lambda(:, c)
     self%status(c) = committed%status(c)
+    self%committed_tool(c) = 0
     if (tool == 0) then
       call open_candidate(self, c)
       return
     end if
     self%distance(c) = hit%distance
+    self%layer(c) = 0.0_wp
     self%normal(:, c) = hit%normal
     friction = model%tool(tool)%friction
+    call keep_committed(self, committed, c)
     associate (phase => model%phase(committed%phase))
+      if (is_compliant(phase, model%contact_node(c), hit%normal)) then
+        call predict_layer(self, c, layer_at(model, phase, c), committed%layer_offset(tool), hit, &
+            touching(tool), model)
+        return
+      end if
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
       call set_predictor_status(self%status(c), friction, phase, leaving, touching(tool), hit, &
@@ -237,6 +253,47 @@ contains
           committed%penalty_reduced), friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
+
+  !> Keep tool, normal and tangential force of a candidate, evaluated at the committed state.
+  subroutine keep_committed(self, committed, c)
+    type(contact_work_t), intent(inout) :: self
+    type(state_t), intent(in) :: committed
+    integer, intent(in) :: c
+
+    associate (normal => self%normal(:, c), lambda => committed%lambda(:, c))
+      self%committed_tool(c) = committed%contact_tool(c)
+      self%committed_normal(:, c) = normal
+      self%committed_tangential(:, c) = lambda - dot_product(normal, lambda)*normal
+    end associate
+  end subroutine keep_committed
+
+  !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
+  !> the tool has no contact, those within `touch` of the layer resist from its onset on.
+  subroutine predict_layer(self, c, layer, offset, hit, touching, model)
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+    !> Distance by which the layer lies behind its place, mm.
+    real(wp), intent(in) :: offset
+    type(hit_t), intent(in) :: hit
+    !> Whether any candidate is in contact with the tool.
+    logical, intent(in) :: touching
+    type(model_t), intent(in) :: model
+
+    real(wp), parameter :: no_slip(3) = 0.0_wp
+    real(wp) :: gap, tangential_force(3)
+
+    gap = hit%distance + offset
+    self%layer(c) = layer%height
+    self%distance(c) = gap - layer%height
+    if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
+        min(gap, (1.0_wp - at_onset)*layer%height)
+    tangential_force = 0.0_wp
+    if (self%committed_tool(c) == self%tool(c)) tangential_force = self%committed_tangential(:, c)
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, self%lambda(:, c), &
+        tangential_force, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
+        self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+  end subroutine predict_layer
 
   !> Set the status of a candidate in the predictor.
   pure subroutine set_predictor_status(status, friction, phase, leaving, touching, hit, touch)
@@ -262,21 +319,6 @@ contains
       friction = 0.0_wp
     end if
   end subroutine set_predictor_status
-
-  !> Set a candidate without a tool near it.
-  subroutine open_candidate(self, c)
-    type(contact_work_t), intent(inout) :: self
-    integer, intent(in) :: c
-
-    self%status(c) = status_gap
-    self%natural(c) = status_gap
-    self%violation(c) = 0.0_wp
-    self%distance(c) = huge(1.0_wp)
-    self%normal(:, c) = 0.0_wp
-    self%force(:, c) = 0.0_wp
-    self%d(:, :, c) = 0.0_wp
-    self%e(:, :, c) = 0.0_wp
-  end subroutine open_candidate
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools; since then it cannot have come deeper

@@ -16,7 +16,7 @@ module dd3_system_reduced
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_contact_operator, only : status_gap
-  use dd3_system_contact, only : contact_work_t
+  use dd3_system_contact_work, only : contact_work_t
   implicit none
   private
   public :: linear_problem_t, new_linear_problem, reduce, reduce_equilibrium, &

@@ -12,7 +12,7 @@ module dd3_system_system
   use dd3_model_bead_points, only : bead_point_t
   use dd3_model_model, only : model_t
   use dd3_system_batches, only : batches_t, new_batches
-  use dd3_system_contact, only : contact_work_t, new_contact_work
+  use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_partition, only : new_partition, partition_t
   use dd3_system_reduced, only : linear_problem_t, new_linear_problem

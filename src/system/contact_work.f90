@@ -1,0 +1,79 @@
+!> Data of the contact of the candidates in one state, for the residuals and the reduced system.
+module dd3_system_contact_work
+  use dd3_base_kinds, only : wp
+  use dd3_contact_operator, only : status_gap
+  implicit none
+  private
+  public :: contact_work_t, new_contact_work, not_held, open_candidate
+
+  !> Value of `held` of a candidate whose status is not held.
+  integer, parameter :: not_held = -1
+
+  !> Contact of the candidates.
+  type :: contact_work_t
+    !> One of the `status_*` values, `(n_contact)`.
+    integer, allocatable :: status(:)
+    !> Nearest tool, `(n_contact)`; 0 if none is within the search distance.
+    integer, allocatable :: tool(:)
+    !> Distance to the onset of contact, mm, `(n_contact)`: the gap, less the height of the contact
+    !> layer; meaningful if there is a tool.
+    real(wp), allocatable :: distance(:)
+    !> Height of the contact layer, mm, `(n_contact)`; 0 in the mixed formulation.
+    real(wp), allocatable :: layer(:)
+    !> Outward normal of the tool, `(3, n_contact)`.
+    real(wp), allocatable :: normal(:, :)
+    !> Contact force lambda, N, `(3, n_contact)`.
+    real(wp), allocatable :: lambda(:, :)
+    !> Contact force F_equ by the contact law, N, `(3, n_contact)`.
+    real(wp), allocatable :: force(:, :)
+    !> D, N/mm, and E: `(3, 3, n_contact)`.
+    real(wp), allocatable :: d(:, :, :), e(:, :, :)
+    !> Status that a candidate is held in, `(n_contact)`, or `not_held`; the status by the contact
+    !> law; and the force by which it violates the one held, N.
+    integer, allocatable :: held(:), natural(:)
+    real(wp), allocatable :: violation(:)
+    !> Contact in the committed state: tool, `(n_contact)`, its normal and the tangential contact
+    !> force, N, `(3, n_contact)`.
+    integer, allocatable :: committed_tool(:)
+    real(wp), allocatable :: committed_normal(:, :), committed_tangential(:, :)
+    !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
+    real(wp), allocatable :: outward(:, :)
+    !> Distance up to which the tools are looked for, mm.
+    real(wp) :: search_distance = 0.0_wp
+  end type contact_work_t
+
+contains
+
+  !> Allocate the contact work.
+  subroutine new_contact_work(self, n_contact)
+    type(contact_work_t), intent(out) :: self
+    integer, intent(in) :: n_contact
+
+    allocate (self%status(n_contact), self%tool(n_contact), source=0)
+    allocate (self%committed_tool(n_contact), source=0)
+    allocate (self%committed_normal(3, n_contact), self%committed_tangential(3, n_contact), &
+        source=0.0_wp)
+    allocate (self%distance(n_contact), self%layer(n_contact), source=0.0_wp)
+    allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
+        source=0.0_wp)
+    allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
+    allocate (self%outward(3, n_contact), self%violation(n_contact), source=0.0_wp)
+    allocate (self%held(n_contact), self%natural(n_contact), source=not_held)
+  end subroutine new_contact_work
+
+  !> Set a candidate without a tool near it.
+  subroutine open_candidate(self, c)
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
+
+    self%status(c) = status_gap
+    self%natural(c) = status_gap
+    self%violation(c) = 0.0_wp
+    self%distance(c) = huge(1.0_wp)
+    self%normal(:, c) = 0.0_wp
+    self%force(:, c) = 0.0_wp
+    self%d(:, :, c) = 0.0_wp
+    self%e(:, :, c) = 0.0_wp
+  end subroutine open_candidate
+
+end module dd3_system_contact_work
