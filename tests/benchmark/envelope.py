@@ -52,8 +52,8 @@ class Results:
 
     def __init__(self, folder):
         self.folder = folder
-        self.history = [row for row in read_table(folder / "history.csv") if is_whole(row)]
-        self.status = [row for row in read_table(folder / "status.csv") if is_whole(row)]
+        self.history, self.status = ([row for row in read_table(path) if is_whole(row)] if path.is_file() else []
+                                     for path in (folder / "history.csv", folder / "status.csv"))
 
     @functools.cached_property
     def fields(self):
@@ -127,7 +127,7 @@ def rim(found):
 
 
 def drawn_force(found):
-    """Return the punch force of draw bending at equal intervals, N, between the travels DRAWN or up to the last."""
+    """Return places and punch force (N) of draw bending at equal intervals of DRAWN, up to the last travel."""
     travel = found.column("travel")
     places = np.arange(DRAWN[0], min(DRAWN[1], travel[-1]) + 0.5*STEP, STEP)
     return places, np.interp(places, travel, found.column("punch_fz"))
@@ -135,7 +135,7 @@ def drawn_force(found):
 
 def mean_force(found):
     """Return the mean punch force of draw bending, N."""
-    return float(np.mean(drawn_force(found)[1])) if found.history and found.at("travel", DRAWN[1]) else None
+    return float(np.mean(drawn_force(found)[1])) if found.at("travel", DRAWN[1]) else None
 
 
 def roughness(found):
@@ -279,7 +279,7 @@ def make(options, name):
     words = command(options.program, deck, folder / "results", ["--quiet", "--reproducible", "--threads", 1],
                     job.settings)
     code, seconds, errors = execute(words, options.seconds)
-    if code not in (0, 3, None):
+    if code in (1, 2):
         raise Problem(f"{deck}: exit code {code}: {errors}")
     record.write_text(json.dumps({"code": code, "seconds": seconds, "errors": errors}, indent=2), encoding="utf-8")
 
@@ -305,6 +305,8 @@ def measure(folder, name):
         depth, end = found.depth(), end_text(record["code"], found.history[-1], folder / "deck.dat")
         if record["code"] != 0:
             end += f", {float(found.history[-1]['travel']):.3g} mm"
+    if record["code"] not in (0, 3, None):
+        end = f"exit code {record['code']}: {end}"
     effort = [end, str(total.increments), str(total.cutbacks), str(total.iterations),
               f"{total.iterations/max(total.increments, 1):.1f}", f"{record['seconds']:.1f}",
               "" if depth is None else f"{depth/job.thickness:.2g}"]
@@ -408,7 +410,8 @@ def main():
         if not options.program:
             raise Problem("expected --program or --compare")
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            for name, _ in zip(options.problems, pool.map(lambda name: make(options, name), options.problems)):
+            made = pool.map(lambda name: make(options, name), options.problems)
+            for name, _ in zip(options.problems, made, strict=True):
                 found = measure(options.work / options.label / name, name)
                 print(name, *found.effort, sep=" | ", file=sys.stderr, flush=True)
     measured = {name: {label: found for label in labels if (found := measure(options.work / label / name, name))}

@@ -175,7 +175,7 @@ def stretching(folder):
 
 
 def coining(folder):
-    """Return the sheet of the case squeeze_solid_shell, pressed by 1 % of its thickness, its edges held in its plane."""
+    """Return the sheet of squeeze_solid_shell, pressed by 1 % of its thickness, its edges held in its plane."""
     text = without(of_file(CASES / "squeeze_solid_shell" / "case.dat")(folder), "BOUNDARY", "PHASE")
     edges = "".join(f"*BOUNDARY {edge}\n  set = {edge}\n  fix = x y\n" for edge in ("x_min", "x_max", "y_min", "y_max"))
     return text + edges + "*PHASE squeeze\n  control = ram\n  trial = 0.001\n  hold = table\n  move = ram 0 0 -0.01\n"
