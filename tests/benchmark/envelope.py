@@ -9,7 +9,8 @@
 --contact, --limits and --newton give lines of the blocks *CONTACT, *LIMITS and *NEWTON; they replace those of the same
 keys in the decks. Each run is kept in the folder of its label and problem, and not repeated without --again. A run that
 takes more than --seconds of processor time is ended. The deviations are those from --reference; --store puts the values
-of the runs that reached their end into it. The problems are ordered by time, the cheap ones first.
+of the runs that reached their end into it. The stored ones are of the augmented Lagrangian with increments of a half
+to an eighth of the default size. The problems are ordered by time, the cheap ones first. Deviations beyond 2 % are bold.
 """
 import argparse
 import concurrent.futures
@@ -38,11 +39,11 @@ from scripts import Problem, put_table, run  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).with_name("envelope_reference.json")
 REPORT = ROOT / "docs" / "reports" / "contact.md"
+KEYWORDS = ("contact", "limits", "newton")  # options that change blocks of the decks
 ALLOWED = 2.0  # deviation of a quantity, %
 EFFORT = ["end", "increments", "cut-backs", "iterations", "per increment", "processor time, s", "depth, thicknesses"]
 DRAW_BENDING = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
-# Travels between which the punch force of draw bending is evaluated, their interval, half the width of a fit, mm.
-DRAWN, STEP, HALF_WIDTH = (5.0, 30.0), 0.05, 3.0
+STEP = 0.02  # interval of the travels at which a force is averaged, mm
 
 
 # ---- results of a run ------------------------------------------------------------------------------------------------
@@ -67,6 +68,21 @@ class Results:
     def at(self, name, travel):
         """Return a value of the history at a travel, mm."""
         return interpolate(self.column("travel"), self.column(name), travel)
+
+    def resampled(self, name, first, last):
+        """Return travels at equal intervals, mm, and values of the history there, or None if the last is not reached.
+
+        The history is linear between two increments.
+        """
+        if self.at(name, last) is None:
+            return None
+        places = np.linspace(first, last, round((last - first)/STEP) + 1)
+        return places, np.interp(places, self.column("travel"), self.column(name))
+
+    def mean(self, name, first, last):
+        """Return the mean of a value of the history between two travels, mm."""
+        found = self.resampled(name, first, last)
+        return float(np.mean(found[1])) if found else None
 
     def end(self, name, phase):
         """Return a value of the history at the end of a phase."""
@@ -93,6 +109,12 @@ def forces(tool, *travels):
     """Return the forces of a tool at travels."""
     return {f"{tool} force at {travel:g} mm, N": lambda found, at=travel: found.at(f"{tool}_fz", at)
             for travel in travels}
+
+
+def mean_forces(tool, half, *travels):
+    """Return the means of the force of a tool around travels: single ones depend on the nodes that are in contact."""
+    return {f"{tool} force, mean of {travel - half:g} to {travel + half:g} mm, N":
+            lambda found, at=travel: found.mean(f"{tool}_fz", at - half, at + half) for travel in travels}
 
 
 def thinnest(travel):
@@ -126,28 +148,19 @@ def rim(found):
     return float(np.mean(cup.heights))
 
 
-def drawn_force(found):
-    """Return places and punch force (N) of draw bending at equal intervals of DRAWN, up to the last travel."""
-    travel = found.column("travel")
-    places = np.arange(DRAWN[0], min(DRAWN[1], travel[-1]) + 0.5*STEP, STEP)
-    return places, np.interp(places, travel, found.column("punch_fz"))
-
-
-def mean_force(found):
-    """Return the mean punch force of draw bending, N."""
-    return float(np.mean(drawn_force(found)[1])) if found.at("travel", DRAWN[1]) else None
-
-
-def roughness(found):
-    """Return the root mean square of the punch force about local cubic polynomials over its mean, %."""
-    places, force = drawn_force(found)
-    if len(places) < 4*HALF_WIDTH/STEP:
-        return None
-    rest = []
-    for place, value in zip(places, force, strict=True):
-        near = np.abs(places - place) < HALF_WIDTH
-        rest.append(value - np.polyfit(places[near] - place, force[near], 3)[-1])
-    return float(100*np.sqrt(np.mean(np.square(rest)))/np.mean(force))
+def roughness(first, last, half):
+    """Return the quantity of the punch force: root mean square about local cubic polynomials over its mean, %."""
+    def value(found):
+        curve = found.resampled("punch_fz", first, last)
+        if not curve:
+            return None
+        places, force = curve
+        rest = []
+        for place, here in zip(places, force, strict=True):
+            near = np.abs(places - place) < half
+            rest.append(here - np.polyfit(places[near] - place, force[near], 3)[-1])
+        return float(100*np.sqrt(np.mean(np.square(rest)))/np.mean(force))
+    return {"roughness of the punch force, %": value}
 
 
 def tension_ratio(found):
@@ -209,11 +222,10 @@ def squeeze(friction):
 
 def strip(columns, force):
     """Return the problem of draw bending with elements along the half strip and a force of the holder, N/mm."""
-    quantities = {"mean punch force, N": mean_force, "draw-in at 30 mm, mm": lambda found: found.at("end_draw_in", 30),
-                  **thinnest(DRAWN[1])}
+    quantities = {**mean_forces("punch", 12.5, 17.5), "draw-in at 30 mm, mm":
+                  lambda found: found.at("end_draw_in", 30), **thinnest(30)}
     return Job(draw_bending, 0.78, quantities,
-               {"divisions": f"{columns} 1 1", "points": 5, "holder": -force, "depth": DRAWN[1]},
-               {"roughness of the punch force, %": roughness})
+               {"divisions": f"{columns} 1 1", "points": 5, "holder": -force, "depth": 30}, roughness(5, 30, 3))
 
 
 def steel_cup(across, points, depth, travels, *places):
@@ -225,8 +237,8 @@ def steel_cup(across, points, depth, travels, *places):
 HELD = {"holder force at the end of squeeze, N": lambda found: found.end("holder_fz", "squeeze"),
         "die force at the end of squeeze, N": lambda found: found.end("die_fz", "squeeze"),
         "holder force at the end of hold, N": lambda found: found.end("holder_fz", "hold")}
-ROUND = {**forces("punch", 5, 10, 20, 30, 35, 40, 44, 48), "mean height of the rim, mm": rim, **thinnest(48),
-         "largest thickness at 48 mm, mm": lambda found: found.thickness(48, np.max)}
+ROUND = {**forces("punch", 5, 10, 20), **mean_forces("punch", 1, 30, 35, 40, 44, 47), "mean height of the rim, mm": rim,
+         **thinnest(48), "largest thickness at 48 mm, mm": lambda found: found.thickness(48, np.max)}
 ENVELOPE = {
     "holder_gap": Job(of_file(CASES / "holder_gap" / "case.dat"), 0.78, HELD),
     "coining": Job(coining, 1.0, forces("ram", 0.005, 0.01)),
@@ -237,7 +249,7 @@ ENVELOPE = {
     "flat_punch": Job(of_file(CASES / "flat_punch" / "case.dat"), 0.78, forces("punch", 1)),
     "air_bending": Job(air_bending, 1.0, forces("punch", 5, 10, 15, 20, 25)),
     "capstan": Job(PROBLEMS["capstan"], 0.02, {"T1/T2": tension_ratio}, notes={"T1/T2, error, %": tension_error}),
-    "u_bend": Job(u_bend, 1.0, forces("punch", 2, 4, 6, 8, 9)),
+    "u_bend": Job(u_bend, 1.0, mean_forces("punch", 1, 2, 4, 6, 8), notes=roughness(1, 9, 1)),
     "strip_19.6kN_2mm": strip(88, 280),
     "strip_19.6kN_1mm": strip(175, 280),
     "strip_2.45kN_2mm": strip(88, 35),
@@ -266,7 +278,7 @@ def make(options, name):
     job, folder = ENVELOPE[name], options.work / options.label / name
     folder.mkdir(parents=True, exist_ok=True)
     text = job.deck(folder)
-    for keyword in ("contact", "limits", "newton"):
+    for keyword in KEYWORDS:
         text = merged(text, keyword.upper(), lines_of(getattr(options, keyword)))
     deck, record = folder / "deck.dat", folder / "run.json"
     if record.is_file() and not options.again:
@@ -362,12 +374,14 @@ def tables(measured, references):
                         studies.table(["problem", "quantity", "reference", *heads], quantities)))
 
 
-def store(path, label, measured):
-    """Put the values of the runs that have reached their end into the file of the reference."""
+def store(options, measured):
+    """Put the values of the runs that have reached their end, and their settings, into the file of the reference."""
+    path, label = options.reference, options.label
     references = read_references(path)
+    settings = {keyword: text for keyword in KEYWORDS if (text := getattr(options, keyword))}
     for name, runs in measured.items():
         if runs[label].reached:
-            references[name] = {"label": label, "values": runs[label].values}
+            references[name] = {"label": label, **settings, "values": runs[label].values}
         else:
             print(f"{name}: not stored, has not reached its end", file=sys.stderr)
     ordered = {name: references[name] for name in ENVELOPE if name in references}
@@ -387,7 +401,7 @@ def parser():
     found.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
     found.add_argument("--problems", nargs="+", choices=ENVELOPE, default=list(ENVELOPE), metavar="NAME",
                        help=f"problems (all): {', '.join(ENVELOPE)}")
-    for keyword in ("contact", "limits", "newton"):
+    for keyword in KEYWORDS:
         found.add_argument(f"--{keyword}", default="", metavar="LINES",
                            help=f"lines of *{keyword.upper()}, separated by semicolons")
     found.add_argument("--label", default="mixed", help="name of these settings (mixed)")
@@ -419,7 +433,7 @@ def main():
     measured = {name: runs for name, runs in measured.items() if runs}
     references = read_references(options.reference)
     if options.store and not options.compare:
-        references = store(options.reference, options.label, measured)
+        references = store(options, measured)
     text = tables(measured, references)
     print(text)
     if options.write:
