@@ -10,7 +10,7 @@
 keys in the decks. Each run is kept in the folder of its label and problem, and not repeated without --again. A run that
 takes more than --seconds of processor time is ended. The deviations are those from --reference; --store puts the values
 of the runs that reached their end into it. The stored ones are of the augmented Lagrangian with increments of a half
-to an eighth of the default size. The problems are ordered by time, the cheap ones first. Deviations beyond 2 % are bold.
+to an eighth of the default size. Deviations beyond 2 % are bold. The problems are ordered by time, cheap ones first.
 """
 import argparse
 import concurrent.futures
@@ -237,7 +237,7 @@ def steel_cup(across, points, depth, travels, *places):
 HELD = {"holder force at the end of squeeze, N": lambda found: found.end("holder_fz", "squeeze"),
         "die force at the end of squeeze, N": lambda found: found.end("die_fz", "squeeze"),
         "holder force at the end of hold, N": lambda found: found.end("holder_fz", "hold")}
-ROUND = {**forces("punch", 5, 10, 20), **mean_forces("punch", 1, 30, 35, 40, 44, 47), "mean height of the rim, mm": rim,
+ROUND = {**forces("punch", 5, 10, 20), **mean_forces("punch", 2, 30, 35, 40, 44, 46), "mean height of the rim, mm": rim,
          **thinnest(48), "largest thickness at 48 mm, mm": lambda found: found.thickness(48, np.max)}
 ENVELOPE = {
     "holder_gap": Job(of_file(CASES / "holder_gap" / "case.dat"), 0.78, HELD),
