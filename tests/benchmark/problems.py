@@ -1,7 +1,7 @@
 """Forming problems for measurements: input files without *LIMITS and *NEWTON, and the surfaces of their tools.
 
 Each function of PROBLEMS writes what the problem needs into a folder and returns the text of its deck. Penalty and
-remedies are set by `with_settings`.
+remedies are set by `with_settings`, single keys by `merged`.
 """
 import math
 import pathlib
@@ -37,6 +37,22 @@ def with_settings(text, newton=(), penalty=None):
         blocks += "*NEWTON\n" + "".join(f"  {line}\n" for line in newton)
     place = text.index("*PHASE")
     return text[:place] + blocks + text[place:]
+
+
+def merged(text, keyword, lines):
+    """Return a deck with lines `key = value` in its block of a keyword; they replace those of the same keys there."""
+    if not lines:
+        return text
+    head = f"*{keyword}\n"
+    if head not in text:
+        place = text.index("*PHASE")
+        text = text[:place] + head + "\n" + text[place:]
+    start = text.index(head) + len(head)
+    end = re.compile(r"^\*|\Z", re.MULTILINE).search(text, start).start()
+    block = text[start:end]
+    for key in (line.split("=")[0].strip() for line in lines):
+        block = re.sub(rf"^[ \t]*{key}[ \t]*=.*\n", "", block, flags=re.MULTILINE)
+    return text[:start] + "".join(f"  {line}\n" for line in lines) + block + text[end:]
 
 
 def with_paths(text, folder):
@@ -106,8 +122,10 @@ def bending(skew):
 def of_file(path):
     """Return the problem of an input file."""
     def deck(_):
-        return re.sub(r'(patches = )"([^"]*)"', lambda found: f'{found[1]}"{(path.parent / found[2]).resolve()}"',
+        text = re.sub(r'(patches = )"([^"]*)"', lambda found: f'{found[1]}"{(path.parent / found[2]).resolve()}"',
                       path.read_text(encoding="utf-8"))
+        return re.sub(r"^(\*INCLUDE )(.*)$", lambda found: found[1] + str((path.parent / found[2]).resolve()), text,
+                      flags=re.MULTILINE)
     return deck
 
 
@@ -154,6 +172,13 @@ def stretching(folder):
     return blank("40 20 1", "20 4 2") + tools(punch=("z_max", 0.1)) + HALF + \
         "*BOUNDARY clamped\n  set = x_max\n  fix = x y z\n" + \
         "*PHASE stretch\n  control = load\n  trial = 0.05\n  press = punch 0 0 -3000\n"
+
+
+def coining(folder):
+    """Return the sheet of squeeze_solid_shell, pressed by 1 % of its thickness, its edges held in its plane."""
+    text = without(of_file(CASES / "squeeze_solid_shell" / "case.dat")(folder), "BOUNDARY", "PHASE")
+    edges = "".join(f"*BOUNDARY {edge}\n  set = {edge}\n  fix = x y\n" for edge in ("x_min", "x_max", "y_min", "y_max"))
+    return text + edges + "*PHASE squeeze\n  control = ram\n  trial = 0.001\n  hold = table\n  move = ram 0 0 -0.01\n"
 
 
 def cylinder_punch(folder):
