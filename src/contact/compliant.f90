@@ -13,7 +13,8 @@
 !> depend on s.
 !>
 !> Friction sticks elastically: v = tau + k w with the tangential force tau of the committed state,
-!> rotated with the normal, and the slip w since then; slip where |T v| exceeds mu |sigma_n|.
+!> rotated with the normal, and the slip w since then; slip where |T v| exceeds mu |sigma_n|. The
+!> stiffness k = y/h follows from y in the committed state: the elastic slip is below mu h.
 !> Source: Chen and Harker, SIAM J. Matrix Anal. Appl. 14 (1993) 1168-1190; Kanzow, SIAM J. Matrix
 !> Anal. Appl. 17 (1996) 851-868 (smoothing); Wriggers, Computational Contact Mechanics, 2nd ed.
 !> (2006), chapters 5 and 10 (barrier, elastic stick).
@@ -28,9 +29,8 @@ module dd3_contact_compliant
   !> Pressure p_h at half of the height over Young's modulus. Pressures of bending over a radius are
   !> of this order, those of ironing far above.
   real(wp), parameter :: half_pressure = 3.0e-5_wp
-  !> Elastic stiffness k of stick, and the scale s, over the stiffness E A/t of the sheet through its
-  !> thickness.
-  real(wp), parameter :: stick_fraction = 3.0e-3_wp, scale_fraction = 1.0e-3_wp
+  !> Scale s over the stiffness E A/t of the sheet through its thickness.
+  real(wp), parameter :: scale_fraction = 1.0e-3_wp
   !> |T v| below this, relative to its parts, has no direction.
   real(wp), parameter :: no_direction = 1.0e-13_wp
 
@@ -40,8 +40,8 @@ module dd3_contact_compliant
     real(wp) :: height = 0.0_wp
     !> Force F_h at which half of the height is left, N.
     real(wp) :: half_force = 0.0_wp
-    !> Scale s and stiffness k of stick, N/mm.
-    real(wp) :: scale = 0.0_wp, stick = 0.0_wp
+    !> Scale s, N/mm.
+    real(wp) :: scale = 0.0_wp
   end type layer_t
 
 contains
@@ -56,7 +56,6 @@ contains
     self%height = height*thickness
     self%half_force = half_pressure*stiffness*thickness
     self%scale = scale_fraction*stiffness
-    self%stick = stick_fraction*stiffness
   end function new_layer
 
   !> Return the gap under a pressure over the height of the layer.
@@ -80,14 +79,15 @@ contains
     layer_energy = layer%half_force*layer%height*(log(1.0_wp + r) - r/(1.0_wp + r))
   end function layer_energy
 
-  !> Return a tangential vector rotated with the normal, about the axis normal to both normals.
+  !> Return a vector rotated with the normal, about the axis at right angles to both normals.
   pure function rotated(vector, from, to)
     real(wp), intent(in) :: vector(3)
     !> Unit normals, not opposite.
     real(wp), intent(in) :: from(3), to(3)
     real(wp) :: rotated(3)
 
-    rotated = vector - dot_product(from + to, vector)/(1.0_wp + dot_product(from, to))*(from + to)
+    rotated = vector - dot_product(from + to, vector)/(1.0_wp + dot_product(from, to))*(from + to) &
+        + 2.0_wp*dot_product(from, vector)*to
   end function rotated
 
   !> Kernel: evaluate status, force of the sheet on the tool, N, and its linearisation
@@ -97,7 +97,7 @@ contains
     type(layer_t), intent(in) :: layer
     !> Outward unit normal of the tool, gap, mm, and gradient of the normal, 1/mm.
     real(wp), intent(in) :: normal(3), gap, dnormal(3, 3)
-    !> Contact force, and its tangential part tau in the committed state, N; slip since then, mm.
+    !> Contact force, that of the committed state, rotated with the normal, N; slip since then, mm.
     real(wp), intent(in) :: lambda(3), committed(3), slip(3)
     real(wp), intent(in) :: friction
     !> On entry a status that is kept if there is contact, or `status_gap` for the law's.
@@ -106,7 +106,7 @@ contains
 
     type(normal_force_t) :: sigma_n
     type(traction_t) :: traction
-    real(wp) :: z, root, weight, tangential(3)
+    real(wp) :: z, root, weight, stick, committed_normal, tangential(3)
 
     force = 0.0_wp
     d = 0.0_wp
@@ -121,9 +121,11 @@ contains
     weight = 0.5_wp*(1.0_wp + z/root)
     sigma_n%by_u = weight*(layer%scale*normal + matmul(dnormal, lambda))
     sigma_n%by_lambda = weight
-    traction%value = committed + layer%stick*slip
-    traction%by_u = layer%stick
-    traction%smallest = no_direction*(norm2(committed) + layer%stick*norm2(slip))
+    committed_normal = dot_product(committed, normal)
+    stick = (layer%half_force - min(0.0_wp, committed_normal))/layer%height
+    traction%value = committed - committed_normal*normal + stick*slip
+    traction%by_u = stick
+    traction%smallest = no_direction*(norm2(committed) + stick*norm2(slip))
     if (status == status_gap) then
       tangential = traction%value - dot_product(normal, traction%value)*normal
       status = status_stick

@@ -33,7 +33,8 @@ contains
           hint = state%hint(t, c)
           call find_contact(model%tool(t)%surface, &
               state%x(:, model%contact_node(c)) - state%tool_displacement(:, t), hint, &
-              phase%search_distance, model%tolerance%committed_depth, hit, outward(:, c))
+              phase%search_distance, model%tolerance%committed_depth &
+              + state%layer_offset(t), hit, outward(:, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)
         end do
       end do

@@ -140,7 +140,7 @@ contains
 
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
-        rotated(self%committed_tangential(:, c), self%committed_normal(:, c), hit%normal)
+        rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
     self%layer(c) = layer%height
     self%distance(c) = hit%distance + offset - layer%height
     self%status(c) = status_gap
@@ -254,17 +254,15 @@ contains
     end associate
   end subroutine find_and_predict
 
-  !> Keep tool, normal and tangential force of a candidate, evaluated at the committed state.
+  !> Keep tool, normal and force of a candidate, evaluated at the committed state.
   subroutine keep_committed(self, committed, c)
     type(contact_work_t), intent(inout) :: self
     type(state_t), intent(in) :: committed
     integer, intent(in) :: c
 
-    associate (normal => self%normal(:, c), lambda => committed%lambda(:, c))
-      self%committed_tool(c) = committed%contact_tool(c)
-      self%committed_normal(:, c) = normal
-      self%committed_tangential(:, c) = lambda - dot_product(normal, lambda)*normal
-    end associate
+    self%committed_tool(c) = committed%contact_tool(c)
+    self%committed_normal(:, c) = self%normal(:, c)
+    self%committed_force(:, c) = committed%lambda(:, c)
   end subroutine keep_committed
 
   !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
@@ -281,17 +279,17 @@ contains
     type(model_t), intent(in) :: model
 
     real(wp), parameter :: no_slip(3) = 0.0_wp
-    real(wp) :: gap, tangential_force(3)
+    real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset
     self%layer(c) = layer%height
     self%distance(c) = gap - layer%height
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
         min(gap, (1.0_wp - at_onset)*layer%height)
-    tangential_force = 0.0_wp
-    if (self%committed_tool(c) == self%tool(c)) tangential_force = self%committed_tangential(:, c)
+    committed = 0.0_wp
+    if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, self%lambda(:, c), &
-        tangential_force, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
+        committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine predict_layer
 
@@ -321,8 +319,8 @@ contains
   end subroutine set_predictor_status
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
-  !> committed state every candidate is outside the tools; since then it cannot have come deeper
-  !> inside a tool than it moved relative to it.
+  !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
+  !> back; since then it cannot have come deeper inside a tool than it moved relative to it.
   subroutine find_nearest_tool(self, model, committed, trial, c, hint, nearest)
     !> Gets the tool, 0 if none is within the search distance.
     type(contact_work_t), intent(inout) :: self
@@ -349,7 +347,8 @@ contains
         x = trial%x(:, node) - trial%tool_displacement(:, t)
         moved = x - committed%x(:, node) + committed%tool_displacement(:, t)
         call find_contact(model%tool(t)%surface, x, hint(t), self%search_distance, &
-            model%tolerance%committed_depth + norm2(moved), hit, self%outward(:, c))
+            model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
+            self%outward(:, c))
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis

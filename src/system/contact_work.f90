@@ -32,10 +32,10 @@ module dd3_system_contact_work
     !> law; and the force by which it violates the one held, N.
     integer, allocatable :: held(:), natural(:)
     real(wp), allocatable :: violation(:)
-    !> Contact in the committed state: tool, `(n_contact)`, its normal and the tangential contact
-    !> force, N, `(3, n_contact)`.
+    !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N,
+    !> `(3, n_contact)`.
     integer, allocatable :: committed_tool(:)
-    real(wp), allocatable :: committed_normal(:, :), committed_tangential(:, :)
+    real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
     !> Distance up to which the tools are looked for, mm.
@@ -51,7 +51,7 @@ contains
 
     allocate (self%status(n_contact), self%tool(n_contact), source=0)
     allocate (self%committed_tool(n_contact), source=0)
-    allocate (self%committed_normal(3, n_contact), self%committed_tangential(3, n_contact), &
+    allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
     allocate (self%distance(n_contact), self%layer(n_contact), source=0.0_wp)
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
