@@ -8,8 +8,8 @@ module dd3_app_job
   use dd3_app_warnings, only : unit_warnings
   use dd3_base_clock, only : section_names
   use dd3_base_error, only : error_list_t, error_t, fatal_error, share_error
-  use dd3_base_file, only : make_directory, remove_file
-  use dd3_base_file_system, only : folder_of, part_of, read_file
+  use dd3_base_file, only : folder_of, make_directory, remove_file
+  use dd3_base_file_system, only : part_of, read_file
   use dd3_base_interrupt, only : watch_interrupts
   use dd3_base_kinds, only : wp
   use dd3_base_log, only : log_t

@@ -12,13 +12,13 @@ module dd3_base_file
   use dd3_base_kinds, only : wp, i8
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_clock, only : wall_time
-  use dd3_base_identity, only : is_at
+  use dd3_base_identity, only : is_at, is_same_file
   use dd3_base_lock, only : open_locked
   use dd3_base_system_error, only : errno, system_message
   use dd3_base_text, only : newline
   implicit none
   private
-  public :: file_t, make_directory, remove_file, standard_output
+  public :: file_t, make_directory, remove_file, folder_of, standard_output
 
   !> Descriptor of the standard output.
   integer, parameter :: standard_output = 1
@@ -31,6 +31,9 @@ module dd3_base_file
   real(wp), parameter :: longest_wait = 1.0_wp, longest_pause = 0.05_wp
   !> Error numbers of Linux: interrupted call, file exists, file too large, disk full, over quota.
   integer(c_int), parameter :: eintr = 4, eexist = 17, efbig = 27, enospc = 28, edquot = 122
+  !> Message on a file or folder that is gone.
+  character(len=*), parameter :: lost = " was removed or replaced while the program was "// &
+      "writing it; what was written to it is lost"
   !> Resource number of the file size limit (Linux).
   integer(c_int), parameter :: rlimit_fsize = 1
   !> Mode of fallocate that keeps the file size (Linux).
@@ -60,6 +63,7 @@ module dd3_base_file
     procedure :: put => file_put
     procedure :: flush => file_flush
     procedure :: check_name => file_check_name
+    procedure :: refuse => file_refuse
     procedure :: keep_room => file_keep_room
     procedure :: reserve => file_reserve
     procedure :: release => file_release
@@ -139,7 +143,8 @@ module dd3_base_file
 
 contains
 
-  !> Create an empty file, or truncate an existing one.
+  !> Create an empty file, or truncate an existing one. Its folder was there before: if it is not
+  !> any more, it was removed.
   subroutine file_create(self, path, error, locked)
     class(file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -149,7 +154,7 @@ contains
     logical, intent(in), optional :: locked
 
     integer(c_int), parameter :: mode = int(o'666', c_int)
-    integer(c_int) :: descriptor
+    integer(c_int) :: descriptor, cause
     logical :: lock, busy
 
     lock = .false.
@@ -160,14 +165,17 @@ contains
     else
       descriptor = posix_creat(path//c_null_char, mode)
     end if
+    cause = errno()
     call self%attach(descriptor, path)
     self%named = .true.
     if (descriptor >= 0) return
     self%failed = .true.
     if (busy) then
       call fatal_error(error, "'"//path//"' is being written by another run")
+    else if (.not. is_folder(folder_of(path))) then
+      call fatal_error(error, "'"//folder_of(path)//"'"//lost)
     else
-      call fatal_error(error, "cannot write '"//path//"': "//system_message(errno()))
+      call fatal_error(error, "cannot write '"//path//"': "//system_message(cause))
     end if
   end subroutine file_create
 
@@ -273,9 +281,20 @@ contains
     if (self%failed .or. self%descriptor < 0) return
     if (is_at(self%descriptor, self%path)) return
     self%failed = .true.
-    call fatal_error(error, "'"//self%path//"' was removed or replaced while the program was "// &
-        "writing it; what was written to it is lost")
+    call fatal_error(error, "'"//self%path//"'"//lost)
   end subroutine file_check_name
+
+  !> Report why an operation on the name of the file failed. A check before the operation is not
+  !> sufficient: the file can be removed or replaced between the two.
+  subroutine file_refuse(self, message, error)
+    class(file_t), intent(inout) :: self
+    !> Cause if the file still has its name.
+    character(len=*), intent(in) :: message
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%check_name(error)
+    if (.not. allocated(error)) call fatal_error(error, message)
+  end subroutine file_refuse
 
   !> Reserve disk space for the buffer from now on.
   subroutine file_keep_room(self, error)
@@ -377,17 +396,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     integer(c_int), parameter :: mode = int(o'777', c_int)
-    integer(c_int) :: status
+    integer(c_int) :: status, cause
     integer :: i
 
     do i = 2, len(path) - 1
       if (path(i:i) == "/") status = posix_mkdir(path(:i - 1)//c_null_char, mode)
     end do
     status = posix_mkdir(path//c_null_char, mode)
-    if (status /= 0) then
-      if (errno() /= eexist) call fatal_error(error, "cannot create the directory '"//path//"': " &
-          //system_message(errno()))
-    end if
+    if (status == 0) return
+    cause = errno()
+    if (cause == eexist .and. is_folder(path)) return
+    call fatal_error(error, "cannot create the directory '"//path//"': "//system_message(cause))
   end subroutine make_directory
 
   !> Remove a file. A symbolic link is kept, as its target was chosen by the user.
@@ -402,5 +421,25 @@ contains
     if (posix_readlink(path//c_null_char, target, 1_c_size_t) >= 0) return
     removed = posix_unlink(path//c_null_char) == 0
   end subroutine remove_file
+
+  !> Return the folder of a path, without the last slash; `.` if it names none.
+  pure function folder_of(path) result(folder)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: folder
+
+    integer :: slash
+
+    slash = index(path, "/", back=.true.)
+    folder = "."
+    if (slash == 1) folder = "/"
+    if (slash > 1) folder = path(:slash - 1)
+  end function folder_of
+
+  !> Whether a path names a folder: only there is a file `.`.
+  logical function is_folder(path)
+    character(len=*), intent(in) :: path
+
+    is_folder = is_same_file(path//"/.", path//"/.")
+  end function is_folder
 
 end module dd3_base_file

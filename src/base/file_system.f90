@@ -4,9 +4,10 @@ module dd3_base_file_system
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_file, only : file_t
   use dd3_base_kinds, only : i8
+  use dd3_base_system_error, only : errno, system_message
   implicit none
   private
-  public :: read_file, replace_file, keep_file, sync_file, folder_of, part_of
+  public :: read_file, replace_file, keep_file, sync_file, part_of
 
   interface
     !> rename(2).
@@ -57,13 +58,22 @@ contains
   end function part_of
 
   !> Replace a file by its temporary one, atomically.
-  subroutine replace_file(path, error)
+  subroutine replace_file(path, part, error)
     character(len=*), intent(in) :: path
+    !> The temporary file, open; it gets the path.
+    type(file_t), intent(inout) :: part
     !> Set if the file cannot be replaced.
     type(error_t), allocatable, intent(out) :: error
 
-    if (posix_rename(part_of(path)//c_null_char, path//c_null_char) /= 0) &
-        call fatal_error(error, "cannot replace '"//path//"' by '"//part_of(path)//"'")
+    integer(c_int) :: cause
+
+    if (posix_rename(part%path//c_null_char, path//c_null_char) == 0) then
+      part%path = path
+    else
+      cause = errno()
+      call part%refuse("cannot replace '"//path//"' by '"//part%path//"': "// &
+          system_message(cause), error)
+    end if
   end subroutine replace_file
 
   !> Keep a file that is about to be replaced under its name with a suffix; no-op if there is none.
@@ -84,18 +94,5 @@ contains
 
     ignored = posix_fsync(file%descriptor)
   end subroutine sync_file
-
-  !> Return the folder of a path, without the last slash; `.` if it names none.
-  pure function folder_of(path) result(folder)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable :: folder
-
-    integer :: slash
-
-    slash = index(path, "/", back=.true.)
-    folder = "."
-    if (slash == 1) folder = "/"
-    if (slash > 1) folder = path(:slash - 1)
-  end function folder_of
 
 end module dd3_base_file_system

@@ -80,8 +80,7 @@ contains
     if (.not. allocated(error)) call self%file%put(text(:last), error)
     if (.not. allocated(error)) call self%file%flush(error)
     if (.not. (found .or. allocated(error))) call keep_file(path, suffix_kept(increment))
-    if (.not. allocated(error)) call replace_file(path, error)
-    self%file%path = path
+    if (.not. allocated(error)) call replace_file(path, self%file, error)
   end subroutine table_resume
 
   !> Return the suffix of the name under which a record is kept that a restart cannot continue.

@@ -4,7 +4,7 @@
 !> data, flush, number of steps, flush. Readers rely on the number of steps.
 module dd3_output_fields
   use dd3_base_kinds, only : wp, i8
-  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : keep_file, part_of, replace_file
   use dd3_model_model, only : model_t
@@ -104,8 +104,7 @@ contains
     end if
     call close_hdf5(old)
     if (.not. (found .or. allocated(error))) call keep_file(path, suffix_kept(state%increment))
-    if (.not. allocated(error)) call replace_file(path, error)
-    self%guard%path = path
+    if (.not. allocated(error)) call replace_file(path, self%guard, error)
   end subroutine fields_resume
 
   !> Create the file with all that does not change.
@@ -386,8 +385,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%file = -1
-    call fatal_error(error, "cannot write '"//self%guard%path &
-        //"': the disk is full or cannot be reached")
+    call self%guard%refuse("cannot write '"//self%guard%path &
+        //"': the disk is full or cannot be reached", error)
   end subroutine give_up
 
   !> Close the file.

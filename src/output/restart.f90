@@ -79,9 +79,9 @@ contains
       call write_content(part_of(path), model_fingerprint(model, state%phase), copy, writer%ok)
       if (writer%ok) then
         call sync_file(guard)
-        call replace_file(path, error)
+        call replace_file(path, guard, error)
       else
-        call fatal_error(error, "cannot write '"//path//"': the disk is full or cannot be reached")
+        call guard%refuse("cannot write '"//path//"': the disk is full or cannot be reached", error)
       end if
     end if
     call guard%release()

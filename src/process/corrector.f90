@@ -1,7 +1,8 @@
 !> Corrector: one Newton-Raphson loop for all non-linearities (plasticity, large rotations, contact,
 !> friction).
 !> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
-!> scaled by the norm of the internal forces where it exceeds that of the contact forces.
+!> scaled by the norm of the internal forces where it exceeds that of the contact forces, and such
+!> that a residual that is round-off has converged.
 module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_assembly, section_contact, section_material
@@ -26,6 +27,7 @@ module dd3_process_corrector
   use dd3_system_contact_work, only : contact_work_t, not_held
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
+  use dd3_system_round_off, only : attainable_residual
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -299,7 +301,8 @@ contains
         end if
       end do
       scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-          negligible_strain*model%least_shear()*model%thickness**2)
+          negligible_strain*model%least_shear()*model%thickness**2, &
+          attainable_residual(system%stiffness, trial%x, system%partition)/phase%newton%tolerance)
       j = verdict%iterations
       correction%criterion = [correction%criterion(:j - 1), &
           (norm2(correction%lambda_increment) + correction%residual)/scale]

@@ -3,6 +3,7 @@
 module dd3_process_remedy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
+  use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_phase, only : phase_t
@@ -26,9 +27,10 @@ module dd3_process_remedy
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
 
-  !> Factors on the penalty, on the limit of rotation and on the number of iterations that are
-  !> proposed; rotation that is proposed if it is not limited, degrees.
-  real(wp), parameter :: penalty_factor = 0.1_wp, rotation_factor = 0.25_wp
+  !> Factors on the penalty, on the limit of rotation, on the tolerance after the release and on the
+  !> number of iterations that are proposed; rotation proposed if it is not limited, degrees.
+  real(wp), parameter :: penalty_factor = 0.1_wp, rotation_factor = 0.25_wp, &
+      tolerance_factor = 10.0_wp
   integer, parameter :: iterations_factor = 2
   real(wp), parameter :: usual_rotation = 0.5_wp
 
@@ -78,22 +80,48 @@ contains
 
     rotation = usual_rotation
     if (phase%limits%rotation%active) rotation = rotation_factor*phase%limits%rotation%value
-    c = 0
-    if (attempt%verdict%node > 0) c = model%candidate_of(attempt%verdict%node)
-    associate (reason => attempt%verdict%reason)
+    c = candidate_in_contact(model, attempt)
+    associate (reason => attempt%verdict%reason, newton => phase%newton)
       if (begins(reason, "an iteration moved") .or. begins(reason, "an element")) then
         remedy = "rotation = "//to_text(rotation, 3)//" in *LIMITS"//mesh_remedy
       else if (attempt%verdict%element > 0) then
         remedy = material_remedy
       else if (c > 0) then
         remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c, &
-            attempt%penalty_reduced), 3)// &
-            " in *CONTACT"
+            attempt%penalty_reduced), 3)//" in *CONTACT"
+      else if (ends_near_release_tolerance(phase, attempt%verdict%norm)) then
+        remedy = "release_tolerance = "//to_text(tolerance_factor*newton%release_tolerance, 3)// &
+            " in *NEWTON"
       else
-        remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)//" in *NEWTON"
+        remedy = "iterations = "//to_text(iterations_factor*newton%iterations)//" in *NEWTON"
       end if
     end associate
   end function remedy_of_reason
+
+  !> Return the candidate at the node of a failure if a tool touched it in the last iterations; 0 if
+  !> none did. At a node without contact no penalty acts.
+  pure integer function candidate_in_contact(model, attempt) result(c)
+    type(model_t), intent(in) :: model
+    type(attempt_t), intent(in) :: attempt
+
+    c = 0
+    if (attempt%verdict%node > 0) c = model%candidate_of(attempt%verdict%node)
+    if (c == 0) return
+    if (.not. any(attempt%correction%status(c, :) > status_gap)) c = 0
+  end function candidate_in_contact
+
+  !> Whether all tools are released and a slightly larger tolerance would have been met.
+  pure logical function ends_near_release_tolerance(phase, criterion) result(ends)
+    type(phase_t), intent(in) :: phase
+    !> Of convergence, in the last iteration.
+    real(wp), intent(in) :: criterion
+
+    ends = .false.
+    if (size(phase%active) == 0 .or. any(phase%active)) return
+    associate (tolerance => phase%newton%release_tolerance)
+      ends = phase%newton%tolerance >= tolerance .and. criterion < tolerance_factor*tolerance
+    end associate
+  end function ends_near_release_tolerance
 
   !> Whether a text begins with another.
   pure logical function begins(text, start)
