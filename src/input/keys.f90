@@ -127,7 +127,7 @@ contains
       row("formulation", kind_name, "", "-", "compliant: pressure by the gap in a layer on the "// &
           "tools; mixed: no gap, by an augmented Lagrangian; default: compliant, mixed where a "// &
           "penalty is given", choices="compliant mixed"), &
-      row("layer", kind_real, "", "0.02", "height of the layer of the compliant formulation, "// &
+      row("layer", kind_real, "", "0.01", "height of the layer of the compliant formulation, "// &
           "over the thickness of the sheet", lower=1.0e-4_wp, upper=0.2_wp), &
       row("penalty", kind_real, "N/mm", "-", "penalty of the mixed formulation; default: "// &
           "from stiffness, thickness and mesh", lower=1.0e-3_wp, upper=1.0e9_wp), &
