@@ -12,9 +12,10 @@
 !> mixed formulation, whose normal law is the limit h -> 0 with the penalty s. The solution does not
 !> depend on s.
 !>
-!> Friction sticks elastically: v = tau + k w with the tangential force tau of the committed state,
-!> rotated with the normal, and the slip w since then; slip where |T v| exceeds mu |sigma_n|. The
-!> stiffness k = y/h follows from y in the committed state: the elastic slip is below mu h.
+!> Friction sticks elastically: T lambda = tau + k T w with the tangential force tau of the committed
+!> state, rotated with the normal, the slip w since then, and k = y/h with y of the committed state:
+!> the elastic slip is below mu h. The force whose tangential part is compared with the friction is
+!>     v = lambda + s_t [w - (lambda - tau)/k],    s_t = min(s, k).
 !> Source: Chen and Harker, SIAM J. Matrix Anal. Appl. 14 (1993) 1168-1190; Kanzow, SIAM J. Matrix
 !> Anal. Appl. 17 (1996) 851-868 (smoothing); Wriggers, Computational Contact Mechanics, 2nd ed.
 !> (2006), chapters 5 and 10 (barrier, elastic stick).
@@ -31,7 +32,7 @@ module dd3_contact_compliant
   real(wp), parameter :: half_pressure = 3.0e-5_wp
   !> Scale s over the stiffness E A/t of the sheet through its thickness.
   real(wp), parameter :: scale_fraction = 1.0e-3_wp
-  !> |T v| below this, relative to its parts, has no direction.
+  !> |T v| up to this, relative to its parts, has no direction.
   real(wp), parameter :: no_direction = 1.0e-13_wp
 
   !> Contact layer at a node.
@@ -106,7 +107,7 @@ contains
 
     type(normal_force_t) :: sigma_n
     type(traction_t) :: traction
-    real(wp) :: z, root, weight, stick, committed_normal, tangential(3)
+    real(wp) :: z, root, weight, committed_normal, stick, scale, memory, tangential(3)
 
     force = 0.0_wp
     d = 0.0_wp
@@ -123,9 +124,13 @@ contains
     sigma_n%by_lambda = weight
     committed_normal = dot_product(committed, normal)
     stick = (layer%half_force - min(0.0_wp, committed_normal))/layer%height
-    traction%value = committed - committed_normal*normal + stick*slip
-    traction%by_u = stick
-    traction%smallest = no_direction*(norm2(committed) + stick*norm2(slip))
+    scale = min(layer%scale, stick)
+    memory = 1.0_wp - scale/stick
+    traction%value = memory*lambda + (1.0_wp - memory)*(committed - committed_normal*normal) &
+        + scale*slip
+    traction%by_u = scale
+    traction%by_lambda = memory
+    traction%smallest = no_direction*(norm2(lambda) + norm2(committed) + scale*norm2(slip))
     if (status == status_gap) then
       tangential = traction%value - dot_product(normal, traction%value)*normal
       status = status_stick

@@ -308,7 +308,7 @@ contains
           (norm2(correction%lambda_increment) + correction%residual)/scale]
       verdict%norm = correction%criterion(j)
       verdict%outcome = verdict_retry
-      outside = all(contact%distance + contact%layer >= -model%tolerance%depth &
+      outside = all(contact%distance + contact%onset >= -model%tolerance%depth &
           .or. contact%tool == 0)
       if (system%problem%missed) outside = outside .and. all(abs(system%problem%target - trial%x) &
           <= model%tolerance%closed .or. .not. phase%prescribed)

@@ -165,7 +165,7 @@ contains
     rate = self%progress*offset_rate(committed%progress)
     associate (contact => system%contact)
       do c = 1, size(contact%tool)
-        if (contact%tool(c) == 0 .or. contact%layer(c) <= 0.0_wp) cycle
+        if (contact%tool(c) == 0) cycle
         system%problem%contact_residual(:, c) = rate*committed%start%layer_offset( &
             contact%tool(c))*matmul(contact%d(:, :, c), contact%normal(:, c))
       end do

@@ -81,8 +81,9 @@ contains
           call evaluate_layer(self, c, layer_at(model, phase, c), trial%layer_offset(tool), hit, &
               slip, model%tool(tool)%friction)
         else
-          call evaluate_candidate(self, c, hit, slip, candidate_penalty(model, phase, c, &
-              hit%normal, trial%penalty_reduced), model%tool(tool)%friction)
+          call evaluate_candidate(self, c, trial%layer_offset(tool), hit, slip, &
+              candidate_penalty(model, phase, c, hit%normal, trial%penalty_reduced), &
+              model%tool(tool)%friction)
         end if
       end associate
     end if
@@ -141,7 +142,7 @@ contains
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
-    self%layer(c) = layer%height
+    self%onset(c) = layer%height
     self%distance(c) = hit%distance + offset - layer%height
     self%status(c) = status_gap
     self%violation(c) = 0.0_wp
@@ -151,27 +152,30 @@ contains
     self%natural(c) = self%status(c)
   end subroutine evaluate_layer
 
-  !> Evaluate status, force and linearisation of a candidate near a tool by the mixed law.
-  subroutine evaluate_candidate(self, c, hit, slip, penalty, friction)
+  !> Evaluate status, force and linearisation of a candidate near a tool by the mixed law. A
+  !> candidate that became held in a contact layer keeps the gap that it has there.
+  subroutine evaluate_candidate(self, c, offset, hit, slip, penalty, friction)
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c
+    !> Distance by which the layer of the tool lies behind its place, mm.
+    real(wp), intent(in) :: offset
     type(hit_t), intent(in) :: hit
     !> Slip, mm; penalty, N/mm; coefficient of friction.
     real(wp), intent(in) :: slip(3), penalty, friction
 
-    self%distance(c) = hit%distance
-    self%layer(c) = 0.0_wp
-    self%natural(c) = contact_status(hit%normal, hit%distance, self%lambda(:, c), slip, penalty, &
-        friction)
+    self%onset(c) = self%committed_gap(c)
+    self%distance(c) = hit%distance + offset - self%onset(c)
+    self%natural(c) = contact_status(hit%normal, self%distance(c), self%lambda(:, c), slip, &
+        penalty, friction)
     self%status(c) = self%natural(c)
     self%violation(c) = 0.0_wp
     if (self%held(c) /= not_held) then
       self%status(c) = self%held(c)
-      self%violation(c) = contact_violation(self%held(c), hit%normal, hit%distance, &
+      self%violation(c) = contact_violation(self%held(c), hit%normal, self%distance(c), &
           self%lambda(:, c), slip, penalty, friction)
     end if
     ! A node held in contact under tension slips without friction.
-    call contact_operator_of_status(self%status(c), hit%normal, hit%distance, hit%dnormal, &
+    call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), hit%dnormal, &
         self%lambda(:, c), slip, penalty, merge(0.0_wp, friction, self%natural(c) == status_gap), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine evaluate_candidate
@@ -233,11 +237,11 @@ contains
       call open_candidate(self, c)
       return
     end if
-    self%distance(c) = hit%distance
-    self%layer(c) = 0.0_wp
     self%normal(:, c) = hit%normal
     friction = model%tool(tool)%friction
-    call keep_committed(self, committed, c)
+    call keep_committed(self, model, committed, hit%distance + committed%layer_offset(tool), c)
+    self%onset(c) = self%committed_gap(c)
+    self%distance(c) = hit%distance + committed%layer_offset(tool) - self%onset(c)
     associate (phase => model%phase(committed%phase))
       if (is_compliant(phase, model%contact_node(c), hit%normal)) then
         call predict_layer(self, c, layer_at(model, phase, c), committed%layer_offset(tool), hit, &
@@ -254,12 +258,18 @@ contains
     end associate
   end subroutine find_and_predict
 
-  !> Keep tool, normal and force of a candidate, evaluated at the committed state.
-  subroutine keep_committed(self, committed, c)
+  !> Keep tool, normal, force and gap of a candidate, evaluated at the committed state.
+  subroutine keep_committed(self, model, committed, gap, c)
     type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
+    !> mm.
+    real(wp), intent(in) :: gap
     integer, intent(in) :: c
 
+    self%committed_gap(c) = 0.0_wp
+    if (.not. model%phase(committed%phase)%mixed .and. committed%status(c) /= status_gap) &
+        self%committed_gap(c) = max(gap, 0.0_wp)
     self%committed_tool(c) = committed%contact_tool(c)
     self%committed_normal(:, c) = self%normal(:, c)
     self%committed_force(:, c) = committed%lambda(:, c)
@@ -282,7 +292,7 @@ contains
     real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset
-    self%layer(c) = layer%height
+    self%onset(c) = layer%height
     self%distance(c) = gap - layer%height
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
         min(gap, (1.0_wp - at_onset)*layer%height)

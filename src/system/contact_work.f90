@@ -15,11 +15,11 @@ module dd3_system_contact_work
     integer, allocatable :: status(:)
     !> Nearest tool, `(n_contact)`; 0 if none is within the search distance.
     integer, allocatable :: tool(:)
-    !> Distance to the onset of contact, mm, `(n_contact)`: the gap, less the height of the contact
-    !> layer; meaningful if there is a tool.
+    !> Distance to the onset of contact, mm, `(n_contact)`; meaningful if there is a tool.
     real(wp), allocatable :: distance(:)
-    !> Height of the contact layer, mm, `(n_contact)`; 0 in the mixed formulation.
-    real(wp), allocatable :: layer(:)
+    !> Gap at the onset of contact, mm, `(n_contact)`: the height of the contact layer, or 0 in the
+    !> mixed formulation.
+    real(wp), allocatable :: onset(:)
     !> Outward normal of the tool, `(3, n_contact)`.
     real(wp), allocatable :: normal(:, :)
     !> Contact force lambda, N, `(3, n_contact)`.
@@ -33,9 +33,9 @@ module dd3_system_contact_work
     integer, allocatable :: held(:), natural(:)
     real(wp), allocatable :: violation(:)
     !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N,
-    !> `(3, n_contact)`.
+    !> `(3, n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
     integer, allocatable :: committed_tool(:)
-    real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
+    real(wp), allocatable :: committed_normal(:, :), committed_force(:, :), committed_gap(:)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
     !> Distance up to which the tools are looked for, mm.
@@ -53,7 +53,8 @@ contains
     allocate (self%committed_tool(n_contact), source=0)
     allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
-    allocate (self%distance(n_contact), self%layer(n_contact), source=0.0_wp)
+    allocate (self%distance(n_contact), self%onset(n_contact), self%committed_gap(n_contact), &
+        source=0.0_wp)
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
         source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)

@@ -33,7 +33,7 @@ def run(bench, element, n, text=None):
 def contact_deck():
     """Return the deck with a tool instead of displacements."""
     text = (HERE / "case.dat").read_text(encoding="utf-8")
-    tool = f'*TOOL punch\n  patches = "{HERE / "punch.bez"}"\n  contact = strip\n\n*CONTACT\n\n*NEWTON'
+    tool = f'*TOOL punch\n  patches = "{HERE / "punch.bez"}"\n  contact = strip\n\n*CONTACT\n  formulation = mixed\n\n*NEWTON'
     text = text.replace("*NEWTON", tool).replace("control = load", "control = punch").replace("0.04", "2e-5")
     return text.replace("displace = strip z -0.0005", "move = punch 0 0 -0.0005")
 
