@@ -210,8 +210,10 @@ module dd3_input_case
     type(limit_spec_t) :: force(3)
     !> Floor of the reference contact force.
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
-    !> Maximum predicted depth of a node inside a tool that it meets, over the thickness.
+    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness, and whether
+    !> it was given: the default depends on the formulation of the contact.
     type(limit_spec_t) :: depth
+    logical :: depth_given = .false.
     !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
     type(limit_spec_t) :: unloading
     !> Minimum and maximum of the factor r on the trial increment.

@@ -5,7 +5,7 @@ module dd3_input_cross_check
   use dd3_base_text, only : to_text
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
-      limits_spec_t, fields_every, fields_at
+      contact_spec_t, limits_spec_t, fields_every, fields_at
   use dd3_input_sheet_sets, only : n_quarters
   implicit none
   private
@@ -35,6 +35,8 @@ contains
       select case (case%deck%block(i)%keyword)
       case ("limits")
         call check_limits(case%limits, case%deck%block(i), errors)
+      case ("contact")
+        call check_contact(case%contact, case%deck%block(i), errors)
       case ("output")
         before = errors%count
         call check_output(case, case%deck%block(i), errors)
@@ -42,8 +44,9 @@ contains
       end select
     end do
     do i = 1, size(case%phase)
-      if (case%phase(i)%source%valid) call check_limits(case%phase(i)%limits, &
-          case%phase(i)%source, errors)
+      if (.not. case%phase(i)%source%valid) cycle
+      call check_limits(case%phase(i)%limits, case%phase(i)%source, errors)
+      call check_contact(case%phase(i)%contact, case%phase(i)%source, errors)
     end do
   end subroutine cross_check
 
@@ -193,6 +196,19 @@ contains
     call errors%push_input(block%at(key), "r_min = "//to_text(limits%r_min%value)// &
         " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max")
   end subroutine check_limits
+
+  !> Check that the settings of the contact belong to its formulation.
+  subroutine check_contact(contact, block, errors)
+    !> Settings that apply, given or inherited.
+    type(contact_spec_t), intent(in) :: contact
+    type(block_t), intent(in) :: block
+    type(error_list_t), intent(inout) :: errors
+
+    if (contact%mixed .and. block%given("layer")) call errors%push_input(block%at("layer"), &
+        "the mixed formulation has no layer", "formulation = compliant, without penalty")
+    if (.not. contact%mixed .and. block%given("penalty")) call errors%push_input( &
+        block%at("penalty"), "the compliant formulation has no penalty", "formulation = mixed")
+  end subroutine check_contact
 
   !> Check the interval or the travels at which fields are written.
   subroutine check_output(case, block, errors)

@@ -265,6 +265,7 @@ contains
     end do
     call fill_limit(limits%force_floor, off%force_floor, block, "force_floor")
     call fill_limit(limits%depth, off%depth, block, "depth")
+    limits%depth_given = limits%depth_given .or. block%has("depth")
     call fill_limit(limits%unloading, off%unloading, block, "unloading")
     call fill_limit(limits%r_min, off%r_min, block, "r_min")
     call fill_limit(limits%r_max, off%r_max, block, "r_max")

@@ -160,8 +160,8 @@ contains
           count=3), &
       row("force_floor", kind_real, "", "0.1", "floor beta of the reference contact force", &
           lower=zero), &
-      row("depth", kind_real, "", "0.01", "maximum predicted depth of a node inside a tool "// &
-          "that it meets, over the thickness"), &
+      row("depth", kind_real, "", "-", "maximum predicted depth of a node beyond the onset of "// &
+          "contact with a tool that it meets, over the thickness; default: 0.1, mixed: 0.01"), &
       row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
           "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &

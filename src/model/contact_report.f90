@@ -1,14 +1,19 @@
-!> Penalty and search distance of the contact as text, for `--check` and the log: without values in
+!> Settings of the contact as text, for `--check` and the log: the gap under pressure in the
+!> compliant formulation, the penalty in the mixed one, and the search distance. Without values in
 !> the input they follow from the model.
 module dd3_model_contact_report
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : newline, to_text
+  use dd3_contact_compliant, only : layer_gap
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_phase, only : phase_t
   implicit none
   private
   public :: contact_report
+
+  !> Pressures whose gap is reported, MPa.
+  real(wp), parameter :: reported_pressure(3) = [1.0_wp, 100.0_wp, 500.0_wp]
 
 contains
 
@@ -31,16 +36,56 @@ contains
     end do
   end function contact_report
 
-  !> Whether two phases have the same penalty and search distance.
+  !> Whether two phases have the same settings.
   pure logical function same_values(a, b)
     type(phase_t), intent(in) :: a, b
 
-    same_values = abs(a%penalty - b%penalty) <= 0.0_wp .and. &
-        abs(a%search_distance - b%search_distance) <= 0.0_wp
+    same_values = (a%mixed .eqv. b%mixed) .and. abs(a%layer - b%layer) <= 0.0_wp .and. &
+        abs(a%penalty - b%penalty) <= 0.0_wp .and. abs(a%search_distance - b%search_distance) <= 0.0_wp
   end function same_values
 
-  !> Return the values of a phase: the smallest and the largest penalty of the candidates.
+  !> Return the values of a phase.
   function values(model, phase) result(text)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    character(len=:), allocatable :: text
+
+    if (phase%mixed) then
+      text = "contact: "//penalties(model, phase)
+    else
+      text = "contact: "//gaps(model, phase)
+    end if
+    text = text//", search distance "//to_text(phase%search_distance, 4)//" mm"
+    if (abs(phase%search_distance - model%thickness) <= 0.0_wp) text = text//" (the thickness)"
+  end function values
+
+  !> Return the height of the layer, and the gaps that some pressures leave, of the sheet's first
+  !> material.
+  function gaps(model, phase) result(text)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    character(len=:), allocatable :: text
+
+    integer :: i
+
+    associate (height => phase%layer*model%thickness, &
+        young => model%material(model%material_of(1))%young)
+      text = "layer "//to_text(height, 3)//" mm, in it gaps of"
+      do i = 1, size(reported_pressure)
+        if (i > 1) text = text//","
+        text = text//" "//to_text(height*layer_gap(reported_pressure(i), young), 2)
+      end do
+    end associate
+    text = text//" mm at"
+    do i = 1, size(reported_pressure)
+      if (i > 1) text = text//","
+      text = text//" "//to_text(nint(reported_pressure(i)))
+    end do
+    text = text//" MPa"
+  end function gaps
+
+  !> Return the smallest and the largest penalty of the candidates.
+  function penalties(model, phase) result(text)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     character(len=:), allocatable :: text
@@ -52,12 +97,10 @@ contains
     penalty = [(contact_penalty(model, phase, c, .false.), c=1, model%n_contact)]
     smallest = to_text(minval(penalty), 4)
     largest = to_text(maxval(penalty), 4)
-    text = "contact: penalty "//smallest
+    text = "penalty "//smallest
     if (smallest /= largest) text = text//" to "//largest
     text = text//" N/mm"
     if (phase%penalty <= 0.0_wp) text = text//" (automatic)"
-    text = text//", search distance "//to_text(phase%search_distance, 4)//" mm"
-    if (abs(phase%search_distance - model%thickness) <= 0.0_wp) text = text//" (the thickness)"
-  end function values
+  end function penalties
 
 end module dd3_model_contact_report

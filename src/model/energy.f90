@@ -1,13 +1,17 @@
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp
+  use dd3_contact_compliant, only : layer_energy
+  use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
+  use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
+  use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: elastic_energy, plastic_work_increment
+  public :: contact_energy, elastic_energy, plastic_work_increment
 
 contains
 
@@ -30,6 +34,24 @@ contains
       end associate
     end do
   end function elastic_energy
+
+  !> Return the energy stored in the contact layers, mJ.
+  pure real(wp) function contact_energy(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    real(wp), allocatable :: normal(:, :)
+    integer :: c
+
+    contact_energy = 0.0_wp
+    if (model%n_contact == 0 .or. model%phase(state%phase)%mixed) return
+    normal = outward_normals(model, state%x)
+    do c = 1, model%n_contact
+      if (state%status(c) /= status_gap) contact_energy = contact_energy + layer_energy( &
+          layer_at(model, model%phase(state%phase), c), &
+          dot_product(normal(:, c), state%lambda(:, c)))
+    end do
+  end function contact_energy
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.

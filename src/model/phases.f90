@@ -2,7 +2,7 @@
 !> held, forces and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t, phase_spec_t, until_never
+  use dd3_input_case, only : case_t, limit_spec_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
   use dd3_model_loads, only : face_load_weights, load_set_t
@@ -13,6 +13,10 @@ module dd3_model_phases
   implicit none
   private
   public :: new_phases
+
+  !> Default of the depth to which nodes close in a prediction, over the thickness. The mixed
+  !> formulation has no resistance behind a gap.
+  real(wp), parameter :: compliant_depth = 0.1_wp, mixed_depth = 0.01_wp
 
 contains
 
@@ -121,6 +125,8 @@ contains
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%mixed = spec%contact%mixed
     phase%layer = merge(0.0_wp, spec%contact%layer, phase%mixed)
+    if (.not. phase%limits%depth_given) &
+        phase%limits%depth = limit_spec_t(.true., merge(mixed_depth, compliant_depth, phase%mixed))
     phase%newton%active_set = phase%newton%active_set .and. phase%mixed
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance

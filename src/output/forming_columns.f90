@@ -3,7 +3,7 @@
 module dd3_output_forming_columns
   use dd3_base_kinds, only : wp
   use dd3_model_contact_pressure, only : tool_contact_t, tool_contacts
-  use dd3_model_energy, only : elastic_energy
+  use dd3_model_energy, only : contact_energy, elastic_energy
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
@@ -12,9 +12,9 @@ module dd3_output_forming_columns
   public :: add_forming_heading, add_forming_values
 
   !> Names of the energies, in the order of `energies`.
-  character(len=*), parameter :: energy_name(7) = [character(len=15) :: "tool_work", &
+  character(len=*), parameter :: energy_name(8) = [character(len=15) :: "tool_work", &
       "external_work", "internal_work", "elastic_energy", "plastic_work", "friction_work", &
-      "energy_error"]
+      "contact_energy", "energy_error"]
 
 contains
 
@@ -67,16 +67,19 @@ contains
   end subroutine add_forming_values
 
   !> Return work and energies, mJ. The error is the work on the sheet less internal work, friction
-  !> work and that of draw-beads; it vanishes with the increments and the tolerance of equilibrium.
+  !> work, that of draw-beads and the energy of the contact layers; it vanishes with the increments and the tolerance of equilibrium.
   pure function energies(model, state) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp) :: energy(size(energy_name))
 
+    real(wp) :: stored
+
+    stored = contact_energy(model, state)
     energy = [state%tool_work, state%external_work, state%internal_work, &
         elastic_energy(model, state), state%plastic_work, state%friction_work, &
-        state%tool_work + state%external_work - state%internal_work - state%friction_work &
-        - state%bead_work]
+        stored, state%tool_work + state%external_work - state%internal_work - state%friction_work &
+        - state%bead_work - stored]
   end function energies
 
 end module dd3_output_forming_columns

@@ -99,6 +99,7 @@ HERTZ = """*BLANK block
   contact = z_max
   position = 0 0 10
 *CONTACT
+  formulation = mixed
 *NEWTON
   tolerance = 1e-6
 *PHASE press
