@@ -1,27 +1,29 @@
-"""A rigid cylinder on an elastic half-space: half-width and largest pressure of the contact (Hertz)."""
+"""A rigid cylinder on an elastic half-space, without and with a contact layer: half-width and largest pressure."""
 import math
 import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from frame import Mesh, Outcome, Section, Value, geometric  # noqa: E402
+from frame import Mesh, Outcome, Section, Value, geometric, load  # noqa: E402
 
 RADIUS, LOAD, YOUNG, POISSON = 10.0, 500.0, 2.1e5, 0.3
 WIDTH = math.sqrt(4 * LOAD * RADIUS * (1 - POISSON**2) / (math.pi * YOUNG))
 PRESSURE = 2 * LOAD / (math.pi * WIDTH)
+THICKNESS = 8.0  # of the blank, mm
 FINE = 0.3  # the elements are equal up to here, mm
 
 
-def run(bench, element, n):
+def run(bench, element, n, settings=None):
     """Run with n elements up to FINE along x and z; return the run, and place and force of the nodes, per mm of y."""
     step = FINE / n
     outer = [FINE + place for place in geometric(n, 1.15 * step, 8.0 - FINE)]
     places = [step * i for i in range(n)] + outer
     words = [" ".join(f"{x / 8:.9g}" for x in places), " ".join(f"{1 - x / 8:.9g}" for x in reversed(places))]
-    found = bench.run(f"hertz_{element}_{n}", HERE / "case.dat",
+    settings = settings or {}
+    found = bench.run("_".join(map(str, ["hertz", element, n, *settings.values()])), HERE / "case.dat",
                       {"element": element, "nx": len(places) - 1, "nz": len(places) - 1, "x_lines": words[0],
-                       "z_lines": words[1]})
+                       "z_lines": words[1], **settings})
     from fields import Fields  # needs h5py
     fields = Fields(found.folder)
     step = fields.count - 1
@@ -34,8 +36,8 @@ def run(bench, element, n):
 
 def measure(element, n, forces):
     """Return half-width, from load and second moment of the nodal forces, and pressure in the middle."""
-    load = sum(forces.values())
-    width = 2 * math.sqrt(sum(force * x * x for x, force in forces.items()) / load)
+    total = sum(forces.values())
+    width = 2 * math.sqrt(sum(force * x * x for x, force in forces.items()) / total)
     return width, forces[0.0] / (FINE / n) * (6 if element == "hex27" else 2)
 
 
@@ -46,6 +48,20 @@ def values(bench):
         width, pressure = measure(element, n, run(bench, element, n)[1])
         result += [Value(f"`{element}`, {n} elements to 0.3 mm: half-width of the contact, mm", WIDTH, width, 0.03),
                    Value(f"`{element}`: pressure in the middle, MPa", PRESSURE, pressure, 0.03)]
+    return Outcome(result)
+
+
+def layered(bench):
+    """Compare half-width and pressure under a contact layer with those of the integral equation."""
+    solve = load(HERE / "layer.py").measure  # needs numpy
+    result = []
+    for layer in (1e-4, 1e-3, 1e-2):
+        expected = solve(RADIUS, LOAD, YOUNG / (1 - POISSON**2), layer * THICKNESS, 3e-5 * YOUNG)
+        for element, n in (("hex8", 18), ("hex27", 5)):
+            forces = run(bench, element, n, {"formulation": "compliant", "layer": layer, "reach": 2.5})[1]
+            found = measure(element, n, forces)
+            result += [Value(f"layer of {layer:g}, `{element}`: {text}", *pair, 0.03) for text, pair in zip(
+                ("half-width, mm", "pressure in the middle, MPa"), zip(expected, found))]
     return Outcome(result)
 
 
@@ -85,8 +101,15 @@ A rigid cylinder of radius R = 10 mm is pressed by P = 500 N/mm on an elastic ha
 friction. Hertz: half-width a = √(4 P R/(π E*)), E* = E/(1 - ν²), largest pressure 2 P/(π a), distribution an ellipse.
 The half-space is a quarter of 8 x 8 mm, its elements equal up to 0.3 mm. The half-width is that of the ellipse with the
 second moment of the nodal forces; the pressure is the force of the middle node over its part of the face. Deck
-`tests/verification/hertz/case.dat`; `hex20` cannot be in contact.
+`tests/verification/hertz/case.dat`; `hex20` cannot be in contact. The formulation of the contact is the mixed one.
 """, values, slow=True),
+    Section("V16 Cylinder on a half-space: contact layer", """
+The same in the compliant formulation: a layer of height h on the cylinder, in which the pressure is p_h (h/g - 1) of
+the gap g, p_h = 3e-5 E. `layer` is h over the thickness of the sheet, here the 8 mm of the block: at the default 0.01,
+h is 0.08 mm, far above the clearance a²/(2 R) = 1.4e-3 mm at the edge of Hertz's contact, and the contact spreads.
+Expected: the integral equation of the half-space with the law of the layer, constant pressures on 300 strips
+(`tests/verification/hertz/layer.py`); without a layer it gives Hertz's values to 1e-4.
+""", layered, slow=True),
     Section("V16 Cylinder on a half-space: refinement and elements", """
 Half-width of the contact.
 """, study, slow=True, picture="hertz_elements.png"),
