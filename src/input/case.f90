@@ -172,7 +172,7 @@ module dd3_input_case
   type :: contact_spec_t
     !> Whether the formulation is the mixed one; the compliant one otherwise.
     logical :: mixed = .false.
-    !> Height of the contact layer over the thickness, of the compliant formulation.
+    !> Height of the contact layer over the thickness, of the compliant formulation; 0 for the default.
     real(wp) :: layer = 0.0_wp
     !> Penalty of the mixed formulation, N/mm.
     real(wp) :: penalty = 0.0_wp

@@ -127,8 +127,8 @@ contains
       row("formulation", kind_name, "", "-", "compliant: pressure by the gap in a layer on the "// &
           "tools; mixed: no gap, by an augmented Lagrangian; default: compliant, mixed where a "// &
           "penalty is given", choices="compliant mixed"), &
-      row("layer", kind_real, "", "0.01", "height of the layer of the compliant formulation, "// &
-          "over the thickness of the sheet", lower=1.0e-4_wp, upper=0.2_wp), &
+      row("layer", kind_real, "", "-", "height of the layer of the compliant formulation, "// &
+          "over the thickness of the sheet; default: 0.01", lower=1.0e-4_wp, upper=0.2_wp), &
       row("penalty", kind_real, "N/mm", "-", "penalty of the mixed formulation; default: "// &
           "from stiffness, thickness and mesh", lower=1.0e-3_wp, upper=1.0e9_wp), &
       row("search_distance", kind_real, "mm", "-", &

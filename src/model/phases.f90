@@ -14,6 +14,8 @@ module dd3_model_phases
   private
   public :: new_phases
 
+  !> Default height of the contact layer over the thickness.
+  real(wp), parameter :: default_layer = 0.01_wp
   !> Default of the depth to which nodes close in a prediction, over the thickness. The mixed
   !> formulation has no resistance behind a gap.
   real(wp), parameter :: compliant_depth = 0.1_wp, mixed_depth = 0.01_wp
@@ -124,7 +126,9 @@ contains
     if (size(spec%press_table) > 0) call set_press_table(spec%press_table, phase)
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%mixed = spec%contact%mixed
-    phase%layer = merge(0.0_wp, spec%contact%layer, phase%mixed)
+    phase%layer = spec%contact%layer
+    if (phase%layer <= 0.0_wp) phase%layer = default_layer
+    if (phase%mixed) phase%layer = 0.0_wp
     if (.not. phase%limits%depth_given) &
         phase%limits%depth = limit_spec_t(.true., merge(mixed_depth, compliant_depth, phase%mixed))
     phase%newton%active_set = phase%newton%active_set .and. phase%mixed
