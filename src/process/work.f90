@@ -74,7 +74,8 @@ contains
     new%bead_work = old%bead_work + tool_work - work
   end subroutine add_bead_work
 
-  !> Add the work of the tools, the friction work and the slip.
+  !> Add the work of the tools, the friction work and the slip. A contact layer that advances to its
+  !> place moves the sheet as the tool does, along its normal.
   pure subroutine add_contact_work(model, contact, old, moved, new)
     type(model_t), intent(in) :: model
     type(contact_work_t), intent(in) :: contact
@@ -83,7 +84,7 @@ contains
     real(wp), intent(in) :: moved(:, :)
     type(state_t), intent(inout) :: new
 
-    real(wp) :: force(3), tool_motion(3), slip(3)
+    real(wp) :: force(3), tool_motion(3), slip(3), advance
     integer :: c, tool
 
     new%tool_work = old%tool_work
@@ -96,7 +97,9 @@ contains
       tool_motion = new%tool_displacement(:, tool) - old%tool_displacement(:, tool)
       slip = moved(:, model%contact_node(c)) - tool_motion
       slip = slip - dot_product(contact%normal(:, c), slip)*contact%normal(:, c)
-      new%tool_work = new%tool_work - dot_product(force, tool_motion)
+      advance = old%layer_offset(tool) - new%layer_offset(tool)
+      new%tool_work = new%tool_work - dot_product(force, tool_motion &
+          + advance*contact%normal(:, c))
       new%friction_work = new%friction_work + dot_product(force, slip)
       if (new%status(c) == status_slip .and. old%status(c) /= status_gap) &
           new%slip_path(c) = new%slip_path(c) + norm2(slip)
