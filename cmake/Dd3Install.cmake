@@ -6,7 +6,7 @@
 #   <docdir>                       the documents, with links to examples and utilities, so that their own links hold
 include(GNUInstallDirs)
 set(data "${CMAKE_INSTALL_DATADIR}/${PROJECT_NAME}")
-set(commands tool mesh report section identify plot_force plot_point plot_sheet)
+set(commands tool mesh report section identify plot_force plot_increments plot_point plot_sheet)
 # Scripts of the project's own studies and pictures.
 set(internal benchmark bending_tables law_pictures plot_study study study_report)
 list(TRANSFORM commands PREPEND utils/ OUTPUT_VARIABLE scripts)

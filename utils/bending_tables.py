@@ -25,6 +25,8 @@ FOLDER = ROOT / "input_files" / "bending"
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
 MESHES = {"a": "0", "b": "1"}
 EDGES = {"free": "corner", "u_y = 0": "all"}
+# The limit on the contact forces is off except in the table `force`.
+NO_FORCE = {"force": "off"}
 HALVED = {"strain": "0.0025", "rotation": "0.025", "tangential": "1.5", "normal": "0.5"}
 # First travel at which forces are compared, and the distance of the points, mm.
 FIRST, STEP = 0.1, 0.1
@@ -36,12 +38,15 @@ def jobs():
     for mesh, skew in MESHES.items():
         for edges, held in EDGES.items():
             for p in PENALTIES:
-                yield f"{mesh}-{held}-{p}", "bending.dat", {"skew": skew, "held": held, "p": p}
+                yield f"{mesh}-{held}-{p}", "bending.dat", {"skew": skew, "held": held, "p": p, **NO_FORCE}
+    for mesh, skew in MESHES.items():
+        for p in PENALTIES:
+            yield f"force-{mesh}-{p}", "bending.dat", {"skew": skew, "p": p}
     for p in PENALTIES:
-        yield f"halved-{p}", "bending.dat", {"p": p, **HALVED}
+        yield f"halved-{p}", "bending.dat", {"p": p, **HALVED, **NO_FORCE}
     for p in PENALTIES:
-        yield f"cutback-{p}", "bending.dat", {"p": p, "skew": "0", "cutback": "on"}
-    yield "holder-11300", "bending.dat", {"holder": "-11300"}
+        yield f"cutback-{p}", "bending.dat", {"p": p, "skew": "0", "cutback": "on", **NO_FORCE}
+    yield "holder-11300", "bending.dat", {"holder": "-11300", **NO_FORCE}
     yield "fine", "fine.dat", {}
     yield "fine-1e4", "fine.dat", {"p": "1e4"}
 
@@ -136,6 +141,21 @@ def reasons(work):
     return table(["mesh", "edges", "p, N/mm", "last accepted, mm", "`reason` in status.csv"], rows)
 
 
+def force(work):
+    """Free edges with and without the limit on the contact forces."""
+    rows = []
+    for mesh in MESHES:
+        for p in PENALTIES:
+            for c, name in (("off", f"{mesh}-corner-{p}"), ("1, 1, 1", f"force-{mesh}-{p}")):
+                r = Run(work / name)
+                found = r.limiters()
+                rows.append([f"({mesh})", p, c, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.iterations:.2f}",
+                             *(f"{found.get(limiter, 0):.1f} %" for limiter in ("rotation", "force", "r_min")),
+                             f"{r.seconds:.1f}"])
+    return table(["mesh", "p, N/mm", "c, d, e", "reached, mm", "increments", "iterations per increment", "`rotation`",
+                  "`force`", "`r_min`", "processor time, s"], rows)
+
+
 def cutback(work):
     """Mesh (a) with free edges and cut-back."""
     rows = []
@@ -209,7 +229,7 @@ def fine(work):
                   "punch force there, N", "processor time, s", "memory, MB"], rows)
 
 
-TABLES = {f.__name__: f for f in (stops, reasons, cutback, penalties, agreement, halved, holder, limiters, fine)}
+TABLES = {f.__name__: f for f in (stops, reasons, force, cutback, penalties, agreement, halved, holder, limiters, fine)}
 
 
 def main():

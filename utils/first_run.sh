@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From a clone to the first result: installs what is missing, builds, runs the bending test, draws its curve and the
-# sheet.
+# From a clone to the first result: installs what is missing, builds, runs the bending test with and without the limit
+# on the contact forces, draws its curve, the sheet, and the size of the increments of both runs.
 #
 #   utils/first_run.sh          no arguments but --help
 set -euo pipefail
@@ -18,18 +18,30 @@ cmake --preset release >build-release.log 2>&1 || { cat build-release.log; exit 
 cmake --build --preset release --target dd3imp >>build-release.log 2>&1 || { tail -n 60 build-release.log; exit 1; }
 mkdir -p build && mv build-release.log build/release/build.log
 
-echo "== running input_files/bending/bending.dat"
+echo "== running input_files/bending/bending.dat, and beside it without the limit on the contact forces"
 result=$PWD/bending.out
+without=$PWD/bending_without.out
+# A thread each: the mesh is too small for more.
+build/release/dd3imp --quiet --threads 1 --set force=off --output "$without" input_files/bending/bending.dat &
+second=$!
+trap 'kill "$second" 2>/dev/null || true' EXIT
 code=0
-build/release/dd3imp --output "$result" input_files/bending/bending.dat || code=$?
+build/release/dd3imp --threads 1 --output "$result" input_files/bending/bending.dat || code=$?
 # 3: stopped before its end; the results up to there are complete.
 [ "$code" -eq 0 ] || [ "$code" -eq 3 ] || exit "$code"
+other=0
+wait "$second" || other=$?
+trap - EXIT
+[ "$other" -eq 0 ] || [ "$other" -eq 3 ] || exit "$other"
 
 echo "== drawing"
 .venv/bin/python utils/plot_force.py --output "$result/force.png" "$result"
 .venv/bin/python utils/plot_sheet.py --output "$result/sheet.png" --deck input_files/bending/bending.dat "$result"
+.venv/bin/python utils/plot_increments.py --output "$result/increments.png" \
+  --label "limit on the contact forces, c = d = e = 1" --label "without this limit" "$result" "$without"
 echo
 echo "punch force against displacement: $result/force.png"
 echo "deformed sheet and tools:         $result/sheet.png (coarse mesh; the fine one is fine.dat, 20 s)"
+echo "increments and their limiters:    $result/increments.png"
 echo "for ParaView:                     $result/fields.vtkhdf"
 exit "$code"

@@ -41,7 +41,7 @@ STATUS = [("gap", "0.75", "o"), ("stick", "#1f5f99", "s"), ("slip", "#c2571a", "
 
 def travel_range(results, case):
     """Return the smallest and largest travel of a case and of those that differ from it by round-off only."""
-    ways = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
+    ways = ["", "-auto", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
     travel = [float(results[case + way]["travel"]) for way in ways if case + way in results]
     return min(travel), max(travel)
 

@@ -27,11 +27,11 @@ SCATTER = {("a", "", "30"): "off", ("a", "-c0.1", "30"): "0.1, 0.1, 0.1", ("a", 
            ("a", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm",
            ("b", "-c1-alone-trial0.1", "30"): "1, 1, 1 alone, trial 0.1 mm"}
 # Endings of the cases that differ from the plain one by round-off only.
-PERTURBED = ["", "-cgs", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
+PERTURBED = ["", "-auto", "-umfpack", *(f"-{way}{n}" for way in ("above", "below") for n in ("", "2", "3", "4"))]
 PAPER_COST = {"-c0.1": "+150 %", "-c1": "+7 %", "-c1000": "-2 %", "-normal": "+3 %", "-tangential": "-8 %"}
 SENSITIVITY = {"tolerance1e-4": "tolerance 1e-4", "tolerance1e-6": "tolerance 1e-6", "trial0.1": "trial 0.1 mm",
                "trial0.5": "trial 0.5 mm", "halved": "halved limits", "iterations10": "at most 10 iterations",
-               "iterations100": "at most 100 iterations", "cgs": "solver `cgs` alone", "umfpack": "solver `umfpack`"}
+               "iterations100": "at most 100 iterations", "auto": "solver `auto`", "umfpack": "solver `umfpack`"}
 
 
 class Rows(dict):

@@ -1,4 +1,4 @@
-"""Draw both pictures of a small made-up run, and inputs before a run. Skipped (77) without the packages.
+"""Draw the pictures of a small made-up run, and inputs before a run. Skipped (77) without the packages.
 
     pictures.py --program build/release/dd3imp
 """
@@ -23,6 +23,7 @@ import numpy as np  # noqa: E402
 
 sys.path.insert(0, str(UTILS))
 from beads import draped  # noqa: E402
+from plot_increments import Increments  # noqa: E402
 
 HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-
 increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts
@@ -46,6 +47,14 @@ started 2026-01-01 00:00
   control = punch
 linear solver: umfpack
 """  # of a run with --set shape=punch
+STATUS = """# units: -,-,-,mm,-,-,-,-
+increment,attempt,phase,travel,r,limiter,outcome,reason
+1,1,close,0,0.1,phase,accepted,
+2,1,draw,1,0.02,rotation,accepted,
+3,1,draw,,,,retry,"status, changes"
+3,2,draw,1.5,0.001,r_min,accepted,
+4,1,draw,2,0.01,force,accepted,
+"""
 PATCHES = "patch 2 1 rational\n0 0 2 1\n1 0 2 0.7\n1 0 3 1\n0 1 2 1\n1 1 2 0.7\n1 1 3 1\n"
 
 
@@ -55,6 +64,7 @@ def make_run(folder):
     run = folder / "job.out"
     run.mkdir()
     (run / "history.csv").write_text(HISTORY)
+    (run / "status.csv").write_text(STATUS)
     (run / "job.log").write_text(LOG)
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
     with h5py.File(run / "fields.vtkhdf", "w") as file:
@@ -135,6 +145,27 @@ def check_beads(run, folder):
     (folder / "job.dat").write_text(DECK)
 
 
+def check_increments(run, folder):
+    """Check the picture of the increments: of one run and two, of one that stopped; refusals give one line each."""
+    picture = ("--output", folder / "increments.png")
+    call("plot_increments.py", run, *picture)
+    assert size_of(folder / "increments.png") == (1500, 580)
+    call("plot_increments.py", run, run / "status.csv", "--label", "one", "--phase", "draw", "--phase", "close", *picture)
+    assert size_of(folder / "increments.png") == (1500, 1100)
+    stopped = folder / "stopped.csv"
+    stopped.write_text(STATUS + "5,1,draw,2.1,0.01,force,failed,\n5,1,dr")
+    call("plot_increments.py", stopped, "--output", folder / "increments.svg")
+    assert "<svg" in (folder / "increments.svg").read_text()
+    increments = Increments(stopped, [])
+    assert increments.stopped and increments.travel.tolist() == [1.0, 1.5, 2.0], increments.travel
+    assert dict(increments.limiters()) == {"rotation": 1, "r_min": 1, "force": 1}, increments.limiters()
+    assert "no phase 'none'" in call("plot_increments.py", run, "--phase", "none", *picture, expect=2)
+    assert "No such file" in call("plot_increments.py", folder / "none.out", *picture, expect=2)
+    assert "more labels" in call("plot_increments.py", run, "--label", "a", "--label", "b", *picture, expect=2)
+    stopped.write_text(STATUS[:STATUS.index("1,1,close")])
+    assert "no accepted increments" in call("plot_increments.py", stopped, *picture, expect=2)
+
+
 def check_inputs(program, folder):
     """Check pictures of the initial state: of a job, and of one with a tool in its sheet."""
     options = ("--program", program, "--size", 300, 200, "--output", folder / "initial.png")
@@ -175,6 +206,7 @@ def main():
         assert "no field 'strain'" in call("plot_sheet.py", run, "--field", "strain", expect=2)
         assert "no tool 'die'" in call("plot_force.py", run, "--tool", "die", expect=2)
         assert "No such file" in call("plot_force.py", folder / "none.out", expect=2)
+        check_increments(run, folder)
         check_beads(run, folder)
         check_refusals(run, folder)
         check_inputs(program, folder)
