@@ -275,7 +275,7 @@ contains
     end do
   end subroutine approach
 
-  !> Find the smallest gap between a pressed tool and its candidates.
+  !> Find the smallest gap between the contact layer of a pressed tool and its candidates.
   subroutine gap_of_tool(model, tool, state, gap, facing)
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool
@@ -302,7 +302,8 @@ contains
           model%tolerance%tool_search, model%tolerance%committed_depth, hit, &
           outward(:, c))
       if (.not. hit%found) cycle
-      gap = min(gap, hit%distance)
+      gap = min(gap, hit%distance + state%layer_offset(tool) - model%phase(state%phase)%layer &
+          *model%thickness_at(model%contact_node(c)))
       facing = max(facing, dot_product(hit%normal, model%phase(state%phase)%direction(:, tool)))
     end do
   end subroutine gap_of_tool
