@@ -172,7 +172,7 @@ module dd3_input_case
   type :: contact_spec_t
     !> Whether the formulation is the mixed one; the compliant one otherwise.
     logical :: mixed = .false.
-    !> Height of the contact layer over the thickness, of the compliant formulation; 0 for the default.
+    !> Height of the contact layer of the compliant formulation over the thickness; 0: default.
     real(wp) :: layer = 0.0_wp
     !> Penalty of the mixed formulation, N/mm.
     real(wp) :: penalty = 0.0_wp
@@ -210,8 +210,8 @@ module dd3_input_case
     type(limit_spec_t) :: force(3)
     !> Floor of the reference contact force.
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
-    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness, and whether
-    !> it was given: the default depends on the formulation of the contact.
+    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness, and
+    !> whether it was given: the default depends on the formulation of the contact.
     type(limit_spec_t) :: depth
     logical :: depth_given = .false.
     !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
