@@ -32,8 +32,8 @@ module dd3_system_contact_work
     !> law; and the force by which it violates the one held, N.
     integer, allocatable :: held(:), natural(:)
     real(wp), allocatable :: violation(:)
-    !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N,
-    !> `(3, n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
+    !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N, `(3,
+    !> n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
     integer, allocatable :: committed_tool(:)
     real(wp), allocatable :: committed_normal(:, :), committed_force(:, :), committed_gap(:)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
