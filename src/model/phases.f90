@@ -121,7 +121,6 @@ contains
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%mixed = spec%contact%mixed
     phase%layer = merge(0.0_wp, spec%contact%layer, phase%mixed)
-    phase%newton%active_set = phase%newton%active_set .and. phase%mixed
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()
