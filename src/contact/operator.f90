@@ -23,7 +23,7 @@ module dd3_contact_operator
   implicit none
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
-  public :: contact_operator_of_status, contact_violation, coulomb_operator
+  public :: contact_operator_of_status, coulomb_operator
   public :: normal_force_t, traction_t
 
   !> Contact status of a node: not in contact, sticking or slipping.
@@ -72,24 +72,6 @@ contains
       if (norm(tangential) > max(-friction*sigma_n, penalty*round_off)) status = status_slip
     end if
   end function contact_status
-
-  !> Return the force by which a node violates a status that it is held in, N; zero if the status
-  !> is its own.
-  pure real(wp) function contact_violation(held, normal, distance, lambda, slip, penalty, &
-      friction) result(violation)
-    integer, intent(in) :: held
-    real(wp), intent(in) :: normal(3), distance, lambda(3), slip(3), penalty, friction
-
-    real(wp) :: sigma_n, tangential(3), excess
-
-    sigma_n = dot_product(lambda, normal) + penalty*distance
-    violation = max(0.0_wp, merge(-sigma_n, sigma_n, held == status_gap))
-    if (held == status_gap .or. violation > 0.0_wp .or. friction <= 0.0_wp) return
-    tangential = lambda + penalty*slip
-    tangential = tangential - dot_product(normal, tangential)*normal
-    excess = norm(tangential) + friction*sigma_n
-    violation = max(0.0_wp, merge(excess, -excess, held == status_stick))
-  end function contact_violation
 
   !> Kernel: evaluate force and linearisation of a node with a given status.
   pure subroutine contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, &

@@ -239,8 +239,8 @@ module dd3_input_case
     real(wp) :: cutback_min = 0.0_wp
     !> Iterations that the size of the increments is steered to; 0: not steered.
     integer :: target_iterations = 0
-    !> Whether the status of candidates that cycle is held, and whether iterations are damped.
-    logical :: active_set = .false., damping = .false.
+    !> Whether iterations are damped.
+    logical :: damping = .false.
     !> Whether a penalty above the automatic one is reduced to it where iterations fail to converge.
     logical :: adapt_penalty = .false.
   end type newton_spec_t

@@ -188,9 +188,8 @@ contains
       row("tool_force", kind_real, "", "1e-3", "tolerance of the balance of a pressed tool "// &
           "under which nodes keep opening and closing, over its force", lower=1.0e-6_wp, &
           upper=0.1_wp), &
-      row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment; "// &
-          "with active_set four times as many while the criterion decreases", lower=2.0_wp, &
-          upper=1000.0_wp), &
+      row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
+          lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
       row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", &
@@ -199,8 +198,6 @@ contains
           lower=1.0e-9_wp, upper=1.0_wp), &
       row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
-      row("active_set", kind_logical, "", "on", "on: hold the contact status of nodes where it "// &
-          "cycles, then release the nodes that violate it"), &
       row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic "// &
           "one to it after ten iterations or a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &

@@ -131,7 +131,6 @@ contains
     if (phase%mixed) phase%layer = 0.0_wp
     if (.not. phase%limits%depth_given) &
         phase%limits%depth = limit_spec_t(.true., merge(mixed_depth, compliant_depth, phase%mixed))
-    phase%newton%active_set = phase%newton%active_set .and. phase%mixed
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()

@@ -16,8 +16,7 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,held,released,damped,"// &
-    "penalty_reduced"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,damped,penalty_reduced"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -62,8 +61,8 @@ module dd3_output_status
     integer :: force_node = 0
     character(len=64) :: force_tool = ""
     real(wp) :: force_size = 0.0_wp
-    !> Remedies of the corrector: candidates held, releases of held ones, iterations damped.
-    integer :: held = 0, released = 0, damped = 0
+    !> Iterations of the corrector that were damped.
+    integer :: damped = 0
     !> 1 if the penalty of the input is reduced to the automatic one.
     integer :: penalty_reduced = 0
   end type status_row_t
@@ -134,8 +133,6 @@ contains
       call add_number(table, row%force_node, limited)
       call table%add_text(merge(row%force_tool, repeat(" ", len(row%force_tool)), limited))
       call add_known(table, row%force_size, limited)
-      call table%add_integer(row%held)
-      call table%add_integer(row%released)
       call table%add_integer(row%damped)
       call table%add_integer(row%penalty_reduced)
       call table%end_row(error)

@@ -4,14 +4,11 @@ module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_model_phase, only : phase_t
+  use dd3_process_status_memory, only : new_status_memory
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
   public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction, reduce_penalty
-  public :: status_memory
-
-  !> Number of iterations whose contact status is kept, to detect cycles.
-  integer, parameter :: status_memory = 3
 
   !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
   type :: limit_t
@@ -27,21 +24,10 @@ module dd3_process_attempt
   type :: correction_t
     !> Criterion of convergence, eq. (19), after each iteration.
     real(wp), allocatable :: criterion(:)
-    !> Contact status in the last iterations, the newest first, `(n_contact, status_memory)`; -1
-    !> before the first one.
+    !> Contact status in the last iterations, see `dd3_process_status_memory`.
     integer, allocatable :: status(:, :)
-    !> Number of changes of the status of each candidate since the criterion was last at its
-    !> minimum, and whether its slip reversed in the last iteration, `(n_contact)`.
-    integer, allocatable :: changes(:)
-    logical, allocatable :: reversed(:)
-    !> Whether a candidate was opened for want of force, `(n_contact)`.
-    logical, allocatable :: opened(:)
-    !> Tangential contact forces in the last iteration, `(3, n_contact)`, N.
-    real(wp), allocatable :: tangential(:, :)
-    !> Counts of remedies: candidates held, releases of held ones, iterations damped.
-    integer :: held = 0, released = 0, damped = 0
-    !> Number of times that held candidates were released, and the iteration of the last one.
-    integer :: releases = 0, last_release = 0
+    !> Number of iterations damped.
+    integer :: damped = 0
     !> Fraction of the last solution in the trial state, and the reductions that led to it.
     real(wp) :: step = 1.0_wp
     integer :: reductions = 0
@@ -102,20 +88,8 @@ contains
     integer, intent(in) :: n_contact
 
     self%criterion = [real(wp) ::]
-    if (.not. allocated(self%status)) then
-      allocate (self%status(n_contact, status_memory), self%lambda_increment(3, n_contact))
-      allocate (self%changes(n_contact), self%reversed(n_contact), self%tangential(3, n_contact))
-      allocate (self%opened(n_contact))
-    end if
-    self%status = -1
-    self%changes = 0
-    self%reversed = .false.
-    self%opened = .false.
-    self%tangential = 0.0_wp
-    self%held = 0
-    self%released = 0
-    self%releases = 0
-    self%last_release = 0
+    call new_status_memory(self%status, n_contact)
+    if (.not. allocated(self%lambda_increment)) allocate (self%lambda_increment(3, n_contact))
     self%damped = 0
     self%step = 1.0_wp
     self%reductions = 0

@@ -62,8 +62,6 @@ contains
 
     associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
-      row%held = correction%held
-      row%released = correction%released
       row%damped = correction%damped
       row%penalty_reduced = merge(1, 0, stepper%attempt%penalty_reduced)
       if (size(correction%criterion) > 0) &

@@ -13,18 +13,17 @@ module dd3_process_corrector
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_active_set, only : keeps_changing, open_unloaded, record_status, &
-      unsettled, update_active_set
-  use dd3_process_attempt, only : attempt_t, clear_correction, correction_t, &
-      reduce_penalty, status_memory
+  use dd3_process_attempt, only : attempt_t, clear_correction, reduce_penalty
   use dd3_process_balance, only : balance_tools, balanced
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_overshoot, only : check_overshoot
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
+  use dd3_process_status_memory, only : keeps_changing, record_status, status_changes, &
+      unsettled
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : is_normal_held
-  use dd3_system_contact_work, only : contact_work_t, not_held
+  use dd3_system_contact_work, only : contact_work_t
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : linear_problem_t
   use dd3_system_round_off, only : attainable_residual
@@ -43,13 +42,8 @@ module dd3_process_corrector
   !> fallen to a new minimum in the last ones.
   integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
-  !> Largest number of iterations, relative to that of the input, if the criterion goes on
-  !> decreasing.
-  integer, parameter :: extension = 4
   !> Iteration after which the penalty of the input is reduced to the automatic one.
   integer, parameter :: reducing_iteration = 10
-  !> Largest number of nodes listed in a message.
-  integer, parameter :: most_listed = 4
 
 contains
 
@@ -66,12 +60,11 @@ contains
     character(len=:), allocatable :: changes
 
     call clear_correction(attempt%correction, model%n_contact)
-    system%contact%held = not_held
     call iterate(model, committed, trial, system, attempt)
     associate (verdict => attempt%verdict)
       if (verdict%outcome == verdict_converged) return
       if (len_trim(verdict%reason) == 0) call explain(model, trial, system, attempt)
-      changes = status_changes(model, attempt%correction, &
+      changes = status_changes(model, attempt%correction%status, &
           len(verdict%reason) - len_trim(verdict%reason) - 2)
       if (len(changes) == 0) return
       if (len_trim(verdict%reason) > 0) changes = trim(verdict%reason)//"; "//changes
@@ -88,17 +81,13 @@ contains
     type(attempt_t), intent(inout) :: attempt
 
     integer :: j
-    logical :: moved, changed
+    logical :: moved
 
     system%problem%prescribed = 0.0_wp
     system%problem%tool_prescribed = 0.0_wp
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction)
-      do j = 1, extension*phase%newton%iterations
-        if (j > phase%newton%iterations) then
-          if (.not. phase%newton%active_set) exit
-          if (.not. decreases(correction%criterion(correction%last_release + 1:))) exit
-        end if
+      do j = 1, phase%newton%iterations
         if (interrupted()) then
           verdict%outcome = verdict_retry
           verdict%reason = "interrupted"
@@ -109,7 +98,7 @@ contains
         if (j == 2) call system%threads%end_iteration()
         call evaluate(model, committed, trial, system, attempt)
         if (verdict%outcome /= verdict_converged) return
-        call record_status(correction, system%contact, j)
+        call record_status(correction%status, system%contact%status)
         call check_convergence(model, trial, system, attempt)
         call system%partition%check_agreement(verdict%norm, verdict)
         if (verdict%outcome == verdict_impossible) return
@@ -117,13 +106,6 @@ contains
             .or. (j > 1 .and. verdict%norm < settled*phase%newton%tolerance)) then
           call balance_tools(model, committed, trial, system, moved)
           if (moved) call check_convergence(model, trial, system, attempt)
-        end if
-        if (phase%newton%active_set) then
-          call update_active_set(correction, system%contact, phase%newton%tolerance, verdict, &
-              changed)
-          if (verdict%outcome /= verdict_converged) call open_unloaded(correction, &
-              system%contact, committed%lambda, model%tolerance%touch, changed)
-          if (changed) call evaluate_forces(model, committed, trial, system)
         end if
         if (verdict%outcome == verdict_converged) then
           trial%lambda = system%contact%force
@@ -160,17 +142,6 @@ contains
     if (.not. problem%missed) return
     where (prescribed) problem%prescribed = problem%target - trial%x
   end subroutine prescribe_missed
-
-  !> Whether the criterion fell to a new minimum in the last iterations. Where a flat tool meets the
-  !> sheet all over and the sheet bulges away from it, the contacts open from the edge of the tool to
-  !> its middle by about one row of nodes in an iteration: the finer the mesh, the more iterations.
-  !> A smaller increment takes as many.
-  pure logical function decreases(criterion)
-    !> Since held candidates were released.
-    real(wp), intent(in) :: criterion(:)
-
-    decreases = minloc(criterion, dim=1) > size(criterion) - without_progress
-  end function decreases
 
   !> Whether the iterations do not approach a solution: residuals as large as the forces for long,
   !> and not decreasing.
@@ -209,7 +180,7 @@ contains
         verdict%reason = "a prescribed motion leads a node into a tool"
         return
       end if
-      if (any(unsettled(correction))) return
+      if (any(unsettled(correction%status))) return
       reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
           //to_text(correction%worst_node)
       if (verdict%norm < phase%newton%tolerance) then
@@ -290,7 +261,7 @@ contains
           correction%worst_residual)
       forces_met = .true.
       tool_force = balanced
-      if (keeps_changing(correction)) tool_force = phase%newton%tool_force
+      if (keeps_changing(correction%status)) tool_force = phase%newton%tool_force
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (any(contact%tool == tool .and. contact%status /= status_gap)) then
@@ -316,38 +287,5 @@ contains
           verdict%outcome = verdict_converged
     end associate
   end subroutine check_convergence
-
-  !> Return a list of the nodes whose status did not settle in the last iterations; empty if there
-  !> are none.
-  function status_changes(model, correction, room) result(text)
-    type(model_t), intent(in) :: model
-    type(correction_t), intent(in) :: correction
-    !> Largest length of the text.
-    integer, intent(in) :: room
-    character(len=:), allocatable :: text
-
-    character(len=5), parameter :: names(0:2) = ["gap  ", "stick", "slip "]
-    character(len=:), allocatable :: node
-    integer :: c, i, listed
-    logical :: changing(model%n_contact)
-
-    text = ""
-    changing = unsettled(correction)
-    if (.not. any(changing)) return
-    text = "contact status changes at "//to_text(count(changing))//" nodes: "
-    if (count(changing) == 1) text = "contact status changes at 1 node: "
-    listed = 0
-    do c = 1, model%n_contact
-      if (.not. changing(c)) cycle
-      node = "node "//to_text(model%contact_node(c))
-      do i = status_memory, 1, -1
-        if (correction%status(c, i) >= 0) node = node//" "//trim(names(correction%status(c, i)))
-      end do
-      if (listed > 0) node = "; "//node
-      if (listed == most_listed .or. len(text) + len(node) > room) return
-      text = text//node
-      listed = listed + 1
-    end do
-  end function status_changes
 
 end module dd3_process_corrector

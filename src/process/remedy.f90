@@ -22,7 +22,6 @@ module dd3_process_remedy
       "stop rigid motion"
   character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
   character(len=*), parameter :: cutback_remedy = "cutback = on in *NEWTON"
-  character(len=*), parameter :: active_set_remedy = "active_set = on in *NEWTON"
   character(len=*), parameter :: damping_remedy = "damping = on in *NEWTON"
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
@@ -58,8 +57,6 @@ contains
         remedy = support_remedy
       else if (.not. phase%newton%cutback) then
         remedy = cutback_remedy
-      else if (.not. phase%newton%active_set .and. begins(reason, "contact status")) then
-        remedy = active_set_remedy
       else if (.not. phase%newton%damping) then
         remedy = damping_remedy
       else

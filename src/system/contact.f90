@@ -6,7 +6,7 @@ module dd3_system_contact
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
-      contact_violation, round_off, status_gap, status_slip, status_stick
+      round_off, status_gap, status_slip, status_stick
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -14,7 +14,7 @@ module dd3_system_contact
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
-  use dd3_system_contact_work, only : contact_work_t, not_held, open_candidate
+  use dd3_system_contact_work, only : contact_work_t, open_candidate
   implicit none
   private
   public :: evaluate_contact, predictor_contact, is_normal_held
@@ -145,11 +145,9 @@ contains
     self%onset(c) = layer%height
     self%distance(c) = hit%distance + offset - layer%height
     self%status(c) = status_gap
-    self%violation(c) = 0.0_wp
     call compliant_operator(layer, hit%normal, hit%distance + offset, hit%dnormal, &
         self%lambda(:, c), committed, slip, friction, self%status(c), self%force(:, c), &
         self%d(:, :, c), self%e(:, :, c))
-    self%natural(c) = self%status(c)
   end subroutine evaluate_layer
 
   !> Evaluate status, force and linearisation of a candidate near a tool by the mixed law. A
@@ -165,25 +163,17 @@ contains
 
     self%onset(c) = self%committed_gap(c)
     self%distance(c) = hit%distance + offset - self%onset(c)
-    self%natural(c) = contact_status(hit%normal, self%distance(c), self%lambda(:, c), slip, &
+    self%status(c) = contact_status(hit%normal, self%distance(c), self%lambda(:, c), slip, &
         penalty, friction)
-    self%status(c) = self%natural(c)
-    self%violation(c) = 0.0_wp
-    if (self%held(c) /= not_held) then
-      self%status(c) = self%held(c)
-      self%violation(c) = contact_violation(self%held(c), hit%normal, self%distance(c), &
-          self%lambda(:, c), slip, penalty, friction)
-    end if
-    ! A node held in contact under tension slips without friction.
     call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), hit%dnormal, &
-        self%lambda(:, c), slip, penalty, merge(0.0_wp, friction, self%natural(c) == status_gap), &
-        self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+        self%lambda(:, c), slip, penalty, friction, self%force(:, c), self%d(:, :, c), &
+        self%e(:, :, c))
   end subroutine evaluate_candidate
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
   !> candidates within `touch` of it stick without being pulled, unless it moves away from them.
-  !> With the active set, a gap that has closed resists without friction.
+  !> A gap that has closed resists without friction.
   subroutine predictor_contact(self, model, committed)
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -250,7 +240,7 @@ contains
       end if
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
-      call set_predictor_status(self%status(c), friction, phase, leaving, touching(tool), hit, &
+      call set_predictor_status(self%status(c), friction, leaving, touching(tool), hit, &
           model%tolerance%touch)
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           self%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal, &
@@ -304,12 +294,11 @@ contains
   end subroutine predict_layer
 
   !> Set the status of a candidate in the predictor.
-  pure subroutine set_predictor_status(status, friction, phase, leaving, touching, hit, touch)
+  pure subroutine set_predictor_status(status, friction, leaving, touching, hit, touch)
     !> Committed on entry.
     integer, intent(inout) :: status
     !> Gets the coefficient of friction: 0 if the committed state has no contact force.
     real(wp), intent(inout) :: friction
-    type(phase_t), intent(in) :: phase
     !> Whether the tool moves away from the candidate.
     logical, intent(in) :: leaving
     !> Whether any candidate is in contact with the tool.
@@ -321,8 +310,7 @@ contains
     if (.not. touching) then
       status = status_gap
       if (hit%distance <= touch .and. .not. leaving) status = status_stick
-    else if (status == status_gap .and. phase%newton%active_set .and. .not. leaving &
-        .and. hit%distance < 0.0_wp) then
+    else if (status == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
       status = status_slip
       friction = 0.0_wp
     end if

@@ -4,10 +4,7 @@ module dd3_system_contact_work
   use dd3_contact_operator, only : status_gap
   implicit none
   private
-  public :: contact_work_t, new_contact_work, not_held, open_candidate
-
-  !> Value of `held` of a candidate whose status is not held.
-  integer, parameter :: not_held = -1
+  public :: contact_work_t, new_contact_work, open_candidate
 
   !> Contact of the candidates.
   type :: contact_work_t
@@ -28,10 +25,6 @@ module dd3_system_contact_work
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
     real(wp), allocatable :: d(:, :, :), e(:, :, :)
-    !> Status that a candidate is held in, `(n_contact)`, or `not_held`; the status by the contact
-    !> law; and the force by which it violates the one held, N.
-    integer, allocatable :: held(:), natural(:)
-    real(wp), allocatable :: violation(:)
     !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N, `(3,
     !> n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
     integer, allocatable :: committed_tool(:)
@@ -58,8 +51,7 @@ contains
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
         source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%outward(3, n_contact), self%violation(n_contact), source=0.0_wp)
-    allocate (self%held(n_contact), self%natural(n_contact), source=not_held)
+    allocate (self%outward(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
   !> Set a candidate without a tool near it.
@@ -68,8 +60,6 @@ contains
     integer, intent(in) :: c
 
     self%status(c) = status_gap
-    self%natural(c) = status_gap
-    self%violation(c) = 0.0_wp
     self%distance(c) = huge(1.0_wp)
     self%normal(:, c) = 0.0_wp
     self%force(:, c) = 0.0_wp

@@ -110,10 +110,8 @@ def interrupted(runner, work):
 
 def stopped(runner, work):
     """A run that stops: continued unchanged it stops again in the same way; with more iterations it reaches the end."""
-    # With active_set a run may take more than `iterations`.
-    for name, change, settings in (("iterations", "cutback = off\n  active_set = off", ("iterations=4",)),
-                                   ("cut-backs", "cutback = on\n  active_set = off\n  cutback_min = 0.03",
-                                    ("iterations=3",))):
+    for name, change, settings in (("iterations", "cutback = off", ("iterations=4",)),
+                                   ("cut-backs", "cutback = on\n  cutback_min = 0.03", ("iterations=3",))):
         first, again, output = work / name / "first", work / name / "again", work / name / "changed"
         deck = Deck(work / name / "deck.dat", ("cutback = on", change))
         runner.run(deck, first, expect=3, settings=settings)
