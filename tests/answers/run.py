@@ -144,8 +144,8 @@ DECKS = [
     # Early stops
     Deck("the bending test on mesh (a), automatic settings", "exit code 3 at 18 mm, without cut-back",
          file="input_files/bending/bending.dat", values=("punch_fz",),
-         changes=(("skew = 1.0 ", "skew = 0.0 "), ("*LIMITS", "*LIMITS_"), ("*NEWTON", "*NEWTON_"), ("*SOLVER", "*SOLVER_"),
-                  ("  formulation = mixed\n", ""), ("${p}", "")),
+         changes=(("skew = 1.0 ", "skew = 0.0 "), ("*LIMITS", "*LIMITS_"), ("*NEWTON", "*NEWTON_"),
+                  ("*SOLVER", "*SOLVER_"), ("  formulation = mixed\n", ""), ("${p}", "")),
          options=("--quiet",)),
 ]
 

@@ -150,7 +150,8 @@ def check_increments(run, folder):
     picture = ("--output", folder / "increments.png")
     call("plot_increments.py", run, *picture)
     assert size_of(folder / "increments.png") == (1500, 580)
-    call("plot_increments.py", run, run / "status.csv", "--label", "one", "--phase", "draw", "--phase", "close", *picture)
+    both = ("--phase", "draw", "--phase", "close")
+    call("plot_increments.py", run, run / "status.csv", "--label", "one", *both, *picture)
     assert size_of(folder / "increments.png") == (1500, 1100)
     stopped = folder / "stopped.csv"
     stopped.write_text(STATUS + "5,1,draw,2.1,0.01,force,failed,\n5,1,dr")
