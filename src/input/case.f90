@@ -226,9 +226,6 @@ module dd3_input_case
     real(wp) :: tolerance = 0.0_wp
     !> Maximum of the tolerance in a phase in which all tools are released.
     real(wp) :: release_tolerance = 0.0_wp
-    !> Tolerance of the balance of a pressed tool under which nodes keep opening and closing, over
-    !> its force.
-    real(wp) :: tool_force = 0.0_wp
     !> Maximum number of iterations of an increment.
     integer :: iterations = 0
     !> Whether a failed increment is repeated with a smaller r.

@@ -300,7 +300,6 @@ contains
     if (block%has("tolerance")) newton%tolerance = block%number("tolerance")
     if (block%has("release_tolerance")) &
         newton%release_tolerance = block%number("release_tolerance")
-    if (block%has("tool_force")) newton%tool_force = block%number("tool_force")
     if (block%has("iterations")) newton%iterations = nint(block%number("iterations"))
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
     if (block%has("cutback_factor")) newton%cutback_factor = block%number("cutback_factor")

@@ -185,9 +185,6 @@ contains
           lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("release_tolerance", kind_real, "", "1e-5", "maximum of tolerance in a phase in which "// &
           "all tools are released", lower=zero, upper=0.1_wp, lower_open=.true.), &
-      row("tool_force", kind_real, "", "1e-3", "tolerance of the balance of a pressed tool "// &
-          "under which nodes keep opening and closing, over its force", lower=1.0e-6_wp, &
-          upper=0.1_wp), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &

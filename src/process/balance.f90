@@ -9,11 +9,11 @@ module dd3_process_balance
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: balance_tools, balanced
+  public :: balance_tools, tool_tolerance
 
-  !> Relative residual of a balanced tool, and the one up to which the motion of the tool alone
-  !> restores its balance.
-  real(wp), parameter :: balanced = 1.0e-6_wp, nearly_met = 1.0e-4_wp
+  !> Largest residual of a pressed tool, over its force, that is accepted, and the one from which on
+  !> the motion of the tool alone reduces it.
+  real(wp), parameter :: tool_tolerance = 1.0e-3_wp, balanced = 1.0e-6_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4
 
@@ -44,7 +44,7 @@ contains
           if (.not. phase%pressed(tool)) cycle
           associate (residual => abs(system%problem%tool_residual(tool)), &
               force => pressed_force(trial, tool))
-            if (residual > balanced*force .and. residual <= nearly_met*force) &
+            if (residual > balanced*force .and. residual <= tool_tolerance*force) &
                 distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
           end associate
         end do

@@ -14,12 +14,11 @@ module dd3_process_corrector
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t, clear_correction, reduce_penalty
-  use dd3_process_balance, only : balance_tools, balanced
+  use dd3_process_balance, only : balance_tools, tool_tolerance
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_overshoot, only : check_overshoot
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
-  use dd3_process_status_memory, only : keeps_changing, record_status, status_changes, &
-      unsettled
+  use dd3_process_status_memory, only : record_status, status_changes, unsettled
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : is_normal_held
@@ -250,7 +249,7 @@ contains
     !> Gets criterion, contact status and verdict: converged, or retry.
     type(attempt_t), intent(inout) :: attempt
 
-    real(wp) :: scale, tool_force
+    real(wp) :: scale
     integer :: j, tool
     logical :: forces_met, outside
 
@@ -260,13 +259,11 @@ contains
       call evaluate_norm(model, trial, system, correction%residual, correction%worst_node, &
           correction%worst_residual)
       forces_met = .true.
-      tool_force = balanced
-      if (keeps_changing(correction%status)) tool_force = phase%newton%tool_force
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (any(contact%tool == tool .and. contact%status /= status_gap)) then
           forces_met = forces_met &
-              .and. abs(tool_residual(tool)) <= tool_force*pressed_force(trial, tool)
+              .and. abs(tool_residual(tool)) <= tool_tolerance*pressed_force(trial, tool)
         else
           forces_met = forces_met .and. norm2(trial%tool_load(:, tool)) <= 0.0_wp
         end if

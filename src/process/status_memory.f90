@@ -6,7 +6,7 @@ module dd3_process_status_memory
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: new_status_memory, record_status, unsettled, status_changes, keeps_changing
+  public :: new_status_memory, record_status, unsettled, status_changes
 
   !> Number of iterations whose status is kept.
   integer, parameter :: n_kept = 3
@@ -43,14 +43,6 @@ contains
 
     changing = any(memory /= unknown .and. memory /= spread(memory(:, 1), 2, n_kept), dim=2)
   end function unsettled
-
-  !> Whether candidates changed their status in each of the last two iterations.
-  pure logical function keeps_changing(memory)
-    integer, intent(in) :: memory(:, :)
-
-    keeps_changing = any(memory(:, 1) /= memory(:, 2)) .and. any(memory(:, 2) /= memory(:, 3)) &
-        .and. all(memory(:, 3) /= unknown)
-  end function keeps_changing
 
   !> Return a list of the nodes whose status did not settle in the last iterations; empty if there
   !> are none.
