@@ -238,8 +238,6 @@ module dd3_input_case
     integer :: target_iterations = 0
     !> Whether iterations are damped.
     logical :: damping = .false.
-    !> Whether a penalty above the automatic one is reduced to it where iterations fail to converge.
-    logical :: adapt_penalty = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.

@@ -306,8 +306,6 @@ contains
     if (block%has("cutback_min")) newton%cutback_min = block%number("cutback_min")
     if (block%has("target_iterations")) &
         newton%target_iterations = nint(block%number("target_iterations"))
-    if (block%has("adapt_penalty")) &
-        newton%adapt_penalty = block%number("adapt_penalty") > 0.5_wp
     if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp
   end subroutine fill_newton
 

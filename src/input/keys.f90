@@ -195,8 +195,6 @@ contains
           lower=1.0e-9_wp, upper=1.0_wp), &
       row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
-      row("adapt_penalty", kind_logical, "", "on", "on: reduce a penalty above the automatic "// &
-          "one to it after ten iterations or a failed attempt"), &
       row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
           "displacement gradients, and any that inverts an element or overshoots")]
   end function newton_keys

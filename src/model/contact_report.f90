@@ -94,7 +94,7 @@ contains
     real(wp) :: penalty(model%n_contact)
     integer :: c
 
-    penalty = [(contact_penalty(model, phase, c, .false.), c=1, model%n_contact)]
+    penalty = [(contact_penalty(model, phase, c), c=1, model%n_contact)]
     smallest = to_text(minval(penalty), 4)
     largest = to_text(maxval(penalty), 4)
     text = "penalty "//smallest

@@ -17,21 +17,15 @@ module dd3_model_penalty
 contains
 
   !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one if there is
-  !> none in the input, or if it is reduced.
-  pure real(wp) function contact_penalty(model, phase, c, reduced)
+  !> none in the input.
+  pure real(wp) function contact_penalty(model, phase, c)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     !> Number of the candidate.
     integer, intent(in) :: c
-    !> Whether a penalty of the input is reduced to the automatic one, if that is lower.
-    logical, intent(in) :: reduced
 
-    real(wp) :: automatic
-
-    automatic = fraction*model%contact_stiffness(c)
     contact_penalty = phase%penalty
-    if (phase%penalty <= 0.0_wp) contact_penalty = automatic
-    if (reduced) contact_penalty = min(contact_penalty, automatic)
+    if (phase%penalty <= 0.0_wp) contact_penalty = fraction*model%contact_stiffness(c)
   end function contact_penalty
 
   !> Set the stiffness of the sheet through its thickness under each candidate, E A/t, with its

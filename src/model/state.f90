@@ -52,8 +52,6 @@ module dd3_model_state
     real(wp) :: r_cap = huge(1.0_wp)
     !> Whether the iterations set r_cap.
     logical :: r_cap_by_iterations = .false.
-    !> Whether the penalty of the input is reduced to the automatic one in the rest of the phase.
-    logical :: penalty_reduced = .false.
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
     !> Data that the linear solver keeps from matrix to matrix.

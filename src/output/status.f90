@@ -16,7 +16,7 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,damped,penalty_reduced"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,damped"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -63,8 +63,6 @@ module dd3_output_status
     real(wp) :: force_size = 0.0_wp
     !> Iterations of the corrector that were damped.
     integer :: damped = 0
-    !> 1 if the penalty of the input is reduced to the automatic one.
-    integer :: penalty_reduced = 0
   end type status_row_t
 
   !> Status table of a run.
@@ -134,7 +132,6 @@ contains
       call table%add_text(merge(row%force_tool, repeat(" ", len(row%force_tool)), limited))
       call add_known(table, row%force_size, limited)
       call table%add_integer(row%damped)
-      call table%add_integer(row%penalty_reduced)
       call table%end_row(error)
     end associate
   end subroutine status_add

@@ -3,12 +3,11 @@
 module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
-  use dd3_model_phase, only : phase_t
   use dd3_process_status_memory, only : new_status_memory
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
-  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction, reduce_penalty
+  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction
 
   !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
   type :: limit_t
@@ -46,8 +45,6 @@ module dd3_process_attempt
   type :: attempt_t
     !> Number of the attempt at this increment, from 1.
     integer :: number = 1
-    !> Whether a penalty of the input above the automatic one is reduced to it.
-    logical :: penalty_reduced = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit
     !> Bound by the limiter of contact forces alone; its name is empty if it sets none.
@@ -72,15 +69,6 @@ contains
     self%verdict = verdict_t()
     call clear_correction(self%correction, n_contact)
   end subroutine new_attempt
-
-  !> Reduce the penalty of the input from here to the end of the phase, unless the phase forbids it.
-  subroutine reduce_penalty(self, phase)
-    type(attempt_t), intent(inout) :: self
-    type(phase_t), intent(in) :: phase
-
-    self%penalty_reduced = self%penalty_reduced .or. &
-        (phase%newton%adapt_penalty .and. phase%penalty > 0.0_wp)
-  end subroutine reduce_penalty
 
   !> Reset the course of the corrector before its first iteration.
   subroutine clear_correction(self, n_contact)

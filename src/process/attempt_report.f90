@@ -63,7 +63,6 @@ contains
     associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
       row%damped = correction%damped
-      row%penalty_reduced = merge(1, 0, stepper%attempt%penalty_reduced)
       if (size(correction%criterion) > 0) &
           row%criterion = correction%criterion(size(correction%criterion))
       if (verdict%element > 0) then

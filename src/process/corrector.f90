@@ -13,7 +13,7 @@ module dd3_process_corrector
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : attempt_t, clear_correction, reduce_penalty
+  use dd3_process_attempt, only : attempt_t, clear_correction
   use dd3_process_balance, only : balance_tools, tool_tolerance
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_overshoot, only : check_overshoot
@@ -41,8 +41,6 @@ module dd3_process_corrector
   !> fallen to a new minimum in the last ones.
   integer, parameter :: lost_iterations = 10, without_progress = 5
   real(wp), parameter :: lost_criterion = 0.5_wp
-  !> Iteration after which the penalty of the input is reduced to the automatic one.
-  integer, parameter :: reducing_iteration = 10
 
 contains
 
@@ -111,8 +109,6 @@ contains
           return
         end if
         if (phase%newton%damping .and. is_lost(correction%criterion)) exit
-        if (j == reducing_iteration) call reduce_penalty(attempt, phase)
-        trial%penalty_reduced = attempt%penalty_reduced
         call system%profile%start()
         if (j > 1) call assemble_stiffness(system, model, committed, trial)
         call subtract_condensed(system%enhanced, system%problem%residual)

@@ -7,7 +7,7 @@ module dd3_process_increment
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : new_attempt, reduce_penalty
+  use dd3_process_attempt, only : new_attempt
   use dd3_process_corrector, only : correct
   use dd3_process_external, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
@@ -41,7 +41,6 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     call new_attempt(stepper%attempt, model%n_contact)
-    stepper%attempt%penalty_reduced = committed%penalty_reduced
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
@@ -62,7 +61,6 @@ contains
       progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - progress) < progress_tolerance) progress = 1.0_wp
       trial%increment = committed%increment + 1
-      trial%penalty_reduced = stepper%attempt%penalty_reduced
       trial%progress = progress
       trial%travel = committed%travel + (progress - committed%progress)*phase%length
       trial%x = committed%x + r*prediction%displacement
@@ -115,7 +113,7 @@ contains
 
   end subroutine set_target
 
-  !> Reduce r for another attempt, if one is allowed, and the penalty.
+  !> Reduce r for another attempt, if one is allowed.
   subroutine shrink_increment(phase, stepper, again)
     type(phase_t), intent(in) :: phase
     type(stepper_t), intent(inout) :: stepper
@@ -129,7 +127,6 @@ contains
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
       attempt%limit%name = "cutback"
-      call reduce_penalty(attempt, phase)
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate

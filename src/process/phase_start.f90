@@ -51,7 +51,6 @@ contains
     state%phase = number
     state%begun = .true.
     state%progress = 0.0_wp
-    state%penalty_reduced = .false.
     state%largest_depth = 0.0_wp
     state%deepest_face = 0
     state%deepest_radius = huge(1.0_wp)

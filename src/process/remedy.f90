@@ -84,8 +84,8 @@ contains
       else if (attempt%verdict%element > 0) then
         remedy = material_remedy
       else if (c > 0) then
-        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c, &
-            attempt%penalty_reduced), 3)//" in *CONTACT"
+        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
+            " in *CONTACT"
       else if (ends_near_release_tolerance(phase, attempt%verdict%norm)) then
         remedy = "release_tolerance = "//to_text(tolerance_factor*newton%release_tolerance, 3)// &
             " in *NEWTON"

@@ -82,8 +82,7 @@ contains
               slip, model%tool(tool)%friction)
         else
           call evaluate_candidate(self, c, trial%layer_offset(tool), hit, slip, &
-              candidate_penalty(model, phase, c, hit%normal, trial%penalty_reduced), &
-              model%tool(tool)%friction)
+              candidate_penalty(model, phase, c, hit%normal), model%tool(tool)%friction)
         end if
       end associate
     end if
@@ -91,16 +90,14 @@ contains
   end subroutine find_and_evaluate
 
   !> Return the penalty of a candidate at a point of a tool, N/mm.
-  pure real(wp) function candidate_penalty(model, phase, c, normal, reduced) result(penalty)
+  pure real(wp) function candidate_penalty(model, phase, c, normal) result(penalty)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: c
     !> Of the tool.
     real(wp), intent(in) :: normal(3)
-    !> Whether a penalty of the input above the automatic one is reduced to it.
-    logical, intent(in) :: reduced
 
-    penalty = contact_penalty(model, phase, c, reduced)
+    penalty = contact_penalty(model, phase, c)
     if (is_normal_held(phase, model%contact_node(c), normal)) penalty = held_factor*penalty
   end function candidate_penalty
 
@@ -188,8 +185,7 @@ contains
       touching = .false.
       do c = 1, model%n_contact
         if (committed%status(c) == status_gap) cycle
-        if (norm2(committed%lambda(:, c)) &
-            <= round_off*contact_penalty(model, phase, c, committed%penalty_reduced)) cycle
+        if (norm2(committed%lambda(:, c)) <= round_off*contact_penalty(model, phase, c)) cycle
         touching(committed%contact_tool(c)) = .true.
       end do
     end associate
@@ -243,8 +239,8 @@ contains
       call set_predictor_status(self%status(c), friction, leaving, touching(tool), hit, &
           model%tolerance%touch)
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          self%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal, &
-          committed%penalty_reduced), friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+          self%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal), &
+          friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
 

@@ -26,14 +26,12 @@ sys.path.insert(0, str(ROOT / "utils"))
 from results import command, find_program, is_whole, read_table  # noqa: E402
 from scripts import Problem, run  # noqa: E402
 
-OFF = {"active_set": "active_set = off", "damping": "damping = off", "steering": "target_iterations = 0"}
+OFF = {"damping": "damping = off", "steering": "target_iterations = 0"}
 SETTINGS = {"all": ((), None), **{f"no {name}": ((key,), None) for name, key in OFF.items()},
             "none of these": (tuple(OFF.values()), None), **{f"p = {p:g}": ((), p) for p in (1e2, 1e3, 1e4, 1e5)},
-            "p = 100000; no adapt_penalty": (("adapt_penalty = off",), 1e5),
             "none of these; p = 10000": (tuple(OFF.values()), 1e4)}
 REPORT = ROOT / "docs" / "reports" / "ablation.md"
-HEAD = ("problem", "remedies", "end", "increments", "iterations", "wasted, %", "held", "released", "damped", "time, s",
-        "result")
+HEAD = ("problem", "remedies", "end", "increments", "iterations", "wasted, %", "damped", "time, s", "result")
 # Column of history.csv and unit of the result; for the capstan, the quotient of the forces at the ends.
 RESULT = {"capstan": ("left_rx", "T1/T2"), "stretching by a force": ("punch_uz", "mm")}
 DEAD_LOAD = 1.0  # of the capstan, N
@@ -85,12 +83,12 @@ def measure(options, problem, setting):
 
 
 def counts(status):
-    """Return increments, iterations, the part of the iterations in failed attempts, and the counts of the remedies."""
+    """Return increments, iterations, the part of the iterations in failed attempts, and the number of those damped."""
     iterations = sum(int(row["iterations"]) for row in status)
     accepted = [row for row in status if row["outcome"] == "accepted"]
     wasted = iterations - sum(int(row["iterations"]) for row in accepted)
-    sums = [str(sum(int(row[name]) for row in status)) for name in ("held", "released", "damped")]
-    return [str(len(accepted)), str(iterations), f"{100 * wasted / max(iterations, 1):.1f}", *sums]
+    damped = sum(int(row["damped"]) for row in status)
+    return [str(len(accepted)), str(iterations), f"{100 * wasted / max(iterations, 1):.1f}", str(damped)]
 
 
 def end_text(code, last, deck):
