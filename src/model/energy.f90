@@ -44,7 +44,8 @@ contains
     integer :: c
 
     contact_energy = 0.0_wp
-    if (model%n_contact == 0 .or. model%phase(state%phase)%mixed) return
+    if (.not. allocated(model%contact_face)) return
+    if (model%phase(state%phase)%mixed) return
     normal = outward_normals(model, state%x)
     do c = 1, model%n_contact
       if (state%status(c) /= status_gap) contact_energy = contact_energy + layer_energy( &

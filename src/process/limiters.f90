@@ -353,6 +353,7 @@ contains
 
     real(wp) :: left
 
+    if (model%n_tool == 0) return
     left = progress_left(state%progress)
     if (left > 0.0_wp .and. any(state%start%layer_offset > 0.0_wp)) &
         limit%r = left/stepper%prediction%progress
