@@ -26,9 +26,10 @@ module dd3_process_remedy
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
 
-  !> Factors on the penalty, on the limit of rotation, on the tolerance after the release and on the
-  !> number of iterations that are proposed; rotation proposed if it is not limited, degrees.
-  real(wp), parameter :: penalty_factor = 0.1_wp, rotation_factor = 0.25_wp, &
+  !> Factors on the penalty, on the height of the contact layer, on the limit of rotation, on the
+  !> tolerance after the release and on the number of iterations that are proposed; rotation proposed
+  !> if it is not limited, degrees.
+  real(wp), parameter :: penalty_factor = 0.1_wp, layer_factor = 2.0_wp, rotation_factor = 0.25_wp, &
       tolerance_factor = 10.0_wp
   integer, parameter :: iterations_factor = 2
   real(wp), parameter :: usual_rotation = 0.5_wp
@@ -79,13 +80,13 @@ contains
     if (phase%limits%rotation%active) rotation = rotation_factor*phase%limits%rotation%value
     c = candidate_in_contact(model, attempt)
     associate (reason => attempt%verdict%reason, newton => phase%newton)
-      if (begins(reason, "an iteration moved") .or. begins(reason, "an element")) then
+      if (begins(reason, "an iteration moved") .or. begins(reason, "an element") &
+          .or. begins(reason, "the assumed strain")) then
         remedy = "rotation = "//to_text(rotation, 3)//" in *LIMITS"//mesh_remedy
       else if (attempt%verdict%element > 0) then
         remedy = material_remedy
       else if (c > 0) then
-        remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
-            " in *CONTACT"
+        remedy = remedy_of_contact(model, phase, c)
       else if (ends_near_release_tolerance(phase, attempt%verdict%norm)) then
         remedy = "release_tolerance = "//to_text(tolerance_factor*newton%release_tolerance, 3)// &
             " in *NEWTON"
@@ -94,6 +95,21 @@ contains
       end if
     end associate
   end function remedy_of_reason
+
+  !> Return the first remedy where the contact of a candidate does not settle.
+  function remedy_of_contact(model, phase, c) result(remedy)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: c
+    character(len=:), allocatable :: remedy
+
+    if (phase%mixed) then
+      remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)
+    else
+      remedy = "layer = "//to_text(layer_factor*phase%layer, 3)
+    end if
+    remedy = remedy//" in *CONTACT"
+  end function remedy_of_contact
 
   !> Return the candidate at the node of a failure if a tool touched it in the last iterations; 0 if
   !> none did. At a node without contact no penalty acts.
