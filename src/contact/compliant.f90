@@ -1,35 +1,34 @@
-!> Contact of a node with a rigid tool in the compliant formulation. The tool's surface carries a
+!> Contact of a point with a rigid tool in the compliant formulation. The tool's surface carries a
 !> layer of height h, in which the pressure p depends on the gap g that is left of it:
-!>     p = p_h (h/g - 1) for g < h,    p = 0 for g >= h.
-!> Half of the layer is left at the pressure p_h. The slope -dp/dg = (p + p_h)^2/(p_h h) is small at
-!> the onset of contact and grows with the square of the pressure: contact is soft where it opens and
-!> closes, and rigid where the sheet is pinched, as no pressure closes the gap.
+!>     p = p_0 (h/g - 2 + g/h) for g < h,    p = 0 for g >= h.
+!> Pressure and slope -dp/dg = p_0/h (h^2/g^2 - 1) are zero at the onset of contact; the slope grows
+!> with the square of the pressure. Contact opens and closes without a step of its stiffness, and is
+!> rigid where the sheet is pinched, as no pressure closes the gap.
 !>
-!> The law is the central path s g y = s h F_h of the condition g >= 0, y >= 0, g y = 0 for the
-!> shifted nodal force y = F_h - lambda.n, F_h = p_h A. It is evaluated in the form
-!>     y = [z + sqrt(z^2 + 4 s h F_h)]/2,    z = F_h - lambda.n - s g,
-!> whose Newton steps converge from any g, also from a negative one: lambda is eliminated as in the
-!> mixed formulation, whose normal law is the limit h -> 0 with the penalty s. The solution does not
-!> depend on s.
+!> With the contact force lambda as unknown beside g, the force of the law is taken where the line of
+!> slope s through the point (g, -lambda.n) meets the curve p A (the resolvent of a monotone
+!> operator). It exists for any g, also a negative one, and Newton's method converges where it does
+!> not for p(g). The solution does not depend on s; the normal law of the mixed formulation is the
+!> limit h -> 0 with the penalty s.
 !>
 !> Friction sticks elastically: T lambda = tau + k T w with the tangential force tau of the committed
-!> state, rotated with the normal, the slip w since then, and k = y/h with y of the committed state:
-!> the elastic slip is below mu h. The force whose tangential part is compared with the friction is
+!> state, rotated with the normal, the slip w since then, and k = (p_0 + p) A/h with p of the committed
+!> state: the elastic slip is below mu h. The force whose tangential part is compared with the
+!> friction is
 !>     v = lambda + s_t [w - (lambda - tau)/k],    s_t = min(s, k).
-!> Source: Chen and Harker, SIAM J. Matrix Anal. Appl. 14 (1993) 1168-1190; Kanzow, SIAM J. Matrix
-!> Anal. Appl. 17 (1996) 851-868 (smoothing); Wriggers, Computational Contact Mechanics, 2nd ed.
-!> (2006), chapters 5 and 10 (barrier, elastic stick).
+!> Source: Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (resolvent); Wriggers, Computational
+!> Contact Mechanics, 2nd ed. (2006), chapters 5 and 10 (barrier, elastic stick).
 module dd3_contact_compliant
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : coulomb_operator, normal_force_t, status_gap, status_slip, &
       status_stick, traction_t
   implicit none
   private
-  public :: layer_t, new_layer, layer_gap, layer_energy, compliant_operator, rotated
+  public :: layer_t, new_layer, layer_gap, gap_under_force, layer_energy, compliant_operator, rotated
 
-  !> Pressure p_h at half of the height over Young's modulus. Pressures of bending over a radius are
-  !> of this order, those of ironing far above.
-  real(wp), parameter :: half_pressure = 3.0e-5_wp
+  !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is of
+  !> this order, pressures of bending over a radius and of ironing are far above.
+  real(wp), parameter :: reference_pressure = 5.0e-6_wp
   !> Scale s over the stiffness E A/t of the sheet through its thickness.
   real(wp), parameter :: scale_fraction = 1.0e-3_wp
   !> |T v| up to this, relative to its parts, has no direction.
@@ -39,8 +38,8 @@ module dd3_contact_compliant
   type :: layer_t
     !> Height h, mm.
     real(wp) :: height = 0.0_wp
-    !> Force F_h at which half of the height is left, N.
-    real(wp) :: half_force = 0.0_wp
+    !> Force p_0 A, N.
+    real(wp) :: reference_force = 0.0_wp
     !> Scale s, N/mm.
     real(wp) :: scale = 0.0_wp
   end type layer_t
@@ -55,7 +54,7 @@ contains
     real(wp), intent(in) :: thickness, stiffness
 
     self%height = height*thickness
-    self%half_force = half_pressure*stiffness*thickness
+    self%reference_force = reference_pressure*stiffness*thickness
     self%scale = scale_fraction*stiffness
   end function new_layer
 
@@ -64,20 +63,37 @@ contains
     !> Pressure and Young's modulus, MPa.
     real(wp), intent(in) :: pressure, young
 
-    layer_gap = half_pressure*young/(pressure + half_pressure*young)
+    layer_gap = part_left(pressure/(reference_pressure*young))
   end function layer_gap
 
-  !> Return the energy stored in the layer under a normal force, mJ: F_h h (ln(1 + r) - r/(1 + r)),
-  !> r the quotient of the force and F_h.
+  !> Return the gap under a normal force, mm.
+  pure real(wp) function gap_under_force(layer, force)
+    type(layer_t), intent(in) :: layer
+    !> Positive in compression, N.
+    real(wp), intent(in) :: force
+
+    gap_under_force = layer%height*part_left(force/layer%reference_force)
+  end function gap_under_force
+
+  !> Return the part of the layer that is left at a pressure over p_0, the smaller root of
+  !> x^2 - (2 + p) x + 1.
+  pure real(wp) function part_left(pressure)
+    real(wp), intent(in) :: pressure
+
+    part_left = 2.0_wp/(2.0_wp + pressure + sqrt(pressure*(pressure + 4.0_wp)))
+  end function part_left
+
+  !> Return the energy stored in the layer under a normal force, mJ.
   pure real(wp) function layer_energy(layer, force)
     type(layer_t), intent(in) :: layer
     !> Positive in compression, N.
     real(wp), intent(in) :: force
 
-    real(wp) :: r
+    real(wp) :: left
 
-    r = max(force, 0.0_wp)/layer%half_force
-    layer_energy = layer%half_force*layer%height*(log(1.0_wp + r) - r/(1.0_wp + r))
+    left = part_left(max(force, 0.0_wp)/layer%reference_force)
+    layer_energy = layer%reference_force*layer%height &
+        *(0.5_wp*(1.0_wp - left)*(left - 3.0_wp) - log(left))
   end function layer_energy
 
   !> Return a vector rotated with the normal, about the axis at right angles to both normals.
@@ -107,23 +123,29 @@ contains
 
     type(normal_force_t) :: sigma_n
     type(traction_t) :: traction
-    real(wp) :: z, root, weight, committed_normal, stick, scale, memory, tangential(3)
+    real(wp) :: line, left, slope, weight, committed_normal, stick, scale, memory
+    real(wp) :: tangential(3)
 
     force = 0.0_wp
     d = 0.0_wp
     e = 0.0_wp
-    z = layer%half_force - dot_product(lambda, normal) - layer%scale*gap
-    root = sqrt(z**2 + 4.0_wp*layer%scale*layer%height*layer%half_force)
-    sigma_n%value = layer%half_force - 0.5_wp*(z + root)
-    if (sigma_n%value > 0.0_wp) then
-      status = status_gap
-      return
-    end if
-    weight = 0.5_wp*(1.0_wp + z/root)
+    associate (f => layer%reference_force, s_h => layer%scale*layer%height)
+      line = layer%scale*gap + dot_product(lambda, normal)
+      if (line >= s_h) then
+        status = status_gap
+        return
+      end if
+      ! The part of the layer that is left at the intersection: the root below 1 of
+      ! (f - s h) x^2 - (2 f - line) x + f.
+      left = 2.0_wp*f/(2.0_wp*f - line + sqrt((2.0_wp*f - line)**2 - 4.0_wp*f*(f - s_h)))
+      sigma_n%value = -f*(1.0_wp - left)**2/left
+      slope = f/layer%height*(1.0_wp/left**2 - 1.0_wp)
+    end associate
+    weight = slope/(slope + layer%scale)
     sigma_n%by_u = weight*(layer%scale*normal + matmul(dnormal, lambda))
     sigma_n%by_lambda = weight
     committed_normal = dot_product(committed, normal)
-    stick = (layer%half_force - min(0.0_wp, committed_normal))/layer%height
+    stick = (layer%reference_force - min(0.0_wp, committed_normal))/layer%height
     scale = min(layer%scale, stick)
     memory = 1.0_wp - scale/stick
     traction%value = memory*lambda + (1.0_wp - memory)*(committed - committed_normal*normal) &

@@ -174,6 +174,8 @@ module dd3_input_case
     logical :: mixed = .false.
     !> Height of the contact layer of the compliant formulation over the thickness; 0: default.
     real(wp) :: layer = 0.0_wp
+    !> Number of parts of an element's edge between contact points.
+    integer :: points = 1
     !> Penalty of the mixed formulation, N/mm.
     real(wp) :: penalty = 0.0_wp
     !> Search distance of the tools, mm; negative for the thickness of the sheet.

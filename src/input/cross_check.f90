@@ -47,6 +47,9 @@ contains
       if (.not. case%phase(i)%source%valid) cycle
       call check_limits(case%phase(i)%limits, case%phase(i)%source, errors)
       call check_contact(case%phase(i)%contact, case%phase(i)%source, errors)
+      if (case%phase(i)%source%given("points")) call errors%push_input( &
+          case%phase(i)%source%at("points"), "the contact points are those of all phases", &
+          "points in *CONTACT")
     end do
   end subroutine cross_check
 
@@ -208,6 +211,14 @@ contains
         "the mixed formulation has no layer", "formulation = compliant, without penalty")
     if (.not. contact%mixed .and. block%given("penalty")) call errors%push_input( &
         block%at("penalty"), "the compliant formulation has no penalty", "formulation = mixed")
+    if (.not. contact%mixed .or. contact%points == 1) return
+    if (block%given("points")) then
+      call errors%push_input(block%at("points"), "the mixed formulation has its points at the nodes", &
+          "points = 1")
+    else
+      call errors%push_input(block%opened, "the mixed formulation has its points at the nodes", &
+          "formulation = compliant, or points = 1 in *CONTACT")
+    end if
   end subroutine check_contact
 
   !> Check the interval or the travels at which fields are written.

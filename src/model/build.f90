@@ -16,13 +16,12 @@ module dd3_model_build
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_contact_points, only : find_contact_faces, set_contact_points
   use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
-  use dd3_model_outward_normals, only : find_contact_faces
-  use dd3_model_penalty, only : set_contact_stiffness
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
   use dd3_model_rim, only : set_rim
@@ -264,19 +263,14 @@ contains
     type(mesh_t), intent(in) :: mesh
 
     logical, allocatable :: member(:, :)
-    integer :: t, i, k
+    integer :: t, k
 
     allocate (member(model%n_tool, model%n_node), source=.false.)
     do t = 1, model%n_tool
       member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
     end do
-    model%contact_node = pack([(i, i=1, model%n_node)], any(member, dim=1))
-    model%n_contact = size(model%contact_node)
-    model%candidate = member(:, model%contact_node)
-    allocate (model%candidate_of(model%n_node), source=0)
-    model%candidate_of(model%contact_node) = [(i, i=1, model%n_contact)]
-    call find_contact_faces(model)
-    call set_contact_stiffness(model)
+    call find_contact_faces(model, member)
+    call set_contact_points(model, member, case%phase(1)%contact%points)
     allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool
@@ -368,8 +362,8 @@ contains
         if (.not. model%candidate(t, c)) cycle
         node = model%contact_node(c)
         hint = hint_t()
-        call find_contact(model%tool(t)%surface, model%x0(:, node) - model%tool(t)%position, hint, &
-            model%tolerance%start_search, model%tolerance%start_search, hit)
+        call find_contact(model%tool(t)%surface, model%point_position(c, model%x0) &
+            - model%tool(t)%position, hint, model%tolerance%start_search, model%tolerance%start_search, hit)
         if (.not. hit%found) cycle
         if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
         if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth* &

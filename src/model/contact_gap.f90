@@ -11,7 +11,7 @@ module dd3_model_contact_gap
 
 contains
 
-  !> Return the gaps, `(n_contact)`, mm; at most the search distance of the phase, which is also the
+  !> Return the gaps, `(n_contact_node)`, mm; at most the search distance of the phase, which is also the
   !> value where no active tool is that near.
   function contact_gaps(model, state) result(gap)
     type(model_t), intent(in) :: model
@@ -24,15 +24,15 @@ contains
     integer :: c, t
 
     associate (phase => model%phase(state%phase))
-      allocate (gap(model%n_contact), source=phase%search_distance)
+      allocate (gap(model%n_contact_node), source=phase%search_distance)
       if (.not. allocated(model%contact_face)) return
       outward = outward_normals(model, state%x)
-      do c = 1, model%n_contact
+      do c = 1, model%n_contact_node
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = state%hint(t, c)
           call find_contact(model%tool(t)%surface, &
-              state%x(:, model%contact_node(c)) - state%tool_displacement(:, t), hint, &
+              model%point_position(c, state%x) - state%tool_displacement(:, t), hint, &
               phase%search_distance, model%tolerance%committed_depth &
               + state%layer_offset(t), hit, outward(:, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)

@@ -4,13 +4,14 @@
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
-  use dd3_contact_compliant, only : layer_t, new_layer
+  use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
+  use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
+  use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: layer_at, missing_clearance, offset_factor, offset_rate, progress_left
+  public :: layer_at, starting_offset, held_offsets, offset_factor, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
@@ -51,29 +52,83 @@ contains
     offset_rate = merge(-1.0_wp/advance, 0.0_wp, progress_left(progress) > 0.0_wp)
   end function offset_rate
 
-  !> Return the distance by which the gap between a tool and its candidates is smaller than the
-  !> layer, mm; zero if it is not.
-  function missing_clearance(model, phase, state, tool) result(missing)
+  !> Return the offset with which a tool starts, mm: such that the sheet keeps the force on a tool in
+  !> contact in the mean of its points, and that a tool without contact has no pressure.
+  function starting_offset(model, phase, state, tool) result(offset)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
-    real(wp) :: missing
+    real(wp) :: offset
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: height
+    type(layer_t) :: layer
+    real(wp) :: force, total
     integer :: c
 
-    missing = 0.0_wp
+    offset = 0.0_wp
+    total = 0.0_wp
     do c = 1, model%n_contact
       if (.not. model%candidate(tool, c)) cycle
-      height = phase%layer*model%thickness_at(model%contact_node(c))
+      layer = layer_at(model, phase, c)
       hint = hint_t()
-      call find_contact(model%tool(tool)%surface, state%x(:, model%contact_node(c)) &
-          - state%tool_displacement(:, tool), hint, height, model%tolerance%committed_depth, hit)
-      if (hit%found) missing = max(missing, height - hit%distance)
+      call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
+          - state%tool_displacement(:, tool), hint, layer%height, &
+          model%tolerance%committed_depth, hit)
+      if (.not. hit%found) cycle
+      force = 0.0_wp
+      if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
+          force = max(0.0_wp, -dot_product(state%lambda(:, c), hit%normal))
+      if (force > 0.0_wp .and. total <= 0.0_wp) offset = 0.0_wp
+      if (force > 0.0_wp) then
+        offset = offset + force*(gap_under_force(layer, force) - hit%distance)
+        total = total + force
+      else if (total <= 0.0_wp) then
+        offset = max(offset, layer%height - hit%distance)
+      end if
     end do
-  end function missing_clearance
+    if (total > 0.0_wp) offset = max(0.0_wp, offset/total)
+  end function starting_offset
+
+  !> Return the offsets at the points that prescribed displacements hold along the normal, mm, negative
+  !> at others, `(n_contact)`: such that the force stays that at the start of the phase. The
+  !> displacements there do not follow from the contact.
+  function held_offsets(model, phase, state) result(offset)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    !> At the start of the phase.
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: offset(:)
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    type(layer_t) :: layer
+    real(wp) :: force
+    integer :: c, t, i
+
+    allocate (offset(model%n_contact), source=-1.0_wp)
+    if (phase%mixed) return
+    do c = 1, model%n_contact
+      associate (point => model%contact_point(c))
+        if (.not. all(any(phase%prescribed(:, point%node(:point%n_surface)), dim=1))) cycle
+        layer = layer_at(model, phase, c)
+        do t = 1, model%n_tool
+          if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
+          hint = hint_t()
+          call find_contact(model%tool(t)%surface, model%point_position(c, state%x) &
+              - state%tool_displacement(:, t), hint, layer%height, &
+              model%tolerance%committed_depth, hit)
+          if (.not. hit%found) cycle
+          if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
+              i=1, point%n_surface)])) cycle
+          force = 0.0_wp
+          if (state%contact_tool(c) == t) force = max(0.0_wp, -dot_product(state%lambda(:, c), &
+              hit%normal))
+          offset(c) = max(offset(c), 0.0_wp, gap_under_force(layer, force) - hit%distance)
+        end do
+      end associate
+    end do
+  end function held_offsets
 
 end module dd3_model_contact_layer

@@ -92,20 +92,18 @@ contains
   end function fading_rate
 
   !> Evaluate the external forces on the nodes.
-  pure subroutine nodal_forces(set, load, contact_node, fading, force)
+  pure subroutine nodal_forces(set, load, fading, force)
     type(load_set_t), intent(in) :: set(:)
     !> Total force on each set, `(3, size(set))`, N.
     real(wp), intent(in) :: load(:, :)
-    !> Nodes of the contact candidates, `(n_contact)`.
-    integer, intent(in) :: contact_node(:)
-    !> Forces of the candidates on released tools that have not faded yet, `(3, n_contact)`, N.
+    !> Contact forces of the nodes on released tools that have not faded yet, `(3, n_node)`, N.
     real(wp), intent(in) :: fading(:, :)
     !> Nodal forces, `(3, n_node)`, N.
     real(wp), intent(out) :: force(:, :)
 
-    integer :: s, k, c
+    integer :: s, k
 
-    force = 0.0_wp
+    force = -fading
     do s = 1, size(set)
       associate (node => set(s)%node)
         do k = 1, size(node)
@@ -116,9 +114,6 @@ contains
           end if
         end do
       end associate
-    end do
-    do c = 1, size(contact_node)
-      force(:, contact_node(c)) = force(:, contact_node(c)) - fading(:, c)
     end do
   end subroutine nodal_forces
 

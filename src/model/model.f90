@@ -6,6 +6,7 @@ module dd3_model_model
   use dd3_element_table, only : element_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t
@@ -76,16 +77,24 @@ module dd3_model_model
     real(wp), allocatable :: rim_normal(:, :)
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
-    !> Candidates for contact, `(n_contact)`: their node numbers.
+    !> Contact points, `(n_contact)`, those at nodes first; the node of each, or one beside it.
+    type(contact_point_t), allocatable :: contact_point(:)
     integer, allocatable :: contact_node(:)
-    !> Number of each node among the candidates, `(n_node)`; 0 for none.
+    !> Number of contact points at nodes.
+    integer :: n_contact_node = 0
+    !> Contact point at each node, `(n_node)`; 0 for none.
     integer, allocatable :: candidate_of(:)
-    !> Tools that a candidate can touch, `(n_tool, n_contact)`.
+    !> Tools that a contact point can touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
-    !> Stiffness of the sheet through its thickness under each candidate, `(n_contact)`, N/mm.
+    !> Stiffness of the sheet through its thickness under each contact point, `(n_contact)`, N/mm.
     real(wp), allocatable :: contact_stiffness(:)
+    !> Node across the element from a node of a contact face, `(n_node)`; 0 for others.
+    integer, allocatable :: opposite(:)
     !> Faces on which a tool can touch the sheet: positions in `face`.
     integer, allocatable :: contact_face(:)
+    !> Contact points on each of these faces, `(:, size(contact_face))`: the corners of its parts, row by
+    !> row, or all its nodes if it has more than four.
+    integer, allocatable :: face_point(:, :)
     !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
     !> tool is never pressed.
     integer, allocatable :: tool_row(:)
@@ -105,6 +114,8 @@ module dd3_model_model
     type(output_t) :: output
   contains
     procedure :: thickness_at
+    procedure :: point_position
+    procedure :: nodal_contact_forces
     procedure :: largest_thickness
     procedure :: least_shear
     procedure :: element_threads
@@ -120,6 +131,37 @@ contains
     thickness_at = self%thickness
     if (allocated(self%node_thickness)) thickness_at = self%node_thickness(node)
   end function thickness_at
+
+  !> Return the position of a contact point, mm.
+  pure function point_position(self, c, x) result(position)
+    class(model_t), intent(in) :: self
+    !> Number of the contact point.
+    integer, intent(in) :: c
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: position(3)
+
+    position = self%contact_point(c)%position(x)
+  end function point_position
+
+  !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the contact
+  !> points.
+  pure function nodal_contact_forces(self, x, point_force) result(force)
+    class(model_t), intent(in) :: self
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> `(3, n_contact)`, N.
+    real(wp), intent(in) :: point_force(:, :)
+    real(wp) :: force(3, self%n_node)
+
+    integer :: c
+
+    force = 0.0_wp
+    do c = 1, self%n_contact
+      if (all(abs(point_force(:, c)) <= 0.0_wp)) cycle
+      call self%contact_point(c)%add_nodal_forces(x, point_force(:, c), force)
+    end do
+  end function nodal_contact_forces
 
   !> Return the largest thickness of the sheet at the start, mm.
   pure real(wp) function largest_thickness(self)

@@ -4,9 +4,10 @@ module dd3_model_phase
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
   use dd3_model_motions, only : motion_t
+  use dd3_model_tolerances, only : tangential
   implicit none
   private
-  public :: phase_t
+  public :: phase_t, is_normal_held
 
   !> Progress by which two places in a phase differ.
   real(wp), parameter :: step = 1.0e-9_wp
@@ -86,6 +87,15 @@ module dd3_model_phase
   end type phase_t
 
 contains
+
+  !> Whether the prescribed displacements of a node hold it along a normal.
+  pure logical function is_normal_held(phase, node, normal)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: node
+    real(wp), intent(in) :: normal(3)
+
+    is_normal_held = norm2(merge(0.0_wp, normal, phase%prescribed(:, node))) <= tangential
+  end function is_normal_held
 
   !> Return the factor on displacements and loads at a progress.
   pure real(wp) function factor(self, progress)

@@ -15,7 +15,7 @@ module dd3_model_phases
   public :: new_phases
 
   !> Default height of the contact layer over the thickness.
-  real(wp), parameter :: default_layer = 0.01_wp
+  real(wp), parameter :: default_layer = 0.02_wp
   !> Default of the depth to which nodes close in a prediction, over the thickness. The mixed
   !> formulation has no resistance behind a gap.
   real(wp), parameter :: compliant_depth = 0.1_wp, mixed_depth = 0.01_wp

@@ -16,8 +16,9 @@ module dd3_model_state
     real(wp), allocatable :: tool_displacement(:, :)
     !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
-    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm.
-    real(wp), allocatable :: layer_offset(:)
+    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm, and by
+    !> which it does at points that are held along the normal, `(n_contact)`, negative for others.
+    real(wp), allocatable :: layer_offset(:), held_offset(:)
     !> Total forces on the sets with loads at the start and at the end of the phase, `(3, n_load)`,
     !> N.
     real(wp), allocatable :: load(:, :), load_end(:, :)
@@ -25,7 +26,7 @@ module dd3_model_state
     real(wp), allocatable :: pressure(:), pressure_end(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Forces of the candidates on released tools that fade over the phase, `(3, n_contact)`, N.
+    !> Contact forces of the nodes on released tools that fade over the phase, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
     !> Reactions of the directions that are free again, as forces on the sheet that fade over the
     !> phase, `(3, n_node)`, N.
@@ -85,9 +86,9 @@ module dd3_model_state
     integer, allocatable :: contact_tool(:)
     !> Last closest point on each tool, `(n_tool, n_contact)`.
     type(hint_t), allocatable :: hint(:, :)
-    !> Forces of the candidates on released tools that have not faded yet, `(3, n_contact)`, N.
+    !> Contact forces of the nodes on released tools that have not faded yet, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
-    !> Tool that released each candidate last, `(n_contact)`; 0 for none.
+    !> Tool that released each node last, `(n_node)`; 0 for none.
     integer, allocatable :: fading_tool(:)
     !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_displacement(:, :)
@@ -139,9 +140,9 @@ contains
     allocate (self%solver_memory(0))
     call new_sheet(self, model)
     associate (n_contact => model%n_contact, n_tool => model%n_tool)
-      allocate (self%lambda(3, n_contact), self%fading(3, n_contact), source=0.0_wp)
+      allocate (self%lambda(3, n_contact), self%fading(3, model%n_node), source=0.0_wp)
       allocate (self%status(n_contact), self%contact_tool(n_contact), source=0)
-      allocate (self%fading_tool(n_contact), source=0)
+      allocate (self%fading_tool(model%n_node), source=0)
       allocate (self%hint(n_tool, n_contact))
       allocate (self%slip_path(n_contact), source=0.0_wp)
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
@@ -212,6 +213,7 @@ contains
     allocate (self%tool_displacement, mold=state%tool_displacement)
     allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
     allocate (self%layer_offset(size(state%layer_offset)), source=0.0_wp)
+    allocate (self%held_offset(size(state%status)), source=-1.0_wp)
     allocate (self%load, self%load_end, mold=state%load)
     allocate (self%pressure(size(state%pressure)), self%pressure_end(size(state%pressure)), &
         source=0.0_wp)

@@ -123,6 +123,7 @@ contains
     call visitor%reals("start_tool_load", size(start%tool_load), start%tool_load)
     call visitor%reals("start_tool_load_end", size(start%tool_load_end), start%tool_load_end)
     call visitor%reals("start_layer_offset", size(start%layer_offset), start%layer_offset)
+    call visitor%reals("start_held_offset", size(start%held_offset), start%held_offset)
     call visitor%reals("start_load", size(start%load), start%load)
     call visitor%reals("start_load_end", size(start%load_end), start%load_end)
     call visitor%reals("start_pressure", size(start%pressure), start%pressure)

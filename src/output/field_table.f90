@@ -182,12 +182,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: value(:, :)
-    integer :: i
 
-    value = 0.0_wp
-    do i = 1, model%n_contact
-      value(:, model%contact_node(i)) = 0.0_wp - state%lambda(:, i)
-    end do
+    value = 0.0_wp - model%nodal_contact_forces(state%x, state%lambda)
   end subroutine fill_contact_force
 
   !> Evaluate the contact status.
@@ -198,7 +194,7 @@ contains
     integer :: i
 
     value = 0.0_wp
-    do i = 1, model%n_contact
+    do i = 1, model%n_contact_node
       value(1, model%contact_node(i)) = real(state%status(i), wp)
     end do
   end subroutine fill_contact_status

@@ -88,7 +88,7 @@ contains
     real(wp), intent(out) :: value(:, :)
 
     value = 0.0_wp
-    if (model%n_contact > 0) value(1, model%contact_node) = contact_pressures(model, state)
+    if (model%n_contact > 0) value(1, :) = contact_pressures(model, state)
   end subroutine fill_contact_pressure
 
   !> Evaluate the gap; the search distance at a node that is no candidate.
@@ -98,7 +98,9 @@ contains
     real(wp), intent(out) :: value(:, :)
 
     value = model%phase(state%phase)%search_distance
-    if (model%n_contact > 0) value(1, model%contact_node) = contact_gaps(model, state)
+    associate (n => model%n_contact_node)
+      if (n > 0) value(1, model%contact_node(:n)) = contact_gaps(model, state)
+    end associate
   end subroutine fill_contact_gap
 
   !> Evaluate the slip path.
@@ -108,7 +110,9 @@ contains
     real(wp), intent(out) :: value(:, :)
 
     value = 0.0_wp
-    if (model%n_contact > 0) value(1, model%contact_node) = state%slip_path
+    associate (n => model%n_contact_node)
+      if (n > 0) value(1, model%contact_node(:n)) = state%slip_path(:n)
+    end associate
   end subroutine fill_slip_path
 
   !> Evaluate the number of the tool in contact.
@@ -118,8 +122,10 @@ contains
     real(wp), intent(out) :: value(:, :)
 
     value = 0.0_wp
-    if (model%n_contact > 0) value(1, model%contact_node) = &
-        real(merge(state%contact_tool, 0, state%status /= status_gap), wp)
+    associate (n => model%n_contact_node)
+      if (n > 0) value(1, model%contact_node(:n)) = &
+          real(merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap), wp)
+    end associate
   end subroutine fill_contact_tool
 
 end module dd3_output_forming_fields

@@ -221,6 +221,8 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: node(:)
     real(wp) :: reaction(3)
+
+    real(wp) :: force(3, model%n_node)
     integer :: i
 
     reaction = 0.0_wp
@@ -228,9 +230,8 @@ contains
       reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i)) &
           + fading_factor(state%progress)*state%start%reaction(:, node(i))
     end do
-    do i = 1, model%n_contact
-      if (any(node == model%contact_node(i))) reaction = reaction + state%lambda(:, i)
-    end do
+    force = model%nodal_contact_forces(state%x, state%lambda)
+    reaction = reaction + sum(force(:, node), dim=2)
   end function reaction
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.

@@ -11,7 +11,7 @@ module dd3_process_corrector
   use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
+  use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t, clear_correction
   use dd3_process_balance, only : balance_tools, tool_tolerance
@@ -21,10 +21,9 @@ module dd3_process_corrector
   use dd3_process_status_memory, only : record_status, status_changes, unsettled
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
-  use dd3_system_contact, only : is_normal_held
   use dd3_system_contact_work, only : contact_work_t
   use dd3_system_load_stiffness, only : add_load_stiffness
-  use dd3_system_reduced, only : linear_problem_t
+  use dd3_system_linear_problem, only : linear_problem_t
   use dd3_system_round_off, only : attainable_residual
   use dd3_system_solve, only : solve_reduced
   use dd3_system_system, only : system_t
@@ -115,7 +114,7 @@ contains
         call add_load_stiffness(system, model, trial)
         call prescribe_missed(phase%prescribed, trial, system%problem)
         call system%profile%add(section_assembly)
-        call solve_reduced(system, model, phase, attempt%solver, verdict)
+        call solve_reduced(system, model, phase, trial%x, attempt%solver, verdict)
         verdict%iterations = j
         verdict%norm = correction%criterion(j)
         if (verdict%outcome /= verdict_converged) return

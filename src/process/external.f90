@@ -42,7 +42,7 @@ contains
 
     associate (force => state%external_force)
       state%fading = fading_factor(state%progress)*unfaded_forces(model, state)
-      call nodal_forces(model%load_set, state%load, model%contact_node, state%fading, force)
+      call nodal_forces(model%load_set, state%load, state%fading, force)
       force = force + fading_factor(state%progress)*state%start%reaction
       if (size(state%bead_load) > 0) force = force + state%bead_load
       if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
@@ -50,21 +50,19 @@ contains
     end associate
   end subroutine evaluate_external
 
-  !> Return the forces of the candidates on released tools and on their springs before they fade, N.
+  !> Return the forces of the nodes on released tools and on their springs before they fade, N.
   pure function unfaded_forces(model, state) result(force)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp) :: force(3, model%n_contact)
+    real(wp) :: force(3, model%n_node)
 
-    integer :: c
+    integer :: node
 
     force = state%start%fading
-    do c = 1, model%n_contact
-      if (all(abs(force(:, c)) <= 0.0_wp)) cycle
-      associate (node => model%contact_node(c))
-        force(:, c) = force(:, c) + spring_stiffness(force(:, c), model%thickness_at(node)) &
-            *(state%x(:, node) - state%start%x(:, node))
-      end associate
+    do node = 1, model%n_node
+      if (all(abs(force(:, node)) <= 0.0_wp)) cycle
+      force(:, node) = force(:, node) + spring_stiffness(force(:, node), &
+          model%thickness_at(node))*(state%x(:, node) - state%start%x(:, node))
     end do
   end function unfaded_forces
 

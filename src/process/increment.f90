@@ -16,7 +16,7 @@ module dd3_process_increment
   use dd3_process_stepper, only : stepper_t
   use dd3_process_work, only : add_work
   use dd3_system_partition, only : share_state
-  use dd3_system_reduced, only : linear_problem_t
+  use dd3_system_linear_problem, only : linear_problem_t
   use dd3_system_solve, only : solve_info_t
   implicit none
   private

@@ -333,7 +333,8 @@ contains
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
         approach = dot_product(prediction%tool_displacement(:, tool) &
-            - prediction%displacement(:, node), contact%normal(:, c))
+            - model%contact_point(c)%change(state%x, prediction%displacement), &
+            contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
         if (touching(tool) .and. .not. allowed%active) cycle
         depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))

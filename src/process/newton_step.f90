@@ -41,7 +41,7 @@ contains
     real(wp) :: gradient
 
     associate (correction => attempt%correction, phase => model%phase(trial%phase))
-      call contact_force_increment(model, phase, system%contact, system%stiffness, &
+      call contact_force_increment(model, phase, system%contact, trial%x, system%stiffness, &
           system%problem, correction%lambda_increment)
       correction%enhanced_increment = enhanced_response(system%enhanced, model, &
           system%problem%solution) - system%enhanced%offset

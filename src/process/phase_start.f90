@@ -7,7 +7,8 @@ module dd3_process_phase_start
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
-  use dd3_model_contact_layer, only : missing_clearance
+  use dd3_model_contact_layer, only : held_offsets, starting_offset
+  use dd3_model_energy, only : contact_energy
   use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
@@ -30,6 +31,8 @@ contains
   !> freed directions become forces that fade over the phase, and a pressed tool without contact
   !> approaches the sheet.
   !>
+  !> The energy of the contact layers of released tools goes to the tools.
+  !>
   !> A release is predicted elastic: beyond the maximum of the force, the tangents of loading would
   !> continue on the descending branch instead of unloading.
   subroutine begin_phase(model, number, state)
@@ -39,8 +42,10 @@ contains
     !> The committed state.
     type(state_t), intent(inout) :: state
 
+    real(wp) :: stored
     integer :: tool
 
+    stored = contact_energy(model, state)
     call free_directions(model, number, state)
     call release_beads(model, number, state)
     state%bead_normal = normal_fraction(state)
@@ -66,15 +71,17 @@ contains
       start%until_from_below = .true.
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
-      call release_contacts(phase, state)
+      call release_contacts(model, phase, state)
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
       call place_layers(model, number, state)
       start%layer_offset = state%layer_offset
+      start%held_offset = held_offsets(model, phase, state)
       start%tool_displacement = state%tool_displacement
       start%plastic_strain = state%internal_variables(1, :, :)
     end associate
+    state%tool_work = state%tool_work + contact_energy(model, state) - stored
     call evaluate_external(model, state)
   end subroutine begin_phase
 
@@ -104,7 +111,7 @@ contains
       do tool = 1, model%n_tool
         begins = phase%active(tool) .and. (number == 1 .or. returns(model, number, tool))
         if (number > 1) begins = begins .or. phase%layer > model%phase(number - 1)%layer
-        if (begins) state%layer_offset(tool) = missing_clearance(model, phase, state, tool)
+        if (begins) state%layer_offset(tool) = starting_offset(model, phase, state, tool)
         if (phase%mixed) state%layer_offset(tool) = 0.0_wp
       end do
     end associate
@@ -155,7 +162,7 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
-          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
+          model%point_position(c, state%x) - state%tool_displacement(:, tool), hint, &
           model%tolerance%start_search, wrong_side_depth*model%largest_thickness(), hit)
       if (.not. hit%found .or. -hit%distance <= depth) cycle
       depth = -hit%distance
@@ -203,7 +210,7 @@ contains
     if (number > 1) freed = model%phase(number - 1)%prescribed
     freed = freed .and. .not. model%phase(number)%prescribed
     reaction = state%internal_force - state%external_force
-    reaction(:, model%contact_node) = reaction(:, model%contact_node) + state%lambda
+    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
     where (.not. freed) reaction = 0.0_wp
     reaction = reaction + fading_factor(state%progress)*state%start%reaction
     where (model%phase(number)%prescribed) reaction = 0.0_wp
@@ -232,7 +239,8 @@ contains
   end subroutine release_beads
 
   !> Turn the contact forces of released tools into fading forces.
-  subroutine release_contacts(phase, state)
+  subroutine release_contacts(model, phase, state)
+    type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state
 
@@ -244,8 +252,10 @@ contains
       tool = state%contact_tool(c)
       if (tool == 0) cycle
       if (phase%active(tool)) cycle
-      state%fading(:, c) = state%fading(:, c) + state%lambda(:, c)
-      state%fading_tool(c) = tool
+      call model%contact_point(c)%add_nodal_forces(state%x, state%lambda(:, c), state%fading)
+      associate (point => model%contact_point(c))
+        state%fading_tool(point%node(:point%n_surface)) = tool
+      end associate
       state%lambda(:, c) = 0.0_wp
       state%status(c) = status_gap
       state%contact_tool(c) = 0
@@ -297,7 +307,7 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, &
-          state%x(:, model%contact_node(c)) - state%tool_displacement(:, tool), hint, &
+          model%point_position(c, state%x) - state%tool_displacement(:, tool), hint, &
           model%tolerance%tool_search, model%tolerance%committed_depth, hit, &
           outward(:, c))
       if (.not. hit%found) cycle

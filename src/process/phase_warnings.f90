@@ -142,7 +142,7 @@ contains
 
     do c = 1, model%n_contact
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
-      associate (x => state%x(:, model%contact_node(c)), phase => model%phase(state%phase))
+      associate (x => model%point_position(c, state%x), phase => model%phase(state%phase))
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
             model%tolerance%touch, model%tolerance%committed_depth, hit)

@@ -100,7 +100,7 @@ contains
         call assemble_stiffness(system, model, committed)
         call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
-        call solve_reduced(system, model, phase, attempt%solver, attempt%verdict)
+        call solve_reduced(system, model, phase, committed%x, attempt%solver, attempt%verdict)
         if (attempt%verdict%outcome /= verdict_converged) return
         call system%profile%start()
         self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), &
@@ -111,7 +111,7 @@ contains
         if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
       end do
-      call contact_force_increment(model, phase, system%contact, system%stiffness, &
+      call contact_force_increment(model, phase, system%contact, committed%x, system%stiffness, &
           system%problem, self%lambda)
       where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
       call tool_increments(self, model, phase, committed%start%tool_displacement, system)
@@ -134,7 +134,7 @@ contains
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
       call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
-          model%contact_node, faded*unfaded_forces(model, committed), problem%residual)
+          faded*unfaded_forces(model, committed), problem%residual)
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
       problem%residual = problem%residual + faded*start%reaction

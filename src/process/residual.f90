@@ -38,17 +38,16 @@ contains
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase))
       problem%residual = trial%internal_force - trial%external_force
-      do c = 1, model%n_contact
-        node = model%contact_node(c)
-        problem%residual(:, node) = problem%residual(:, node) + trial%lambda(:, c)
-      end do
+      problem%residual = problem%residual + model%nodal_contact_forces(trial%x, trial%lambda)
       problem%contact_residual = contact%force - trial%lambda
       trial%tool_force = 0.0_wp
+      do node = 1, model%n_node
+        tool = trial%fading_tool(node)
+        if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + trial%fading(:, node)
+      end do
       do c = 1, model%n_contact
         tool = contact%tool(c)
         if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + contact%force(:, c)
-        tool = trial%fading_tool(c)
-        if (tool > 0) trial%tool_force(:, tool) = trial%tool_force(:, tool) + trial%fading(:, c)
       end do
       do b = 1, size(trial%bead_total, 2)
         tool = model%drawbead(b)%tool
@@ -75,28 +74,20 @@ contains
     integer, intent(out) :: worst_node
     real(wp), intent(out) :: worst_residual
 
-    real(wp) :: equilibrium(3), contribution, sum_of_squares
+    real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares
     integer :: node, c, tool
 
-    sum_of_squares = 0.0_wp
-    worst_residual = -1.0_wp
     associate (phase => model%phase(trial%phase), problem => system%problem, &
         contact => system%contact)
-      do node = 1, model%n_node
-        c = model%candidate_of(node)
-        equilibrium = problem%residual(:, node)
-        contribution = 0.0_wp
-        if (c > 0) then
-          equilibrium = equilibrium + problem%contact_residual(:, c)
-          contribution = sum(problem%contact_residual(:, c)**2)
-        end if
-        contribution = contribution + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
-        sum_of_squares = sum_of_squares + contribution
-        if (contribution <= worst_residual) cycle
-        worst_residual = contribution
-        worst_node = node
+      equilibrium = problem%residual + model%nodal_contact_forces(trial%x, problem%contact_residual)
+      contribution = sum(equilibrium**2, mask=.not. phase%prescribed, dim=1)
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        contribution(node) = contribution(node) + sum(problem%contact_residual(:, c)**2)
       end do
-      sum_of_squares = sum_of_squares + enhanced_square(system%enhanced, model%thickness)
+      worst_node = maxloc(contribution, dim=1)
+      worst_residual = contribution(worst_node)
+      sum_of_squares = sum(contribution) + enhanced_square(system%enhanced, model%thickness)
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (any(contact%tool == tool .and. contact%status /= status_gap)) &

@@ -112,7 +112,7 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       associate (distance => model%tolerance%tool_search, n => model%contact_node(c))
-        call find_contact(model%tool(tool)%surface, state%x(:, n) &
+        call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
             - state%tool_displacement(:, tool), hint, distance, distance, hit)
         if (.not. hit%found .or. abs(hit%distance) >= abs(gap)) cycle
         gap = hit%distance

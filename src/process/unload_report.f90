@@ -66,13 +66,13 @@ contains
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    real(wp) :: force(3, model%n_node), fading(3, model%n_contact), resultant
+    real(wp) :: force(3, model%n_node), fading(3, model%n_node), resultant
 
     text = ""
     associate (phase => model%phase(state%phase), start => state%start)
       if (size(phase%support, 2) == 0) return
       fading = 0.0_wp
-      call nodal_forces(model%load_set, start%load_end, model%contact_node, fading, force)
+      call nodal_forces(model%load_set, start%load_end, fading, force)
       if (size(start%pressure_end) > 0) call add_pressure_forces(model%element, &
           model%pressure_set, start%pressure_end, state%x, force)
       resultant = free_resultant(model, state, force)
@@ -81,7 +81,7 @@ contains
             "': the chosen supports carry "//to_text(resultant, 3)//" N of them"
         return
       end if
-      call nodal_forces(model%load_set, start%load, model%contact_node, start%fading, force)
+      call nodal_forces(model%load_set, start%load, start%fading, force)
       force = force + start%reaction
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           start%pressure, state%x, force)

@@ -28,7 +28,7 @@ contains
         + 0.5_wp*sum((old%internal_force + new%internal_force)*moved)
     new%plastic_work = old%plastic_work + plastic_work_increment(model, old, new)
     call add_external_work(model, old, moved, new)
-    call add_contact_work(model, contact, old, moved, new)
+    call add_contact_work(model, contact, old, new)
     if (size(new%bead_load) > 0) call add_bead_work(model, old, moved, new)
   end subroutine add_work
 
@@ -44,7 +44,8 @@ contains
 
     force = old%external_force + new%external_force
     reaction = old%internal_force + new%internal_force - force
-    reaction(:, model%contact_node) = reaction(:, model%contact_node) + old%lambda + new%lambda
+    reaction = reaction + model%nodal_contact_forces(old%x, old%lambda) &
+        + model%nodal_contact_forces(new%x, new%lambda)
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
     new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
@@ -76,12 +77,10 @@ contains
 
   !> Add the work of the tools, the friction work and the slip. A contact layer that advances to its
   !> place moves the sheet as the tool does, along its normal.
-  pure subroutine add_contact_work(model, contact, old, moved, new)
+  pure subroutine add_contact_work(model, contact, old, new)
     type(model_t), intent(in) :: model
     type(contact_work_t), intent(in) :: contact
     type(state_t), intent(in) :: old
-    !> Displacements in the increment, `(3, n_node)`, mm.
-    real(wp), intent(in) :: moved(:, :)
     type(state_t), intent(inout) :: new
 
     real(wp) :: force(3), tool_motion(3), slip(3), advance
@@ -95,7 +94,7 @@ contains
       if (tool == 0) cycle
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
       tool_motion = new%tool_displacement(:, tool) - old%tool_displacement(:, tool)
-      slip = moved(:, model%contact_node(c)) - tool_motion
+      slip = model%point_position(c, new%x) - model%point_position(c, old%x) - tool_motion
       slip = slip - dot_product(contact%normal(:, c), slip)*contact%normal(:, c)
       advance = old%layer_offset(tool) - new%layer_offset(tool)
       new%tool_work = new%tool_work - dot_product(force, tool_motion &

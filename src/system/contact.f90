@@ -9,21 +9,20 @@ module dd3_system_contact
       round_off, status_gap, status_slip, status_stick
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
+  use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
-  use dd3_model_tolerances, only : tangential
   use dd3_system_contact_work, only : contact_work_t, open_candidate
   implicit none
   private
-  public :: evaluate_contact, predictor_contact, is_normal_held
+  public :: evaluate_contact, predictor_contact
 
   !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does not
   !> follow from equilibrium, but grows or falls by the penalty times the gap in every iteration.
   real(wp), parameter :: held_factor = 1.0e4_wp
-  !> Relative distance within which a layer counts as touched.
-  real(wp), parameter :: at_onset = 1.0e-9_wp
+  !> Part of the layer that is left, where the predictor takes its stiffness at first contact.
+  real(wp), parameter :: at_onset = 0.5_wp
   !> Candidates that a thread takes at a time.
   integer, parameter :: chunk = 64
 
@@ -60,12 +59,12 @@ contains
 
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    real(wp) :: slip(3)
-    integer :: node, tool
+    real(wp) :: x(3), slip(3)
+    integer :: tool
 
-    node = model%contact_node(c)
     hint = trial%hint(:, c)
-    call find_nearest_tool(self, model, committed, trial, c, hint, hit)
+    x = model%point_position(c, trial%x)
+    call find_nearest_tool(self, model, committed, trial, c, x, hint, hit)
     tool = self%tool(c)
     trial%contact_tool(c) = tool
     trial%hint(:, c) = hint
@@ -73,12 +72,12 @@ contains
     if (tool == 0) then
       call open_candidate(self, c)
     else
-      slip = trial%x(:, node) - committed%x(:, node) - trial%tool_displacement(:, tool) &
+      slip = x - self%committed_x(:, c) - trial%tool_displacement(:, tool) &
           + committed%tool_displacement(:, tool)
       self%normal(:, c) = hit%normal
       associate (phase => model%phase(trial%phase))
-        if (is_compliant(phase, node, hit%normal)) then
-          call evaluate_layer(self, c, layer_at(model, phase, c), trial%layer_offset(tool), hit, &
+        if (.not. phase%mixed) then
+          call evaluate_layer(self, c, layer_at(model, phase, c), offset_at(trial, tool, c), hit, &
               slip, model%tool(tool)%friction)
         else
           call evaluate_candidate(self, c, trial%layer_offset(tool), hit, slip, &
@@ -101,26 +100,14 @@ contains
     if (is_normal_held(phase, model%contact_node(c), normal)) penalty = held_factor*penalty
   end function candidate_penalty
 
-  !> Whether the prescribed displacements of a node hold it along a normal.
-  pure logical function is_normal_held(phase, node, normal)
-    type(phase_t), intent(in) :: phase
-    integer, intent(in) :: node
-    real(wp), intent(in) :: normal(3)
+  !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
+  pure real(wp) function offset_at(state, tool, c)
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool, c
 
-    is_normal_held = norm2(merge(0.0_wp, normal, phase%prescribed(:, node))) <= tangential
-  end function is_normal_held
-
-  !> Whether the compliant law holds at a candidate near a tool. A node that is held along the
-  !> normal has no displacement that could follow from the law.
-  pure logical function is_compliant(phase, node, normal)
-    type(phase_t), intent(in) :: phase
-    integer, intent(in) :: node
-    !> Of the tool.
-    real(wp), intent(in) :: normal(3)
-
-    is_compliant = .not. phase%mixed
-    if (is_compliant) is_compliant = .not. is_normal_held(phase, node, normal)
-  end function is_compliant
+    offset_at = state%layer_offset(tool)
+    if (state%start%held_offset(c) >= 0.0_wp) offset_at = state%start%held_offset(c)
+  end function offset_at
 
   !> Evaluate status, force and linearisation of a candidate near the layer of a tool. One that
   !> changes its tool has no tangential force of its history.
@@ -214,7 +201,8 @@ contains
     logical :: leaving
 
     hint = committed%hint(:, c)
-    call find_nearest_tool(self, model, committed, committed, c, hint, hit)
+    self%committed_x(:, c) = model%point_position(c, committed%x)
+    call find_nearest_tool(self, model, committed, committed, c, self%committed_x(:, c), hint, hit)
     tool = self%tool(c)
     self%lambda(:, c) = committed%lambda(:, c)
     self%status(c) = committed%status(c)
@@ -229,8 +217,8 @@ contains
     self%onset(c) = self%committed_gap(c)
     self%distance(c) = hit%distance + committed%layer_offset(tool) - self%onset(c)
     associate (phase => model%phase(committed%phase))
-      if (is_compliant(phase, model%contact_node(c), hit%normal)) then
-        call predict_layer(self, c, layer_at(model, phase, c), committed%layer_offset(tool), hit, &
+      if (.not. phase%mixed) then
+        call predict_layer(self, c, layer_at(model, phase, c), offset_at(committed, tool, c), hit, &
             touching(tool), model)
         return
       end if
@@ -281,7 +269,7 @@ contains
     self%onset(c) = layer%height
     self%distance(c) = gap - layer%height
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
-        min(gap, (1.0_wp - at_onset)*layer%height)
+        min(gap, at_onset*layer%height)
     committed = 0.0_wp
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, self%lambda(:, c), &
@@ -315,7 +303,7 @@ contains
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
   !> back; since then it cannot have come deeper inside a tool than it moved relative to it.
-  subroutine find_nearest_tool(self, model, committed, trial, c, hint, nearest)
+  subroutine find_nearest_tool(self, model, committed, trial, c, position, hint, nearest)
     !> Gets the tool, 0 if none is within the search distance.
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -323,6 +311,8 @@ contains
     type(state_t), intent(in) :: committed, trial
     !> Number of the candidate.
     integer, intent(in) :: c
+    !> Of the candidate in the trial state, mm.
+    real(wp), intent(in) :: position(3)
     !> Last closest point on each tool, `(n_tool)`.
     type(hint_t), intent(inout) :: hint(:)
     !> Closest point on the nearest tool.
@@ -330,16 +320,15 @@ contains
 
     type(hit_t) :: hit
     real(wp) :: best, distance, x(3), moved(3)
-    integer :: t, node
+    integer :: t
 
     self%tool(c) = 0
     best = huge(1.0_wp)
-    node = model%contact_node(c)
     associate (phase => model%phase(trial%phase))
       do t = 1, model%n_tool
         if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
-        x = trial%x(:, node) - trial%tool_displacement(:, t)
-        moved = x - committed%x(:, node) + committed%tool_displacement(:, t)
+        x = position - trial%tool_displacement(:, t)
+        moved = x - self%committed_x(:, c) + committed%tool_displacement(:, t)
         call find_contact(model%tool(t)%surface, x, hint(t), self%search_distance, &
             model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
             self%outward(:, c))

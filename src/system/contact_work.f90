@@ -29,6 +29,8 @@ module dd3_system_contact_work
     !> n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
     integer, allocatable :: committed_tool(:)
     real(wp), allocatable :: committed_normal(:, :), committed_force(:, :), committed_gap(:)
+    !> Positions of the points in the committed state, `(3, n_contact)`, mm.
+    real(wp), allocatable :: committed_x(:, :)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
     !> Distance up to which the tools are looked for, mm.
@@ -51,7 +53,7 @@ contains
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
         source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%outward(3, n_contact), source=0.0_wp)
+    allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
   !> Set a candidate without a tool near it.

@@ -17,62 +17,25 @@ module dd3_system_reduced
   use dd3_model_phase, only : phase_t
   use dd3_contact_operator, only : status_gap
   use dd3_system_contact_work, only : contact_work_t
+  use dd3_system_linear_problem, only : linear_problem_t
+  use dd3_system_point_rows, only : add_points, point_force_increment
+  use dd3_system_tool_rows, only : add_to_tool_row, finish_tool_rows, force_row, share_tool_rows, &
+      start_tool_rows
   implicit none
   private
-  public :: linear_problem_t, new_linear_problem, reduce, reduce_equilibrium, &
-      contact_force_increment
-
-  !> Right-hand sides and prescribed values of one linear problem.
-  type :: linear_problem_t
-    !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N.
-    real(wp), allocatable :: residual(:, :)
-    !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
-    real(wp), allocatable :: contact_residual(:, :)
-    !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
-    real(wp), allocatable :: prescribed(:, :)
-    !> Positions that the nodes with prescribed displacements have to reach, `(3, n_node)`, mm, and
-    !> whether the prediction may not reach them.
-    real(wp), allocatable :: target(:, :)
-    logical :: missed = .false.
-    !> Prescribed displacement increments of the tools that are not pressed or have no contact,
-    !> `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_prescribed(:, :)
-    !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
-    real(wp), allocatable :: tool_residual(:)
-    !> I - E of the candidates in the reduced matrix, `(3, 3, n_contact)`, and their tools, 0 in a
-    !> gap, `(n_contact)`.
-    real(wp), allocatable :: remaining(:, :, :)
-    integer, allocatable :: contact_tool(:)
-    !> Right-hand side of the reduced system, `(3*n_row)`.
-    real(wp), allocatable :: rhs(:)
-    !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
-    real(wp), allocatable :: solution(:)
-  end type linear_problem_t
+  public :: reduce, reduce_equilibrium, contact_force_increment
 
 contains
 
-  !> Allocate a linear problem and set it to zero.
-  subroutine new_linear_problem(self, model, n_row)
-    type(linear_problem_t), intent(out) :: self
-    type(model_t), intent(in) :: model
-    !> Number of block rows of the reduced system.
-    integer, intent(in) :: n_row
-
-    allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
-    allocate (self%target(3, model%n_node), source=0.0_wp)
-    allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
-    allocate (self%remaining(3, 3, model%n_contact), source=0.0_wp)
-    allocate (self%contact_tool(model%n_contact), source=0)
-    allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
-        source=0.0_wp)
-    allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
-  end subroutine new_linear_problem
-
   !> Build the reduced matrix, of several ranks each its rows, and the right-hand side.
-  subroutine reduce(model, phase, contact, stiffness, problem, reduced)
+  subroutine reduce(model, phase, contact, x, position, stiffness, problem, reduced)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(contact_work_t), intent(in) :: contact
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Positions of the blocks of each element in the matrix, see `find_positions`.
+    integer, intent(in) :: position(:, :, :)
     !> Stiffness of the sheet, zero in the rows and columns of the tools.
     type(block_matrix_t), intent(in) :: stiffness
     !> Residuals and prescribed values; gets the right-hand side.
@@ -87,7 +50,9 @@ contains
       problem%rhs(3*node - 2:3*node) = -problem%residual(:, node)
     end do
     call start_tool_rows(model, phase, problem, reduced)
-    do c = 1, model%n_contact
+    if (.not. phase%mixed) &
+        call add_points(model, phase, contact, x, position, problem, reduced)
+    do c = 1, merge(model%n_contact, 0, phase%mixed)
       node = model%contact_node(c)
       problem%remaining(:, :, c) = identity - contact%e(:, :, c)
       problem%contact_tool(c) = 0
@@ -180,6 +145,10 @@ contains
     do node = 1, model%n_node
       residual = merge(0.0_wp, problem%residual(:, node), phase%prescribed(:, node))
       problem%rhs(3*node - 2:3*node) = -residual
+      if (.not. phase%mixed) then
+        problem%rhs(3*node - 2:3*node) = -merge(0.0_wp, residual, phase%prescribed(:, node))
+        cycle
+      end if
       c = model%candidate_of(node)
       if (c == 0) cycle
       tool = problem%contact_tool(c)
@@ -192,24 +161,6 @@ contains
           + dot_product(phase%direction(:, tool), residual - remaining)
     end do
   end subroutine reduce_equilibrium
-
-  !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
-  subroutine share_tool_rows(model, phase, reduced)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(block_matrix_t), intent(inout) :: reduced
-
-    integer :: tool, block, first, last
-
-    do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
-      if (.not. phase%pressed(tool)) cycle
-      first = reduced%row_start(block)
-      last = reduced%row_start(block + 1) - 1
-      call sum_over_ranks(9*(last - first + 1), reduced%value(:, :, first:last))
-    end do
-  end subroutine share_tool_rows
 
   !> Multiply a block by a factor from the left.
   pure subroutine multiply_left(factor, block)
@@ -257,83 +208,6 @@ contains
         phase%prescribed(:, node))
   end function node_residual
 
-  !> Add a row vector to the force row of a pressed tool.
-  subroutine add_to_tool_row(reduced, block, row, column, values)
-    type(block_matrix_t), intent(inout) :: reduced
-    !> Block row of the tool, the row in it, and the block column.
-    integer, intent(in) :: block, row, column
-    real(wp), intent(in) :: values(3)
-
-    integer :: k
-
-    k = position_of(reduced, block, column)
-    reduced%value(row, :, k) = reduced%value(row, :, k) + values
-  end subroutine add_to_tool_row
-
-  !> Initialise the rows of the tools; those not pressed in this phase have a prescribed motion.
-  subroutine start_tool_rows(model, phase, problem, reduced)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    !> Prescribed motion and residuals; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
-
-    integer :: tool, block, row, k
-
-    do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
-      do k = reduced%row_start(block), reduced%row_start(block + 1) - 1
-        reduced%value(:, :, k) = 0.0_wp
-      end do
-      problem%rhs(3*block - 2:3*block) = 0.0_wp
-      if (phase%pressed(tool)) then
-        row = force_row(phase%direction(:, tool))
-        problem%rhs(3*(block - 1) + row) = -problem%tool_residual(tool)
-      else
-        reduced%value(:, :, reduced%diagonal(block)) = identity
-        problem%rhs(3*block - 2:3*block) = problem%tool_prescribed(:, tool)
-      end if
-    end do
-  end subroutine start_tool_rows
-
-  !> Constrain the pressed tools to their lines of motion; one without contact has a prescribed
-  !> motion.
-  subroutine finish_tool_rows(model, phase, contact, problem, reduced)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
-
-    integer :: tool, block, row, i, k
-
-    do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
-      if (.not. phase%pressed(tool)) cycle
-      row = force_row(phase%direction(:, tool))
-      k = reduced%diagonal(block)
-      do i = 1, 3
-        if (i == row) cycle
-        reduced%value(i, i, k) = 1.0_wp
-        reduced%value(i, row, k) = -phase%direction(i, tool)/phase%direction(row, tool)
-      end do
-      if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
-      reduced%value(row, row, k) = 1.0_wp
-      problem%rhs(3*(block - 1) + row) = problem%tool_prescribed(row, tool)
-    end do
-  end subroutine finish_tool_rows
-
-  !> Return the row of a pressed tool's block that holds its force balance; the other two constrain
-  !> the tool to its line of motion.
-  pure integer function force_row(direction) result(row)
-    real(wp), intent(in) :: direction(3)
-
-    row = maxloc(abs(direction), dim=1)
-  end function force_row
-
   !> Make the rows of prescribed displacements unit rows.
   subroutine prescribe(phase, problem, reduced)
     type(phase_t), intent(in) :: phase
@@ -356,10 +230,12 @@ contains
   end subroutine prescribe
 
   !> Return the increments of the contact forces from the solution: dlambda_A = -r_A - K_A du.
-  subroutine contact_force_increment(model, phase, contact, stiffness, problem, increment)
+  subroutine contact_force_increment(model, phase, contact, x, stiffness, problem, increment)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(contact_work_t), intent(in) :: contact
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
     type(block_matrix_t), intent(in) :: stiffness
     !> Residuals and solution.
     type(linear_problem_t), intent(in) :: problem
@@ -369,6 +245,10 @@ contains
     real(wp) :: change(3)
     integer :: c, node, k, first
 
+    if (.not. phase%mixed) then
+      call point_force_increment(model, phase, contact, x, problem, increment)
+      return
+    end if
     increment = 0.0_wp
     do c = 1, model%n_contact
       node = model%contact_node(c)
@@ -390,5 +270,6 @@ contains
     end do
     if (allocated(stiffness%owner)) call sum_over_ranks(size(increment), increment)
   end subroutine contact_force_increment
+
 
 end module dd3_system_reduced

@@ -19,10 +19,10 @@ contains
     type(state_t), intent(in) :: state
 
     real(wp) :: stiffness
-    integer :: c, k
+    integer :: node, k
 
-    do c = 1, model%n_contact
-      associate (node => model%contact_node(c), fading => state%start%fading(:, c))
+    do node = 1, model%n_node
+      associate (fading => state%start%fading(:, node))
         if (all(abs(fading) <= 0.0_wp)) cycle
         stiffness = fading_factor(state%progress) &
             *spring_stiffness(fading, model%thickness_at(node))

@@ -25,11 +25,13 @@ module dd3_system_solve
 contains
 
   !> Build the reduced system from stiffness, contact and right-hand sides, and solve it.
-  subroutine solve_reduced(system, model, phase, info, verdict)
+  subroutine solve_reduced(system, model, phase, x, info, verdict)
     !> Gets the solution.
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
     !> Summed over the attempt.
     type(solve_info_t), intent(inout) :: info
     !> Retry if there is no solution.
@@ -38,7 +40,8 @@ contains
     type(solver_report_t) :: report
 
     call system%profile%start()
-    call reduce(model, phase, system%contact, system%stiffness, system%problem, system%reduced)
+    call reduce(model, phase, system%contact, x, system%position, system%stiffness, &
+        system%problem, system%reduced)
     call system%profile%add(section_assembly)
     call system%solver%factor(system%reduced, verdict)
     call system%profile%add(section_factorisation)

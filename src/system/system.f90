@@ -15,7 +15,7 @@ module dd3_system_system
   use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_partition, only : new_partition, partition_t
-  use dd3_system_reduced, only : linear_problem_t, new_linear_problem
+  use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private

@@ -7,7 +7,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from frame import Outcome, Section, Value  # noqa: E402
 
-HEIGHT, HALF_FORCE = 0.01, 3e-5 * 2.1e5 * 100.0  # of the layer: mm; N on 100 mm2 at half of the height
+HEIGHT, FORCE = 0.01, 5e-6 * 2.1e5 * 100.0  # of the layer: h, mm, and p_0 A, N
 FRICTION, STICK = 0.144, 0.16  # progress of the drag at which the block still sticks
 
 
@@ -18,15 +18,15 @@ def values(bench):
         found = bench.run(f"contact_layer_{element}", HERE / "case.dat", {"element": element})
         gap = found.last("bottom_z", "press") - found.last("table_uz", "press")
         pressed = -found.last("table_fz", "press")
-        part = pressed / HALF_FORCE
+        left = gap / HEIGHT
         pull, slip = (found.at(column, STICK, "drag") for column in ("table_fx", "bottom_ux"))
         ratios = [pulled / -force for pulled, force in zip(found.column("table_fx"), found.column("table_fz")) if force]
         result += [
-            Value(f"`{element}`: force of the gap, N", HALF_FORCE * (HEIGHT / gap - 1), pressed, 1e-8),
-            Value(f"`{element}`: elastic slip, mm", pull * HEIGHT / (pressed + HALF_FORCE), slip, 1e-5),
+            Value(f"`{element}`: force of the gap, N", FORCE * (1 / left - 2 + left), pressed, 1e-8),
+            Value(f"`{element}`: elastic slip, mm", pull * HEIGHT / (pressed + FORCE), slip, 1e-5),
             Value(f"`{element}`: largest quotient of the forces", FRICTION, max(ratios), 1e-6),
             Value(f"`{element}`: its value at the end", FRICTION, ratios[-1], 1e-6),
-            Value(f"`{element}`: energy in the layer, mJ", HALF_FORCE * HEIGHT * (math.log1p(part) - part / (1 + part)),
+            Value(f"`{element}`: energy in the layer, mJ", FORCE * HEIGHT * ((1 - left) * (left - 3) / 2 - math.log(left)),
                   found.last("tool_work", "press") - found.last("internal_work", "press"), 5e-4),
             Value(f"`{element}`: error of the energy balance over the work on the block", 0.0,
                   found.last("energy_error") / (found.last("tool_work") + found.last("external_work")), 5e-4,
@@ -36,8 +36,8 @@ def values(bench):
 
 SECTIONS = [Section("V18 Block on a table: contact layer", """
 A table is lifted to a block of 10 x 10 x 1 mm, E = 2.1e5, ν = 0, and presses it through its contact layer of
-h = 0.01 mm; then the block is dragged, µ = 0.144. With F_h = 3e-5 E A and the gap g that the run finds, the normal
-force is F_h (h/g - 1). While the block sticks, its foot slips elastically by T h/(N + F_h), which is below µ h; then
-T = µ N. The layer stores F_h h (ln(1 + r) - r/(1 + r)), r = N/F_h: work of the table less internal work. Works are sums
-over increments of 1 % of h, whose error is of second order. Deck `tests/verification/contact_layer/case.dat`.
+h = 0.01 mm; then the block is dragged, µ = 0.144. With F_0 = 5e-6 E A and x = g/h, g the gap that the run finds, the
+normal force is F_0 (1/x - 2 + x). While the block sticks, its foot slips elastically by T h/(N + F_0), which is below
+µ h; then T = µ N. The layer stores F_0 h [(1 - x)(x - 3)/2 - ln x]: work of the table less internal work. Works are
+sums over increments of 1 % of h, whose error is of second order. Deck `tests/verification/contact_layer/case.dat`.
 """, values)]

@@ -2,7 +2,7 @@
 
 The pressure p(x) is constant over strips. The gap is g = x^2/(2 R) - d + u(x) with the displacement u = A p of the
 half-space (Johnson, Contact Mechanics, 1985, section 2.4); the rigid displacement d follows from the load. The layer of
-height h gives p = max(0, p_h (h/g - 1)). Needs numpy.
+height h gives p = p_0 (h/g - 2 + g/h) for g < h. Needs numpy.
 """
 import math
 
@@ -28,8 +28,11 @@ def influence(edges, modulus):
     return -2 / (math.pi * modulus) * sides
 
 
-def pressure(radius, load, modulus, height, half_pressure):
-    """Return centres and lengths of the strips and their pressures; Newton's method on a smooth form of the law."""
+def pressure(radius, load, modulus, height, reference):
+    """Return centres and lengths of the strips and their pressures.
+
+    Newton's method on p = P(p - s g), the pressure of the law on the line of slope s through p and g.
+    """
     edges = strips()
     x, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     matrix = influence(edges, modulus)
@@ -38,11 +41,15 @@ def pressure(radius, load, modulus, height, half_pressure):
     d = (matrix @ p)[0]
     for _ in range(100):
         gap = x**2 / 2 / radius - d + matrix @ p
-        z = half_pressure + p - scale * gap
-        root = np.sqrt(z * z + 4 * scale * height * half_pressure)
-        law = 0.5 * (z + root) - half_pressure
-        slope = np.where(law > 0, 0.5 * (1 + z / root), 0.0)
-        residual = np.append(p - np.maximum(law, 0), 2 * p @ length - load)
+        # x = g/h on the line: (p_0 - s h) x^2 - (2 p_0 - s g + p) x + p_0 = 0
+        a, b = reference - scale * height, 2 * reference + p - scale * gap
+        touches = b - 2 * reference > -scale * height
+        root = np.sqrt(np.where(touches, b * b - 4 * a * reference, 1.0))
+        left = np.where(touches, 2 * reference / np.where(touches, b + root, 1.0), 1.0)
+        law = reference * (1 / left - 2 + left)
+        stiffness = reference / height * (1 / left**2 - 1)
+        slope = stiffness / (stiffness + scale)
+        residual = np.append(p - law, 2 * p @ length - load)
         tangent = np.block([[np.eye(STRIPS) - slope[:, None] * (np.eye(STRIPS) - scale * matrix),
                              -scale * slope[:, None]], [2 * length[None, :], np.zeros((1, 1))]])
         step = np.linalg.solve(tangent, -residual)
@@ -52,8 +59,8 @@ def pressure(radius, load, modulus, height, half_pressure):
     raise ArithmeticError("the integral equation did not converge")
 
 
-def measure(radius, load, modulus, height, half_pressure):
+def measure(radius, load, modulus, height, reference):
     """Return the half-width of the ellipse with the same second moment, mm, and the pressure in the middle, MPa."""
-    x, length, p = pressure(radius, load, modulus, height, half_pressure)
+    x, length, p = pressure(radius, load, modulus, height, reference)
     force = p * length
     return 2 * math.sqrt(float(force @ (x * x + length**2 / 12)) / float(force.sum())), float(p[0])

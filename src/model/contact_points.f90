@@ -1,0 +1,390 @@
+!> Contact points of the sheet. In the mixed formulation they are the nodes of the contact faces; in
+!> the compliant one each face is divided, and the corners of the parts are the points, those on an
+!> edge common to its faces. The area of a point is the integral of the hat function of its part over
+!> the faces, so that a uniform pressure gives the consistent forces on the nodes.
+module dd3_model_contact_points
+  use dd3_base_kinds, only : wp
+  use dd3_model_contact_point, only : contact_point_t, edge_point, face_point, node_point
+  use dd3_linalg_tensor, only : cross
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: set_contact_points, find_contact_faces, point_areas, nodal_areas
+
+  !> Points of a list, each once.
+  type :: point_list_t
+    integer :: n = 0
+    type(contact_point_t), allocatable :: point(:)
+    !> Tools that a point can touch, `(n_tool, n)`.
+    logical, allocatable :: candidate(:, :)
+    !> Element that a point lies on.
+    integer, allocatable :: element(:)
+    !> First point of each node as lower end of an edge, and the next one of the same node.
+    integer, allocatable :: first(:), next(:)
+  end type point_list_t
+
+contains
+
+  !> Find the faces of the sheet whose nodes are all candidates of the same tool.
+  subroutine find_contact_faces(model, member)
+    type(model_t), intent(inout) :: model
+    !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
+    logical, intent(in) :: member(:, :)
+
+    integer :: f
+
+    model%contact_face = pack([(f, f=1, model%face%n)], &
+        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
+  end subroutine find_contact_faces
+
+  !> Set the contact points with their areas, stiffnesses and tools.
+  subroutine set_contact_points(model, member, divisions)
+    !> Has its contact faces.
+    type(model_t), intent(inout) :: model
+    !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
+    logical, intent(in) :: member(:, :)
+    !> Number of parts of an edge of a face with four nodes.
+    integer, intent(in) :: divisions
+
+    type(point_list_t) :: list
+    integer :: i, f, most
+
+    most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
+    allocate (list%point(most), list%element(most), list%next(most))
+    allocate (list%candidate(model%n_tool, most), list%first(model%n_node))
+    list%element = 0
+    list%next = 0
+    list%first = 0
+    allocate (model%candidate_of(model%n_node), source=0)
+    call set_opposites(model)
+    do i = 1, model%n_node
+      if (.not. any(member(:, i))) cycle
+      call add_point(list, node_point(i), member(:, i))
+      model%candidate_of(i) = list%n
+    end do
+    model%n_contact_node = list%n
+    allocate (model%face_point(max((divisions + 1)**2, model%element%n_face_node), &
+        size(model%contact_face)))
+    do f = 1, size(model%contact_face)
+      call add_face(list, model, member, model%contact_face(f), divisions, model%face_point(:, f))
+    end do
+    model%n_contact = list%n
+    model%contact_point = list%point(:list%n)
+    model%candidate = list%candidate(:, :list%n)
+    model%contact_node = model%contact_point%node(1)
+    call set_elements(model, list%element(:list%n))
+    call set_stiffness(model, point_areas(model, model%x0), list%element(:list%n))
+  end subroutine set_contact_points
+
+  !> Set the element of each point, and the places of its nodes there. A node that belongs to no face
+  !> gets an element at it.
+  subroutine set_elements(model, element)
+    type(model_t), intent(inout) :: model
+    !> Of the points on faces; 0 for others.
+    integer, intent(in) :: element(:)
+
+    integer :: at_node(model%n_node), c, e, i
+
+    do e = 1, model%n_element
+      at_node(model%connectivity(:, e)) = e
+    end do
+    do c = 1, size(element)
+      associate (point => model%contact_point(c))
+        point%element = element(c)
+        if (element(c) == 0) point%element = at_node(point%node(1))
+        do i = 1, point%n_node
+          point%local(i) = findloc(model%connectivity(:, point%element), point%node(i), dim=1)
+        end do
+      end associate
+    end do
+  end subroutine set_elements
+
+  !> Add a point to the list.
+  pure subroutine add_point(list, point, candidate)
+    type(point_list_t), intent(inout) :: list
+    type(contact_point_t), intent(in) :: point
+    !> `(n_tool)`.
+    logical, intent(in) :: candidate(:)
+
+    list%n = list%n + 1
+    list%point(list%n) = point
+    list%candidate(:, list%n) = candidate
+  end subroutine add_point
+
+  !> Add the points of a face that are not in the list yet, and the areas of all.
+  subroutine add_face(list, model, member, f, divisions, face_point_number)
+    type(point_list_t), intent(inout) :: list
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: member(:, :)
+    integer, intent(in) :: f, divisions
+    !> Numbers of the points.
+    integer, intent(out) :: face_point_number(:)
+
+    integer :: i, j
+    integer :: number(0:divisions, 0:divisions)
+
+    associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
+      if (size(node) > 4) then
+        face_point_number = model%candidate_of(node)
+        call set_element(list%element, face_point_number, model%face%element(f))
+        return
+      end if
+      number(0, 0) = model%candidate_of(corner(1))
+      number(divisions, 0) = model%candidate_of(corner(2))
+      number(divisions, divisions) = model%candidate_of(corner(3))
+      number(0, divisions) = model%candidate_of(corner(4))
+      if (divisions > 1) then
+        call add_edge(1, 2, number(1:divisions - 1, 0))
+        call add_edge(2, 3, number(divisions, 1:divisions - 1))
+        call add_edge(4, 3, number(1:divisions - 1, divisions))
+        call add_edge(1, 4, number(0, 1:divisions - 1))
+        do j = 1, divisions - 1
+          do i = 1, divisions - 1
+            call add_point(list, face_point(corner, model%opposite(corner), place_on_edge(i), place_on_edge(j)), &
+                all(member(:, corner), dim=2))
+            number(i, j) = list%n
+          end do
+        end do
+      end if
+      face_point_number = reshape(number, [size(number)])
+      call set_element(list%element, face_point_number, model%face%element(f))
+    end associate
+
+  contains
+
+    !> Return the place of a point on an edge.
+    pure real(wp) function place_on_edge(i)
+      integer, intent(in) :: i
+
+      place_on_edge = real(i, wp)/real(divisions, wp)
+    end function place_on_edge
+
+    !> Add the inner points of an edge, or find those of another face.
+    subroutine add_edge(a, b, number)
+      !> Corners at its ends.
+      integer, intent(in) :: a, b
+      !> Numbers of the points from a to b.
+      integer, intent(out) :: number(:)
+
+      integer :: low, high, p, i
+
+      associate (corner => model%face%corner(:, f))
+        low = merge(a, b, corner(a) < corner(b))
+        high = a + b - low
+        p = list%first(corner(low))
+        do while (p > 0)
+          if (list%point(p)%node(2) == corner(high)) exit
+          p = list%next(p)
+        end do
+        if (p == 0) then
+          do i = 1, size(number)
+            call add_point(list, edge_point(corner([low, high]), model%opposite(corner([low, high])), &
+                place_on_edge(i)), all(member(:, corner([low, high])), dim=2))
+            if (i == 1) p = list%n
+          end do
+          list%next(p) = list%first(corner(low))
+          list%first(corner(low)) = p
+        end if
+        number = [(p + i - 1, i=1, size(number))]
+        if (low == b) number = number(size(number):1:-1)
+      end associate
+    end subroutine add_edge
+
+  end subroutine add_face
+
+  !> Set the element of the points that have none yet.
+  pure subroutine set_element(of_point, number, element)
+    integer, intent(inout) :: of_point(:)
+    integer, intent(in) :: number(:), element
+
+    integer :: i
+
+    do i = 1, size(number)
+      if (of_point(number(i)) == 0) of_point(number(i)) = element
+    end do
+  end subroutine set_element
+
+  !> Set the nodes opposite to those of the contact faces.
+  subroutine set_opposites(model)
+    type(model_t), intent(inout) :: model
+
+    integer :: i
+
+    allocate (model%opposite(model%n_node), source=0)
+    if (model%element%n_node /= 8) return
+    do i = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(i)))
+        model%opposite(corner) = opposite_nodes(model, model%contact_face(i))
+      end associate
+    end do
+  end subroutine set_opposites
+
+  !> Return the nodes opposite to the corners of a face across its element.
+  pure function opposite_nodes(model, f) result(opposite)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: f
+    integer :: opposite(4)
+
+    real(wp) :: natural(3, 4), place(3)
+    integer :: i, k, across
+
+    associate (nodes => model%connectivity(:, model%face%element(f)), element => model%element)
+      do i = 1, 4
+        natural(:, i) = element%node(:, findloc(nodes, model%face%corner(i, f), dim=1))
+      end do
+      across = maxloc(abs(sum(natural, dim=2)), dim=1)
+      do i = 1, 4
+        place = natural(:, i)
+        place(across) = -place(across)
+        k = minloc(sum(abs(element%node - spread(place, 2, element%n_node)), dim=1), dim=1)
+        opposite(i) = nodes(k)
+      end do
+    end associate
+  end function opposite_nodes
+
+  !> Return the integrals of the hat functions of the parts of a face, mm2, row by row, exact for a
+  !> plane face.
+  pure function areas_of_parts(divisions, x) result(area)
+    integer, intent(in) :: divisions
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
+    real(wp) :: area((divisions + 1)**2)
+
+    real(wp) :: jacobian(0:divisions, 0:divisions), grid(0:divisions, 0:divisions)
+    integer :: i, j
+
+    jacobian = jacobians(divisions, x)
+    grid = 0.0_wp
+    do j = 0, divisions - 1
+      do i = 0, divisions - 1
+        call add_part(jacobian(i:i + 1, j:j + 1), grid(i:i + 1, j:j + 1))
+      end do
+    end do
+    area = reshape(grid, [size(grid)])
+
+  contains
+
+    pure subroutine add_part(jacobian, area)
+      real(wp), intent(in) :: jacobian(2, 2)
+      real(wp), intent(inout) :: area(2, 2)
+
+      integer :: a, b
+
+      do b = 1, 2
+        do a = 1, 2
+          area(a, b) = area(a, b) + (4.0_wp*jacobian(a, b) + 2.0_wp*jacobian(3 - a, b) &
+              + 2.0_wp*jacobian(a, 3 - b) + jacobian(3 - a, 3 - b)) &
+              /(36.0_wp*real(divisions, wp)**2)
+        end do
+      end do
+    end subroutine add_part
+
+  end function areas_of_parts
+
+  !> Return the ratio of area to that of the unit square on a grid of points of a face, mm2.
+  pure function jacobians(divisions, x) result(jacobian)
+    integer, intent(in) :: divisions
+    real(wp), intent(in) :: x(3, 4)
+    real(wp) :: jacobian(0:divisions, 0:divisions)
+
+    real(wp) :: xi, eta
+    integer :: i, j
+
+    do j = 0, divisions
+      eta = real(j, wp)/real(divisions, wp)
+      do i = 0, divisions
+        xi = real(i, wp)/real(divisions, wp)
+        jacobian(i, j) = norm2(cross( &
+            (1.0_wp - eta)*(x(:, 2) - x(:, 1)) + eta*(x(:, 3) - x(:, 4)), &
+            (1.0_wp - xi)*(x(:, 4) - x(:, 1)) + xi*(x(:, 3) - x(:, 2))))
+      end do
+    end do
+  end function jacobians
+
+  !> Return the areas of the nodes of a face with eight or nine of them, mm2: their weights, times the
+  !> Jacobian there.
+  pure function areas_of_many(weight, x) result(area)
+    real(wp), intent(in) :: weight(:)
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
+    real(wp) :: area(size(weight))
+
+    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1], row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
+    real(wp) :: jacobian(0:2, 0:2)
+    integer :: i
+
+    jacobian = jacobians(2, x)
+    area = weight*[(jacobian(column(i), row(i)), i=1, size(weight))]
+  end function areas_of_many
+
+  !> Return the areas of the contact points, `(n_contact)`, mm2; zero for a node without contact
+  !> faces.
+  pure function point_areas(model, x) result(area)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable :: area(:)
+
+    integer :: f, divisions
+
+    allocate (area(model%n_contact), source=0.0_wp)
+    if (.not. allocated(model%contact_face)) return
+    divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
+    do f = 1, size(model%contact_face)
+      associate (corner => x(:, model%face%corner(:, model%contact_face(f))), &
+          point => model%face_point(:, f))
+        if (model%element%n_face_node > 4) then
+          area(point) = area(point) + areas_of_many(model%element%face_weight, corner)
+        else
+          area(point) = area(point) + areas_of_parts(divisions, corner)
+        end if
+      end associate
+    end do
+  end function point_areas
+
+  !> Return the areas of the contact faces that belong to their nodes, `(n_node)`, mm2.
+  pure function nodal_areas(model, x) result(area)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable :: area(:)
+
+    real(wp) :: corners(4)
+    integer :: f
+
+    allocate (area(model%n_node), source=0.0_wp)
+    if (.not. allocated(model%contact_face)) return
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)), &
+          node => model%face%node(:, model%contact_face(f)))
+        if (size(node) > 4) then
+          area(node) = area(node) + areas_of_many(model%element%face_weight, x(:, corner))
+        else
+          corners = areas_of_parts(1, x(:, corner))
+          area(node) = area(node) &
+              + corners([1, 2, 4, 3])
+        end if
+      end associate
+    end do
+  end function nodal_areas
+
+  !> Set the stiffness of the sheet through its thickness under each point, E A/t, with its area A,
+  !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets
+  !> the mean area, and the modulus of the first element.
+  subroutine set_stiffness(model, area, element)
+    type(model_t), intent(inout) :: model
+    !> `(n_contact)`; 0 for none.
+    real(wp), intent(in) :: area(:)
+    integer, intent(in) :: element(:)
+
+    real(wp) :: mean
+    integer :: c
+
+    mean = model%thickness**2
+    if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
+    model%contact_stiffness = [(model%material(model%material_of(max(1, element(c))))%young &
+        *merge(area(c), mean, area(c) > 0.0_wp)/model%thickness_at(model%contact_node(c)), &
+        c=1, model%n_contact)]
+  end subroutine set_stiffness
+
+end module dd3_model_contact_points

@@ -1,0 +1,55 @@
+!> Right-hand sides and prescribed values of the linear problem of an iteration or a prediction.
+module dd3_system_linear_problem
+  use dd3_base_kinds, only : wp
+  use dd3_model_model, only : model_t
+  implicit none
+  private
+  public :: linear_problem_t, new_linear_problem
+
+  !> Right-hand sides and prescribed values of one linear problem.
+  type :: linear_problem_t
+    !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N.
+    real(wp), allocatable :: residual(:, :)
+    !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
+    real(wp), allocatable :: contact_residual(:, :)
+    !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
+    real(wp), allocatable :: prescribed(:, :)
+    !> Positions that the nodes with prescribed displacements have to reach, `(3, n_node)`, mm, and
+    !> whether the prediction may not reach them.
+    real(wp), allocatable :: target(:, :)
+    logical :: missed = .false.
+    !> Prescribed displacement increments of the tools that are not pressed or have no contact,
+    !> `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool_prescribed(:, :)
+    !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
+    real(wp), allocatable :: tool_residual(:)
+    !> I - E of the candidates in the reduced matrix, `(3, 3, n_contact)`, and their tools, 0 in a
+    !> gap, `(n_contact)`.
+    real(wp), allocatable :: remaining(:, :, :)
+    integer, allocatable :: contact_tool(:)
+    !> Right-hand side of the reduced system, `(3*n_row)`.
+    real(wp), allocatable :: rhs(:)
+    !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
+    real(wp), allocatable :: solution(:)
+  end type linear_problem_t
+
+contains
+
+  !> Allocate a linear problem and set it to zero.
+  subroutine new_linear_problem(self, model, n_row)
+    type(linear_problem_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+    !> Number of block rows of the reduced system.
+    integer, intent(in) :: n_row
+
+    allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
+    allocate (self%target(3, model%n_node), source=0.0_wp)
+    allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
+    allocate (self%remaining(3, 3, model%n_contact), source=0.0_wp)
+    allocate (self%contact_tool(model%n_contact), source=0)
+    allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
+        source=0.0_wp)
+    allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
+  end subroutine new_linear_problem
+
+end module dd3_system_linear_problem
