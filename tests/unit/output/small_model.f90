@@ -10,6 +10,7 @@ module small_model
   use dd3_linalg_tensor, only : identity
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : new_material
+  use dd3_model_contact_point, only : node_point
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : set_rim
   use dd3_model_state, only : state_t, new_state
@@ -77,6 +78,8 @@ contains
     allocate (model%material(1))
     call new_material(model%material(1), 2.1e5_wp, 0.3_wp, criterion, hardening, none)
     model%material_of = [1, 1]
+    model%contact_point = [node_point(1), node_point(3)]
+    model%n_contact_node = 2
     model%contact_node = [1, 3]
     model%candidate_of = [1, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]
     allocate (model%tool(2), model%phase(2))

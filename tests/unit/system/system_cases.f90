@@ -109,6 +109,9 @@ contains
     integer :: c
 
     penalty = model%phase(trial%phase)%penalty
+    do c = 1, model%n_contact
+      system%contact%committed_x(:, c) = model%point_position(c, committed%x)
+    end do
     trial%hint%due = .true.
     call evaluate_contact(system%contact, model, committed, trial)
     do c = 1, model%n_contact
@@ -151,8 +154,8 @@ contains
       tool_residual(t) = dot_product(model%phase(trial%phase)%direction(:, t), &
           trial%tool_load(:, t))
     end do
+    residual = residual + model%nodal_contact_forces(trial%x, trial%lambda)
     do c = 1, model%n_contact
-      residual(:, model%contact_node(c)) = residual(:, model%contact_node(c)) + trial%lambda(:, c)
       t = system%contact%tool(c)
       if (t == 0) cycle
       tool_residual(t) = tool_residual(t) + dot_product(model%phase(trial%phase)%direction(:, t), &
