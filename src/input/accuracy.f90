@@ -8,21 +8,21 @@ module dd3_input_accuracy
   private
   public :: set_by_accuracy, accuracy_names, default_by_accuracy
 
-  !> Level of the accuracy: maximum strain increment, rotation increment in degrees, and depth over
-  !> the thickness.
+  !> Level of the accuracy: maximum strain increment, rotation increment in degrees, depth over the
+  !> thickness, and factor on the trial increment.
   type :: level_t
     character(len=8) :: name
-    real(wp) :: strain, rotation, depth
+    real(wp) :: strain, rotation, depth, r_max
   end type level_t
 
   type(level_t), parameter :: level(3) = [ &
-      level_t("draft", strain=0.125_wp, rotation=5.0_wp, depth=0.2_wp), &
-      level_t("standard", strain=0.1_wp, rotation=4.0_wp, depth=0.1_wp), &
-      level_t("fine", strain=0.025_wp, rotation=1.0_wp, depth=0.05_wp)]
+      level_t("draft", strain=0.125_wp, rotation=5.0_wp, depth=0.2_wp, r_max=1.0_wp), &
+      level_t("standard", strain=0.1_wp, rotation=4.0_wp, depth=0.1_wp, r_max=1.0_wp), &
+      level_t("fine", strain=0.025_wp, rotation=1.0_wp, depth=0.05_wp, r_max=0.5_wp)]
 
-  !> Fractions of these limits in the mixed formulation. Its active set settles with smaller
-  !> increments only, and it has no resistance behind a gap.
-  real(wp), parameter :: mixed_fraction = 0.5_wp, mixed_depth_fraction = 0.1_wp
+  !> Divisors of strain and rotation, and of the depth, in the mixed formulation. Its active set
+  !> settles with smaller increments only, and it has no resistance behind a gap.
+  real(wp), parameter :: mixed_divisor = 2.0_wp, mixed_depth_divisor = 10.0_wp
 
 contains
 
@@ -32,16 +32,17 @@ contains
     !> Whether the contact is of the mixed formulation.
     logical, intent(in) :: mixed
 
-    real(wp) :: fraction, depth_fraction
+    real(wp) :: divisor, depth_divisor
     integer :: i
 
-    fraction = merge(mixed_fraction, 1.0_wp, mixed)
-    depth_fraction = merge(mixed_depth_fraction, 1.0_wp, mixed)
+    divisor = merge(mixed_divisor, 1.0_wp, mixed)
+    depth_divisor = merge(mixed_depth_divisor, 1.0_wp, mixed)
     do i = 1, size(level)
       if (level(i)%name /= limits%accuracy) cycle
-      call set_default(limits%strain, fraction*level(i)%strain)
-      call set_default(limits%rotation, fraction*level(i)%rotation)
-      call set_default(limits%depth, depth_fraction*level(i)%depth)
+      call set_default(limits%strain, level(i)%strain/divisor)
+      call set_default(limits%rotation, level(i)%rotation/divisor)
+      call set_default(limits%depth, level(i)%depth/depth_divisor)
+      call set_default(limits%r_max, level(i)%r_max)
     end do
   end subroutine set_by_accuracy
 
@@ -67,14 +68,14 @@ contains
 
   !> Return the defaults of a limit as a text.
   pure function default_by_accuracy(key) result(text)
-    !> Any of strain, rotation, depth.
+    !> Any of strain, rotation, depth, r_max.
     character(len=*), intent(in) :: key
     character(len=:), allocatable :: text
 
-    real(wp) :: value(size(level)), fraction
+    real(wp) :: value(size(level)), divisor
     integer :: i
 
-    fraction = mixed_fraction
+    divisor = mixed_divisor
     select case (key)
       case ("strain")
         value = level%strain
@@ -82,13 +83,16 @@ contains
         value = level%rotation
       case ("depth")
         value = level%depth
-        fraction = mixed_depth_fraction
+        divisor = mixed_depth_divisor
+      case ("r_max")
+        value = level%r_max
+        divisor = 1.0_wp
     end select
     text = "default: "//trim(level(1)%name)//" "//to_text(value(1))
     do i = 2, size(level)
       text = text//", "//trim(level(i)%name)//" "//to_text(value(i))
     end do
-    text = text//"; mixed: "//to_text(fraction)//" times that"
+    if (divisor > 1.0_wp) text = text//"; mixed: 1/"//to_text(divisor)//" of that"
   end function default_by_accuracy
 
 end module dd3_input_accuracy

@@ -201,7 +201,8 @@ module dd3_input_case
 
   !> Limits of the predictor; all are off until set.
   type :: limits_spec_t
-    !> Accuracy, from which the limits strain, rotation and depth follow that are not given.
+    !> Accuracy, from which the limits strain, rotation, depth and r_max follow that are not
+    !> given.
     character(len=8) :: accuracy = "standard"
     !> Maximum strain increment.
     type(limit_spec_t) :: strain

@@ -287,11 +287,11 @@ contains
 
     if (.not. block%has(key)) return
     limit = off
-    limit%given = .true.
+    limit%given = block%given(key)
     i = 1
     if (present(component)) i = component
     associate (entry => block%entry(block%find(key)))
-      if (.not. entry%is_off) limit = limit_spec_t(.true., entry%number(i), given=.true.)
+      if (.not. entry%is_off) limit = limit_spec_t(.true., entry%number(i), block%given(key))
     end associate
   end subroutine fill_limit
 

@@ -152,7 +152,7 @@ contains
 
     key = [ &
       row("accuracy", kind_name, "", "standard", "accuracy of the increments; sets strain, "// &
-          "rotation and depth where they are not given", choices=accuracy_names()), &
+          "rotation, depth and r_max where they are not given", choices=accuracy_names()), &
       row("strain", kind_real, "", "-", "maximum strain increment; "// &
           default_by_accuracy("strain")), &
       row("rotation", kind_real, "degrees", "-", "maximum rotation increment; "// &
@@ -170,7 +170,7 @@ contains
       row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
           "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
-      row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
+      row("r_max", kind_real, "", "-", "maximum of the factor r; "//default_by_accuracy("r_max"))]
     do i = 2, size(key)
       key(i)%may_be_off = .true.
       if (key(i)%name == "force_floor" .or. key(i)%name == "unloading") cycle
