@@ -170,7 +170,8 @@ contains
       row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
           "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
-      row("r_max", kind_real, "", "-", "maximum of the factor r; "//default_by_accuracy("r_max"))]
+      row("r_max", kind_real, "", "-", &
+          "maximum of the factor r; "//default_by_accuracy("r_max"))]
     do i = 2, size(key)
       key(i)%may_be_off = .true.
       if (key(i)%name == "force_floor" .or. key(i)%name == "unloading") cycle
