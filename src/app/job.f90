@@ -24,6 +24,7 @@ module dd3_app_job
   use dd3_model_build, only : new_model
   use dd3_model_contact_report, only : contact_report
   use dd3_model_drawbead_report, only : drawbead_report
+  use dd3_model_limits_report, only : limits_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
@@ -158,7 +159,7 @@ contains
 
     if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
-        contact_report(model)//drawbead_report(model)
+        contact_report(model)//limits_report(model)//drawbead_report(model)
     if (size(case%point) == 0) then
       call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
       if (allocated(solver)) call solver%release()
@@ -334,7 +335,7 @@ contains
       call log%say(warnings(i)%s)
     end do
     call log%note(echo_case(case)//tool_report(model)//contact_report(model)// &
-        drawbead_report(model))
+        limits_report(model)//drawbead_report(model))
     do i = 1, size(model%material)
       call log%note(law_sources(model%material_name(i), model%material(i)))
       if (.not. model%material(i)%laws%criterion%convexity_waived) cycle

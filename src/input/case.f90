@@ -197,10 +197,15 @@ module dd3_input_case
     logical :: active = .false.
     !> If not active, a value that never limits.
     real(wp) :: value = huge(1.0_wp)
+    !> Whether the input gives it.
+    logical :: given = .false.
   end type limit_spec_t
 
   !> Limits of the predictor; all are off until set.
   type :: limits_spec_t
+    !> Accuracy, from which the limits strain, rotation, depth and r_max follow that are not
+    !> given.
+    character(len=8) :: accuracy = "standard"
     !> Maximum strain increment.
     type(limit_spec_t) :: strain
     !> Maximum rotation increment, degrees.
@@ -212,10 +217,8 @@ module dd3_input_case
     type(limit_spec_t) :: force(3)
     !> Floor of the reference contact force.
     type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
-    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness, and
-    !> whether it was given: the default depends on the formulation of the contact.
+    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness.
     type(limit_spec_t) :: depth
-    logical :: depth_given = .false.
     !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
     type(limit_spec_t) :: unloading
     !> Minimum and maximum of the factor r on the trial increment.

@@ -2,6 +2,7 @@
 module dd3_input_fill
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : lower_case
+  use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, &
       output_spec_t, solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
@@ -36,6 +37,7 @@ contains
     if (i > 0) call fill_contact(case%contact, deck%block(i))
     i = first_block(deck, "limits")
     if (i > 0) call fill_limits(case%limits, deck%block(i))
+    call set_by_accuracy(case%limits, case%contact%mixed)
     i = first_block(deck, "newton")
     if (i > 0) call fill_newton(case%newton, deck%block(i))
     i = first_block(deck, "solver")

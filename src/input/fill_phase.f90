@@ -2,6 +2,7 @@
 module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
+  use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
       newton_spec_t, tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, &
@@ -34,6 +35,7 @@ contains
     call fill_limits(phase%limits, block)
     call fill_newton(phase%newton, block)
     call fill_contact(phase%contact, block)
+    call set_by_accuracy(phase%limits, phase%contact%mixed)
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
     phase%unload = block%number("unload") > 0.5_wp
@@ -256,6 +258,7 @@ contains
     type(limits_spec_t) :: off
     integer :: i
 
+    if (block%has("accuracy")) limits%accuracy = block%word("accuracy")
     call fill_limit(limits%strain, off%strain, block, "strain")
     call fill_limit(limits%rotation, off%rotation, block, "rotation")
     call fill_limit(limits%stress_tangential, off%stress_tangential, block, "stress_tangential")
@@ -265,7 +268,6 @@ contains
     end do
     call fill_limit(limits%force_floor, off%force_floor, block, "force_floor")
     call fill_limit(limits%depth, off%depth, block, "depth")
-    limits%depth_given = limits%depth_given .or. block%has("depth")
     call fill_limit(limits%unloading, off%unloading, block, "unloading")
     call fill_limit(limits%r_min, off%r_min, block, "r_min")
     call fill_limit(limits%r_max, off%r_max, block, "r_max")
@@ -285,10 +287,11 @@ contains
 
     if (.not. block%has(key)) return
     limit = off
+    limit%given = block%given(key)
     i = 1
     if (present(component)) i = component
     associate (entry => block%entry(block%find(key)))
-      if (.not. entry%is_off) limit = limit_spec_t(.true., entry%number(i))
+      if (.not. entry%is_off) limit = limit_spec_t(.true., entry%number(i), block%given(key))
     end associate
   end subroutine fill_limit
 

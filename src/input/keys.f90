@@ -3,6 +3,7 @@ module dd3_input_keys
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : parameter_t, row, kind_real, kind_integer, kind_logical, &
       kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, kind_other
+  use dd3_input_accuracy, only : accuracy_names, default_by_accuracy
   implicit none
   private
   public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
@@ -153,8 +154,12 @@ contains
     integer :: i
 
     key = [ &
-      row("strain", kind_real, "", "0.05", "maximum strain increment"), &
-      row("rotation", kind_real, "degrees", "2", "maximum rotation increment"), &
+      row("accuracy", kind_name, "", "standard", "accuracy of the increments; sets strain, "// &
+          "rotation, depth and r_max where they are not given", choices=accuracy_names()), &
+      row("strain", kind_real, "", "-", "maximum strain increment; "// &
+          default_by_accuracy("strain")), &
+      row("rotation", kind_real, "degrees", "-", "maximum rotation increment; "// &
+          default_by_accuracy("rotation")), &
       row("stress_tangential", kind_real, "", "off", &
           "maximum stress increment tangential to the yield surface, over the flow stress"), &
       row("stress_normal", kind_real, "", "off", &
@@ -163,13 +168,14 @@ contains
           count=3), &
       row("force_floor", kind_real, "", "0.1", "floor beta of the reference contact force", &
           lower=zero), &
-      row("depth", kind_real, "", "-", "maximum predicted depth of a node beyond the onset of "// &
-          "contact with a tool that it meets, over the thickness; default: 0.1, mixed: 0.01"), &
+      row("depth", kind_real, "", "-", "maximum predicted depth of a node in a tool that it "// &
+          "meets, over the thickness; "//default_by_accuracy("depth")), &
       row("unloading", kind_real, "", "0.05", "maximum fraction of the plastic points that "// &
           "unload in a prediction that is not repeated", lower=zero), &
       row("r_min", kind_real, "", "0.001", "minimum of the factor r on the trial increment"), &
-      row("r_max", kind_real, "", "1.0", "maximum of the factor r")]
-    do i = 1, size(key)
+      row("r_max", kind_real, "", "-", &
+          "maximum of the factor r; "//default_by_accuracy("r_max"))]
+    do i = 2, size(key)
       key(i)%may_be_off = .true.
       if (key(i)%name == "force_floor" .or. key(i)%name == "unloading") cycle
       key(i)%lower = zero

@@ -2,7 +2,7 @@
 !> held, forces and loads kept.
 module dd3_model_phases
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t, limit_spec_t, phase_spec_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
   use dd3_model_loads, only : face_load_weights, load_set_t
@@ -16,9 +16,6 @@ module dd3_model_phases
 
   !> Default height of the contact layer over the thickness.
   real(wp), parameter :: default_layer = 0.02_wp
-  !> Default of the depth to which nodes close in a prediction, over the thickness. The mixed
-  !> formulation has no resistance behind a gap.
-  real(wp), parameter :: compliant_depth = 0.1_wp, mixed_depth = 0.01_wp
 
 contains
 
@@ -129,8 +126,6 @@ contains
     phase%layer = spec%contact%layer
     if (phase%layer <= 0.0_wp) phase%layer = default_layer
     if (phase%mixed) phase%layer = 0.0_wp
-    if (.not. phase%limits%depth_given) &
-        phase%limits%depth = limit_spec_t(.true., merge(mixed_depth, compliant_depth, phase%mixed))
     phase%penalty = spec%contact%penalty
     phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()

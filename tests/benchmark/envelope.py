@@ -273,13 +273,12 @@ def lines_of(text):
     return lines
 
 
-def make(options, name):
-    """Make a run unless it is there."""
-    job, folder = ENVELOPE[name], options.work / options.label / name
+def make(options, job, folder, blocks):
+    """Make a run in a folder, with lines of blocks of its deck by their keyword, unless it is there."""
     folder.mkdir(parents=True, exist_ok=True)
     text = job.deck(folder)
-    for keyword in KEYWORDS:
-        text = merged(text, keyword.upper(), lines_of(getattr(options, keyword)))
+    for keyword, lines in blocks.items():
+        text = merged(text, keyword.upper(), lines_of(lines))
     deck, record = folder / "deck.dat", folder / "run.json"
     if record.is_file() and not options.again:
         if deck.read_text(encoding="utf-8") != text:
@@ -306,11 +305,11 @@ class Measured:
     reached: bool
 
 
-def measure(folder, name):
+def measure(folder, job):
     """Return what a table shows of a run, None if it is not there."""
     if not (folder / "run.json").is_file():
         return None
-    job, record = ENVELOPE[name], json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     found = Results(folder / "results")
     total, depth, end = totals(found.status), None, "no increment"
     if found.history:
@@ -420,15 +419,18 @@ def main():
     options = parser().parse_args()
     options.work = options.work.resolve()
     labels = options.compare or [options.label]
+    blocks = {keyword: getattr(options, keyword) for keyword in KEYWORDS}
     if not options.compare:
         if not options.program:
             raise Problem("expected --program or --compare")
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            made = pool.map(lambda name: make(options, name), options.problems)
+            made = pool.map(lambda name: make(options, ENVELOPE[name], options.work / options.label / name, blocks),
+                            options.problems)
             for name, _ in zip(options.problems, made, strict=True):
-                found = measure(options.work / options.label / name, name)
+                found = measure(options.work / options.label / name, ENVELOPE[name])
                 print(name, *found.effort, sep=" | ", file=sys.stderr, flush=True)
-    measured = {name: {label: found for label in labels if (found := measure(options.work / label / name, name))}
+    measured = {name: {label: found for label in labels if (found := measure(options.work / label / name,
+                                                                                      ENVELOPE[name]))}
                 for name in options.problems}
     measured = {name: runs for name, runs in measured.items() if runs}
     references = read_references(options.reference)

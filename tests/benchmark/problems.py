@@ -43,11 +43,11 @@ def merged(text, keyword, lines):
     """Return a deck with lines `key = value` in its block of a keyword; they replace those of the same keys there."""
     if not lines:
         return text
-    head = f"*{keyword}\n"
-    if head not in text:
+    head = re.compile(rf"^\*{keyword}\n", re.MULTILINE)
+    if not head.search(text):
         place = text.index("*PHASE")
-        text = text[:place] + head + "\n" + text[place:]
-    start = text.index(head) + len(head)
+        text = text[:place] + f"*{keyword}\n\n" + text[place:]
+    start = head.search(text).end()
     end = re.compile(r"^\*|\Z", re.MULTILINE).search(text, start).start()
     block = text[start:end]
     for key in (line.split("=")[0].strip() for line in lines):
