@@ -20,8 +20,8 @@
 !> Contact Mechanics, 2nd ed. (2006), chapters 5 and 10 (barrier, elastic stick).
 module dd3_contact_compliant
   use dd3_base_kinds, only : wp
-  use dd3_contact_operator, only : coulomb_operator, normal_force_t, status_gap, status_slip, &
-      status_stick, traction_t
+  use dd3_contact_operator, only : coulomb_operator, no_direction, normal_force_t, status_gap, &
+      status_slip, status_stick, traction_t
   implicit none
   private
   public :: layer_t, new_layer, layer_gap, gap_under_force, layer_energy, compliant_operator, rotated
@@ -31,8 +31,6 @@ module dd3_contact_compliant
   real(wp), parameter :: reference_pressure = 5.0e-6_wp
   !> Scale s over the stiffness E A/t of the sheet through its thickness.
   real(wp), parameter :: scale_fraction = 1.0e-3_wp
-  !> |T v| up to this, relative to its parts, has no direction.
-  real(wp), parameter :: no_direction = 1.0e-13_wp
 
   !> Contact layer at a node.
   type :: layer_t

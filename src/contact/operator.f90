@@ -24,7 +24,7 @@ module dd3_contact_operator
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
   public :: contact_operator_of_status, coulomb_operator
-  public :: normal_force_t, traction_t
+  public :: normal_force_t, traction_t, no_direction
 
   !> Contact status of a node: not in contact, sticking or slipping.
   integer, parameter :: status_gap = 0, status_stick = 1, status_slip = 2

@@ -80,8 +80,8 @@ contains
           call evaluate_layer(self, c, layer_at(model, phase, c), offset_at(trial, tool, c), hit, &
               slip, model%tool(tool)%friction)
         else
-          call evaluate_candidate(self, c, trial%layer_offset(tool), hit, slip, &
-              candidate_penalty(model, phase, c, hit%normal), model%tool(tool)%friction)
+          call evaluate_node(self, c, hit, slip, candidate_penalty(model, phase, c, hit%normal), &
+              model%tool(tool)%friction)
         end if
       end associate
     end if
@@ -126,33 +126,39 @@ contains
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
-    self%onset(c) = layer%height
-    self%distance(c) = hit%distance + offset - layer%height
+    call place(self, c, hit%distance + offset, layer%height)
     self%status(c) = status_gap
     call compliant_operator(layer, hit%normal, hit%distance + offset, hit%dnormal, &
         self%lambda(:, c), committed, slip, friction, self%status(c), self%force(:, c), &
         self%d(:, :, c), self%e(:, :, c))
   end subroutine evaluate_layer
 
-  !> Evaluate status, force and linearisation of a candidate near a tool by the mixed law. A
-  !> candidate that became held in a contact layer keeps the gap that it has there.
-  subroutine evaluate_candidate(self, c, offset, hit, slip, penalty, friction)
+  !> Set the gap of a point and the one at the onset of contact.
+  pure subroutine place(self, c, gap, onset)
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c
-    !> Distance by which the layer of the tool lies behind its place, mm.
-    real(wp), intent(in) :: offset
+    !> mm.
+    real(wp), intent(in) :: gap, onset
+
+    self%onset(c) = onset
+    self%distance(c) = gap - onset
+  end subroutine place
+
+  !> Evaluate status, force and linearisation of a node near a tool by the mixed law.
+  subroutine evaluate_node(self, c, hit, slip, penalty, friction)
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
     type(hit_t), intent(in) :: hit
     !> Slip, mm; penalty, N/mm; coefficient of friction.
     real(wp), intent(in) :: slip(3), penalty, friction
 
-    self%onset(c) = self%committed_gap(c)
-    self%distance(c) = hit%distance + offset - self%onset(c)
+    call place(self, c, hit%distance, 0.0_wp)
     self%status(c) = contact_status(hit%normal, self%distance(c), self%lambda(:, c), slip, &
         penalty, friction)
     call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), hit%dnormal, &
         self%lambda(:, c), slip, penalty, friction, self%force(:, c), self%d(:, :, c), &
         self%e(:, :, c))
-  end subroutine evaluate_candidate
+  end subroutine evaluate_node
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
@@ -213,15 +219,16 @@ contains
     end if
     self%normal(:, c) = hit%normal
     friction = model%tool(tool)%friction
-    call keep_committed(self, model, committed, hit%distance + committed%layer_offset(tool), c)
-    self%onset(c) = self%committed_gap(c)
-    self%distance(c) = hit%distance + committed%layer_offset(tool) - self%onset(c)
+    self%committed_tool(c) = committed%contact_tool(c)
+    self%committed_normal(:, c) = hit%normal
+    self%committed_force(:, c) = committed%lambda(:, c)
     associate (phase => model%phase(committed%phase))
       if (.not. phase%mixed) then
         call predict_layer(self, c, layer_at(model, phase, c), offset_at(committed, tool, c), hit, &
             touching(tool), model)
         return
       end if
+      call place(self, c, hit%distance, 0.0_wp)
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
       call set_predictor_status(self%status(c), friction, leaving, touching(tool), hit, &
@@ -232,25 +239,9 @@ contains
     end associate
   end subroutine find_and_predict
 
-  !> Keep tool, normal, force and gap of a candidate, evaluated at the committed state.
-  subroutine keep_committed(self, model, committed, gap, c)
-    type(contact_work_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    !> mm.
-    real(wp), intent(in) :: gap
-    integer, intent(in) :: c
-
-    self%committed_gap(c) = 0.0_wp
-    if (.not. model%phase(committed%phase)%mixed .and. committed%status(c) /= status_gap) &
-        self%committed_gap(c) = max(gap, 0.0_wp)
-    self%committed_tool(c) = committed%contact_tool(c)
-    self%committed_normal(:, c) = self%normal(:, c)
-    self%committed_force(:, c) = committed%lambda(:, c)
-  end subroutine keep_committed
-
   !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
-  !> the tool has no contact, those within `touch` of the layer resist from its onset on.
+  !> the tool has no contact, those within `touch` of the layer resist as inside it: at the onset its
+  !> slope is zero.
   subroutine predict_layer(self, c, layer, offset, hit, touching, model)
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c
@@ -266,8 +257,7 @@ contains
     real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset
-    self%onset(c) = layer%height
-    self%distance(c) = gap - layer%height
+    call place(self, c, gap, layer%height)
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
         min(gap, at_onset*layer%height)
     committed = 0.0_wp

@@ -26,9 +26,9 @@ module dd3_system_contact_work
     !> D, N/mm, and E: `(3, 3, n_contact)`.
     real(wp), allocatable :: d(:, :, :), e(:, :, :)
     !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N, `(3,
-    !> n_contact)`; and the gap of a candidate in a contact layer, mm, `(n_contact)`, 0 for others.
+    !> n_contact)`.
     integer, allocatable :: committed_tool(:)
-    real(wp), allocatable :: committed_normal(:, :), committed_force(:, :), committed_gap(:)
+    real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
     !> Positions of the points in the committed state, `(3, n_contact)`, mm.
     real(wp), allocatable :: committed_x(:, :)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
@@ -48,8 +48,7 @@ contains
     allocate (self%committed_tool(n_contact), source=0)
     allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
-    allocate (self%distance(n_contact), self%onset(n_contact), self%committed_gap(n_contact), &
-        source=0.0_wp)
+    allocate (self%distance(n_contact), self%onset(n_contact), source=0.0_wp)
     allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
         source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
