@@ -3,21 +3,12 @@
 module dd3_process_attempt
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
+  use dd3_process_limit, only : limit_t
   use dd3_process_status_memory, only : new_status_memory
   use dd3_system_solve, only : solve_info_t
   implicit none
   private
-  public :: attempt_t, correction_t, limit_t, new_attempt, clear_correction
-
-  !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
-  type :: limit_t
-    real(wp) :: r = huge(1.0_wp)
-    !> Name of the limiter.
-    character(len=16) :: name = ""
-    integer :: element = 0, point = 0, node = 0, tool = 0
-    !> Size B of the contact force, eq. (16), of the limiter of contact forces, N.
-    real(wp) :: force_size = 0.0_wp
-  end type limit_t
+  public :: attempt_t, correction_t, new_attempt, clear_correction
 
   !> Course of the corrector.
   type :: correction_t
@@ -47,7 +38,7 @@ module dd3_process_attempt
     integer :: number = 1
     !> Factor r with its limiter.
     type(limit_t) :: limit
-    !> Bound by the limiter of contact forces alone; its name is empty if it sets none.
+    !> Bound by the limiter of contact forces alone; its r is huge if it sets none.
     type(limit_t) :: force_limit
     type(correction_t) :: correction
     type(solve_info_t) :: solver

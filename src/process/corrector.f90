@@ -7,8 +7,9 @@ module dd3_process_corrector
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_interrupt, only : interrupted
-  use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_impossible, verdict_retry, &
+      cause_interrupted, cause_led_inside, cause_lost_tool, cause_none, cause_residual, &
+      cause_tool_force, cause_unsettled
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -18,7 +19,7 @@ module dd3_process_corrector
   use dd3_process_newton_step, only : advance, retreat
   use dd3_process_overshoot, only : check_overshoot
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, pressed_force
-  use dd3_process_status_memory, only : record_status, status_changes, unsettled
+  use dd3_process_status_memory, only : record_status, unsettled
   use dd3_system_enhanced, only : subtract_condensed
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_contact, only : is_normal_held
@@ -54,22 +55,16 @@ contains
     !> Gets the course of the iterations and the verdict: converged, or retry with the reason.
     type(attempt_t), intent(inout) :: attempt
 
-    character(len=:), allocatable :: changes
-
     call clear_correction(attempt%correction, model%n_contact)
     call iterate(model, committed, trial, system, attempt)
     associate (verdict => attempt%verdict)
       if (verdict%outcome == verdict_converged) return
-      if (len_trim(verdict%reason) == 0) call explain(model, trial, system, attempt)
-      changes = status_changes(model, attempt%correction%status, &
-          len(verdict%reason) - len_trim(verdict%reason) - 2)
-      if (len(changes) == 0) return
-      if (len_trim(verdict%reason) > 0) changes = trim(verdict%reason)//"; "//changes
-      verdict%reason = changes
+      if (verdict%cause == cause_none) call explain(model, trial, system, attempt)
+      verdict%changing = count(unsettled(attempt%correction%status))
     end associate
   end subroutine correct
 
-  !> Iterate. The reason of the verdict stays empty if the iterations are used up.
+  !> Iterate. The verdict has no cause if the iterations are used up.
   subroutine iterate(model, committed, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
@@ -87,7 +82,7 @@ contains
       do j = 1, phase%newton%iterations
         if (interrupted()) then
           verdict%outcome = verdict_retry
-          verdict%reason = "interrupted"
+          verdict%cause = cause_interrupted
           return
         end if
         verdict%iterations = j
@@ -151,40 +146,37 @@ contains
         .and. minloc(criterion, dim=1) <= j - without_progress
   end function is_lost
 
-  !> Set the reason why the last iteration did not converge: a pressed tool without contact, a node
-  !> led into a tool, the force on a tool, or the residual of a node; empty if the contact status
-  !> has not settled.
+  !> Set the cause why the last iteration did not converge: a pressed tool without contact, a node
+  !> led into a tool, a contact status that has not settled, the force on a tool, or the residual of
+  !> a node.
   subroutine explain(model, trial, system, attempt)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(system_t), intent(in) :: system
     type(attempt_t), intent(inout) :: attempt
 
-    character(len=:), allocatable :: reason
-    integer :: tool
-
     associate (phase => model%phase(trial%phase), verdict => attempt%verdict, &
         correction => attempt%correction)
       verdict%tool = lost_tool(model, trial, system%contact)
       if (verdict%tool > 0) then
-        verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
+        verdict%cause = cause_lost_tool
         return
       end if
       verdict%node = correction%worst_node
       if (is_led_inside(model, phase, system%contact, model%candidate_of(max(1, verdict%node)))) then
-        verdict%reason = "a prescribed motion leads a node into a tool"
+        verdict%cause = cause_led_inside
         return
       end if
+      verdict%cause = cause_unsettled
       if (any(unsettled(correction%status))) return
-      reason = "residual "//to_text(correction%worst_residual, 3)//" N at node " &
-          //to_text(correction%worst_node)
-      if (verdict%norm < phase%newton%tolerance) then
-        tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
-        if (tool > 0) reason = "force on the pressed tool "//model%tool(tool)%name//" off by " &
-            //to_text(abs(system%problem%tool_residual(tool)), 3)//" N"
-        verdict%node = 0
-      end if
-      verdict%reason = reason//" after "//to_text(verdict%iterations)//" iterations"
+      verdict%cause = cause_residual
+      verdict%value(1) = correction%worst_residual
+      if (verdict%norm >= phase%newton%tolerance) return
+      verdict%tool = maxloc(abs(system%problem%tool_residual), dim=1, mask=phase%pressed)
+      if (verdict%tool == 0) return
+      verdict%cause = cause_tool_force
+      verdict%node = 0
+      verdict%value(1) = abs(system%problem%tool_residual(verdict%tool))
     end associate
   end subroutine explain
 

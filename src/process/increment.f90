@@ -10,6 +10,7 @@ module dd3_process_increment
   use dd3_process_attempt, only : new_attempt
   use dd3_process_corrector, only : correct
   use dd3_process_external, only : evaluate_external, set_loads
+  use dd3_process_limit, only : limiter_cutback, limiter_until
   use dd3_process_limiters, only : limit_increment
   use dd3_process_phase_end, only : progress_tolerance, until_fraction
   use dd3_process_predictor, only : predict
@@ -26,9 +27,7 @@ module dd3_process_increment
   real(wp), parameter :: r_cap_factor = 1.5_wp, largest_r_cap = 1.0e3_wp
   !> Smallest factor on r after an increment that took more iterations than the target.
   real(wp), parameter :: smallest_factor = 0.5_wp
-  !> Limiter of an attempt that returns to the early end of the phase, and the largest number of
-  !> attempts up to which it is repeated.
-  character(len=*), parameter :: early_end = "until"
+  !> Largest number of attempts up to which one beyond the early end of the phase is repeated.
   integer, parameter :: most_returns = 10
 
 contains
@@ -126,7 +125,7 @@ contains
       if (attempt%limit%r*phase%newton%cutback_factor < phase%newton%cutback_min) return
       again = .true.
       attempt%limit%r = attempt%limit%r*phase%newton%cutback_factor
-      attempt%limit%name = "cutback"
+      attempt%limit%limiter = limiter_cutback
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate
@@ -150,7 +149,7 @@ contains
       again = fraction < 1.0_wp .and. fraction > 0.0_wp .and. attempt%number < most_returns
       if (.not. again) return
       attempt%limit%r = fraction*attempt%limit%r
-      attempt%limit%name = early_end
+      attempt%limit%limiter = limiter_until
       attempt%solver = solve_info_t()
       attempt%number = attempt%number + 1
     end associate
@@ -180,7 +179,7 @@ contains
             sqrt(real(newton%target_iterations, wp)/real(attempt%verdict%iterations, wp)))
         committed%r_cap = attempt%limit%r
         committed%r_cap_by_iterations = .true.
-      else if (attempt%number > 1 .and. attempt%limit%name /= early_end) then
+      else if (attempt%number > 1 .and. attempt%limit%limiter /= limiter_until) then
         committed%r_cap = attempt%limit%r
         committed%r_cap_by_iterations = .false.
       end if

@@ -3,8 +3,7 @@
 !> that inverts an element or overshoots.
 module dd3_process_newton_step
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_retry
+  use dd3_base_verdict, only : verdict_retry, cause_large_step
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_attempt, only : attempt_t
@@ -108,7 +107,8 @@ contains
     if (largest <= largest_step*model%thickness) return
     attempt%verdict%outcome = verdict_retry
     attempt%verdict%node = worst
-    attempt%verdict%reason = "an iteration moved a node by "//to_text(largest, 3)//" mm"
+    attempt%verdict%cause = cause_large_step
+    attempt%verdict%value(1) = largest
   end subroutine check_step
 
   !> Shorten the last step, which inverted an element or overshot. Before the first iteration the

@@ -3,6 +3,8 @@
 module dd3_process_remedy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
+      cause_led_inside, cause_lost_tool, cause_singular, cause_solver, cause_solver_memory
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
@@ -43,31 +45,36 @@ contains
     type(attempt_t), intent(in) :: attempt
     character(len=:), allocatable :: remedy
 
-    associate (phase => model%phase(committed%phase), reason => attempt%verdict%reason)
-      if (begins(reason, "nothing resists")) then
+    associate (phase => model%phase(committed%phase))
+      remedy = ""
+      select case (attempt%verdict%cause)
+      case (cause_lost_tool)
         remedy = contact_remedy
-      else if (begins(reason, "a prescribed motion")) then
+      case (cause_led_inside)
         remedy = motion_remedy
-      else if (begins(reason, "linear solver: not enough memory")) then
+      case (cause_solver_memory)
         remedy = memory_remedy
-      else if (begins(reason, "linear solver")) then
-        remedy = solver_remedy
-        if (begins(attempt%solver%solver, "umfpack") .or. index(reason, "singular") > 0) &
-            remedy = support_remedy
-      else if (committed%increment == 0 .and. begins(reason, "an iteration moved")) then
+      case (cause_singular)
         remedy = support_remedy
-      else if (.not. phase%newton%cutback) then
+      case (cause_solver)
+        remedy = solver_remedy
+        if (attempt%solver%solver == "umfpack") remedy = support_remedy
+      case (cause_large_step)
+        if (committed%increment == 0) remedy = support_remedy
+      end select
+      if (len(remedy) > 0) return
+      if (.not. phase%newton%cutback) then
         remedy = cutback_remedy
       else if (.not. phase%newton%damping) then
         remedy = damping_remedy
       else
-        remedy = remedy_of_reason(model, phase, attempt)
+        remedy = remedy_of_cause(model, phase, attempt)
       end if
     end associate
   end function first_remedy
 
   !> Return the first remedy if all automatic ones are on.
-  function remedy_of_reason(model, phase, attempt) result(remedy)
+  function remedy_of_cause(model, phase, attempt) result(remedy)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(attempt_t), intent(in) :: attempt
@@ -79,9 +86,9 @@ contains
     rotation = usual_rotation
     if (phase%limits%rotation%active) rotation = rotation_factor*phase%limits%rotation%value
     c = candidate_in_contact(model, attempt)
-    associate (reason => attempt%verdict%reason, newton => phase%newton)
-      if (begins(reason, "an iteration moved") .or. begins(reason, "an element") &
-          .or. begins(reason, "the assumed strain")) then
+    associate (newton => phase%newton)
+      if (any(attempt%verdict%cause == [cause_large_step, cause_inverted, &
+          cause_inverted_strain])) then
         remedy = "rotation = "//to_text(rotation, 3)//" in *LIMITS"//mesh_remedy
       else if (attempt%verdict%element > 0) then
         remedy = material_remedy
@@ -94,7 +101,7 @@ contains
         remedy = "iterations = "//to_text(iterations_factor*newton%iterations)//" in *NEWTON"
       end if
     end associate
-  end function remedy_of_reason
+  end function remedy_of_cause
 
   !> Return the first remedy where the contact of a candidate does not settle.
   function remedy_of_contact(model, phase, c) result(remedy)
@@ -135,12 +142,5 @@ contains
       ends = phase%newton%tolerance >= tolerance .and. criterion < tolerance_factor*tolerance
     end associate
   end function ends_near_release_tolerance
-
-  !> Whether a text begins with another.
-  pure logical function begins(text, start)
-    character(len=*), intent(in) :: text, start
-
-    begins = index(text, start) == 1
-  end function begins
 
 end module dd3_process_remedy

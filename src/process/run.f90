@@ -1,6 +1,7 @@
 !> Run of a job: phase by phase, increment by increment, with its records.
 module dd3_process_run
   use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_text
   use dd3_base_clock, only : profile_t, section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption
@@ -8,7 +9,7 @@ module dd3_process_run
   use dd3_base_ranks, only : n_ranks
   use dd3_base_text, only : text_t, to_text
   use dd3_base_threads, only : set_threads
-  use dd3_base_verdict, only : verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, cause_beyond_until
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
@@ -19,6 +20,7 @@ module dd3_process_run
   use dd3_process_attempt_report, only : failure_message, status_row
   use dd3_process_increment, only : accept_increment, prepare_increment, return_to_until, &
       shrink_increment, try_increment
+  use dd3_process_limit, only : limiter_name
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
   use dd3_process_phase_start, only : begin_phase, check_returns
   use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
@@ -269,7 +271,7 @@ contains
         call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
             " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
             " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
-            trim(attempt%limit%name)//no_progress_remedy)
+            limiter_name(attempt%limit%limiter)//no_progress_remedy)
         return
       end if
       do
@@ -286,7 +288,10 @@ contains
             call shrink_increment(phase, stepper, again)
         if (attempt%verdict%outcome == verdict_converged) then
           call return_to_until(phase, run%committed, run%trial, stepper, again)
-          if (again) row%reason = "beyond the value of `until`"
+          if (again) then
+            attempt%verdict%cause = cause_beyond_until
+            row%reason = cause_text(attempt%verdict, "")
+          end if
         end if
         if (again) again = makes_progress(stepper)
         if (again) row%outcome = "retry"
@@ -345,7 +350,7 @@ contains
       view%travel = state%travel
       view%increment = state%increment
       view%r = attempt%limit%r
-      view%limiter = attempt%limit%name
+      view%limiter = limiter_name(attempt%limit%limiter)
       view%iterations = size(attempt%correction%criterion)
       if (phase%control > 0) view%force = &
           dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
