@@ -5,7 +5,7 @@ module dd3_base_cause_text
       cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
       cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
       cause_ranks_differ, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
-      cause_residual, cause_tool_force, cause_beyond_until, cause_interrupted
+      cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
   implicit none
   private
   public :: cause_text
@@ -70,6 +70,8 @@ contains
       case (cause_tool_force)
         text = "force on the pressed tool "//tool//" off by "//to_text(value(1), 3)// &
             " N after "//to_text(verdict%iterations)//" iterations"
+      case (cause_no_progress)
+        text = "no progress"
       case (cause_beyond_until)
         text = "beyond the value of `until`"
       case (cause_interrupted)

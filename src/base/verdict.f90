@@ -52,6 +52,8 @@ module dd3_base_verdict
     enumerator :: cause_residual
     !> Residual of a pressed tool, `value(1)`, N: `tool`.
     enumerator :: cause_tool_force
+    !> A factor r with which the phase would not end.
+    enumerator :: cause_no_progress
     !> Beyond the early end of the phase.
     enumerator :: cause_beyond_until
     enumerator :: cause_interrupted
@@ -60,7 +62,7 @@ module dd3_base_verdict
       cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
       cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
       cause_ranks_differ, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
-      cause_residual, cause_tool_force, cause_beyond_until, cause_interrupted
+      cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
 
   !> Result of a numerical step; initially a failure.
   type :: verdict_t

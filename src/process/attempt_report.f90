@@ -3,7 +3,7 @@ module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_no_progress
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -62,17 +62,19 @@ contains
     type(status_row_t), intent(inout) :: row
     type(stepper_t), intent(in) :: stepper
 
-    associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
+    associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
-      row%damped = correction%damped
-      if (size(correction%criterion) > 0) &
-          row%criterion = correction%criterion(size(correction%criterion))
+      row%damped = attempt%course%halved
+      if (allocated(attempt%course%norm)) then
+        if (size(attempt%course%norm) > 0) &
+            row%criterion = attempt%course%norm(size(attempt%course%norm))
+      end if
       if (verdict%element > 0) then
         row%worst_element = verdict%element
         row%worst_point = verdict%point
-      else if (correction%worst_node > 0) then
-        row%worst_node = correction%worst_node
-        row%worst_residual = correction%worst_residual
+      else if (attempt%residual%worst_node > 0) then
+        row%worst_node = attempt%residual%worst_node
+        row%worst_residual = attempt%residual%worst
       end if
     end associate
   end subroutine add_corrector
@@ -118,8 +120,13 @@ contains
 
     associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       message = "increment "//to_text(committed%increment + 1)//" of phase '" &
-          //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel) &
-          //" mm) did not converge"
+          //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel)//" mm) "
+      if (verdict%cause == cause_no_progress) then
+        message = message//"makes no progress: r = "//to_text(attempt%limit%r, 3)// &
+            ", limited by "//limiter_name(attempt%limit%limiter)
+        return
+      end if
+      message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
       message = message//": "//verdict_text(model, verdict)
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &

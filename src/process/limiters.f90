@@ -58,9 +58,7 @@ contains
         limiter_t(limiter_stress, stress_limit, above_r_min=.true.), &
         limiter_t(limiter_force, force_limit, above_r_min=.true.), &
         limiter_t(limiter_gap, gap_limit), &
-        limiter_t(limiter_layer, layer_limit), &
-        limiter_t(limiter_until, until_limit), &
-        limiter_t(limiter_output, output_limit)]
+        limiter_t(limiter_until, until_limit)]
   end function all_limiters
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
@@ -75,7 +73,8 @@ contains
     type(limiter_t), allocatable :: table(:)
 
     allocate (table, source=all_limiters())
-    associate (limit => stepper%attempt%limit, limits => model%phase(state%phase)%limits)
+    associate (limit => stepper%attempt%limit, phase => model%phase(state%phase), &
+        limits => model%phase(state%phase)%limits)
       limit = limit_t(r=limits%r_max%value, limiter=limiter_r_max)
       call apply(pack(table, table%above_r_min), model, state, stepper)
       if (limit%r < limits%r_min%value) then
@@ -84,13 +83,26 @@ contains
       end if
       call keep_smaller(limit, limit_t(r=state%r_cap, &
           limiter=merge(limiter_iterations, limiter_cutback, state%r_cap_by_iterations)))
-      call keep_smaller(limit, &
-          limit_t(r=(1.0_wp - state%progress)/stepper%prediction%progress, &
-          limiter=limiter_phase))
-      call keep_smaller(limit, limit_t(r=(model%phase(state%phase)%next_kink(state%progress) &
-          - state%progress)/stepper%prediction%progress, limiter=limiter_table))
+      call end_after(1.0_wp - state%progress, limiter_phase)
+      call end_after(phase%next_kink(state%progress) - state%progress, limiter_table)
       call apply(pack(table, .not. table%above_r_min), model, state, stepper)
+      if (any(state%start%layer_offset > 0.0_wp)) &
+          call end_after(progress_left(state%progress), limiter_layer)
+      call end_after(next_output_progress(model%output, phase, state) - state%progress, &
+          limiter_output)
     end associate
+
+  contains
+
+    !> Let the increment end no later than after some progress of the phase.
+    subroutine end_after(left, limiter)
+      real(wp), intent(in) :: left
+      integer, intent(in) :: limiter
+
+      if (left > 0.0_wp .and. left <= 1.0_wp) call keep_smaller(stepper%attempt%limit, &
+          limit_t(r=left/stepper%prediction%progress, limiter=limiter))
+    end subroutine end_after
+
   end subroutine limit_increment
 
   !> Apply limiters.
@@ -348,21 +360,6 @@ contains
     end associate
   end function gap_limit
 
-  !> Return the bound at which the contact layers arrive at their places.
-  function layer_limit(model, state, stepper) result(limit)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(in) :: stepper
-    type(limit_t) :: limit
-
-    real(wp) :: left
-
-    if (model%n_tool == 0) return
-    left = progress_left(state%progress)
-    if (left > 0.0_wp .and. any(state%start%layer_offset > 0.0_wp)) &
-        limit%r = left/stepper%prediction%progress
-  end function layer_limit
-
   !> Return the bound at the early end of the phase, extrapolated linearly. The value is met with
   !> either sign: that of its rate or, from above, the opposite one.
   function until_limit(model, state, stepper) result(limit)
@@ -392,18 +389,5 @@ contains
     end associate
     if (left > 0.0_wp .and. abs(rate) > 0.0_wp) limit%r = left/abs(rate)
   end function until_limit
-
-  !> Return the bound at the next output of fields.
-  function output_limit(model, state, stepper) result(limit)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(in) :: stepper
-    type(limit_t) :: limit
-
-    real(wp) :: progress
-
-    progress = next_output_progress(model%output, model%phase(state%phase), state)
-    if (progress <= 1.0_wp) limit%r = (progress - state%progress)/stepper%prediction%progress
-  end function output_limit
 
 end module dd3_process_limiters

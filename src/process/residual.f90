@@ -13,7 +13,16 @@ module dd3_process_residual
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: evaluate_forces, evaluate_norm, pressed_force, lost_tool
+  public :: evaluate_forces, evaluate_norm, pressed_force, lost_tool, residual_t
+
+  !> Norm of the residuals.
+  type :: residual_t
+    !> N.
+    real(wp) :: norm = 0.0_wp
+    !> Node with the largest residual, and that residual, N.
+    integer :: worst_node = 0
+    real(wp) :: worst = 0.0_wp
+  end type residual_t
 
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: small = 1.0e-3_wp
@@ -64,22 +73,18 @@ contains
 
   !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
   !> of the enhanced strains and of the pressed tools in contact.
-  subroutine evaluate_norm(model, trial, system, norm, worst_node, worst_residual)
+  subroutine evaluate_norm(model, trial, system, found)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     !> Evaluated at the trial state.
     type(system_t), intent(in) :: system
-    !> N.
-    real(wp), intent(out) :: norm
-    !> Node with the largest residual, and that residual, N.
-    integer, intent(out) :: worst_node
-    real(wp), intent(out) :: worst_residual
+    type(residual_t), intent(out) :: found
 
     real(wp) :: equilibrium(3), contribution, sum_of_squares
     integer :: node, c, tool
 
     sum_of_squares = 0.0_wp
-    worst_residual = -1.0_wp
+    found%worst = -1.0_wp
     associate (phase => model%phase(trial%phase), problem => system%problem, &
         contact => system%contact)
       do node = 1, model%n_node
@@ -92,9 +97,9 @@ contains
         end if
         contribution = contribution + sum(equilibrium**2, mask=.not. phase%prescribed(:, node))
         sum_of_squares = sum_of_squares + contribution
-        if (contribution <= worst_residual) cycle
-        worst_residual = contribution
-        worst_node = node
+        if (contribution <= found%worst) cycle
+        found%worst = contribution
+        found%worst_node = node
       end do
       sum_of_squares = sum_of_squares + enhanced_square(system%enhanced, model%thickness)
       do tool = 1, model%n_tool
@@ -103,8 +108,8 @@ contains
             sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
       end do
     end associate
-    norm = sqrt(sum_of_squares)
-    worst_residual = sqrt(max(worst_residual, 0.0_wp))
+    found%norm = sqrt(sum_of_squares)
+    found%worst = sqrt(max(found%worst, 0.0_wp))
   end subroutine evaluate_norm
 
   !> Return the displacement of a pressed tool that has lost the sheet back to contact, mm; zero for
@@ -134,7 +139,8 @@ contains
 
     pressed_force = max(norm2(trial%tool_load(:, tool)), &
         small*norm2(trial%start%tool_load(:, tool)), &
-        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force))
+        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force), &
+        tiny(1.0_wp))
   end function pressed_force
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.
