@@ -57,7 +57,7 @@ contains
     end associate
   end subroutine balance_tools
 
-  !> Return the largest residual of a pressed tool in contact, over its force; 0 if all are balanced.
+  !> Return the largest residual of a pressed tool in contact, over its force; 0 if all balance.
   pure real(wp) function tool_imbalance(model, trial, system) result(imbalance)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial

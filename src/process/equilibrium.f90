@@ -79,8 +79,8 @@ module dd3_process_equilibrium
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Residual over the scale above which it is not round-off.
   real(wp), parameter :: largest_round_off = 1.0e-3_wp
-  !> Weight of the balance of a pressed tool in the norm. What is off at the end of an increment is a
-  !> step in the force of the next.
+  !> Weight of the balance of a pressed tool in the norm: what is off at the end of an increment is
+  !> a step in the force of the next.
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
@@ -89,8 +89,8 @@ module dd3_process_equilibrium
 
 contains
 
-  !> Begin at the committed state with the step of the prediction. It is not linearised about a
-  !> matrix; the tools, which have prescribed motions, make it whole.
+  !> Begin at the committed state with the step of the prediction. The tools make the whole of their
+  !> step, whatever fraction the sheet makes.
   subroutine begin(self, step)
     class(equilibrium_t), intent(inout) :: self
     type(unknowns_t), intent(in) :: step

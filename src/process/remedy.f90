@@ -4,7 +4,8 @@ module dd3_process_remedy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
-      cause_led_inside, cause_lost_tool, cause_no_progress, cause_singular, cause_solver, cause_solver_memory
+      cause_led_inside, cause_lost_tool, cause_no_progress, cause_singular, cause_solver, &
+      cause_solver_memory
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_phase, only : phase_t
@@ -66,8 +67,8 @@ contains
     end associate
   end function first_remedy
 
-  !> Return the remedy of a cause that only a change of the model or of the solver removes; empty for
-  !> others.
+  !> Return the remedy of a cause that only a change of the model, of the limits or of the solver
+  !> removes; empty for others.
   function remedy_of_input(committed, attempt) result(remedy)
     type(state_t), intent(in) :: committed
     type(attempt_t), intent(in) :: attempt
