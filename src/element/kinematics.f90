@@ -4,7 +4,7 @@
 !> gradient g_a = (1/v) sum w j G_a.
 module dd3_element_kinematics
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_inverted
   use dd3_element_projection, only : project_dilatations, project_gradients
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
@@ -118,7 +118,7 @@ contains
     integer, intent(in) :: point
 
     verdict%outcome = verdict_retry
-    verdict%reason = "an element is turned inside out"
+    verdict%cause = cause_inverted
     verdict%point = point
   end subroutine record_failure
 

@@ -12,7 +12,8 @@
 !> which is constant in zeta.
 module dd3_element_shell_deform
   use dd3_base_kinds, only : sqrt2, wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, &
+      cause_inverted, cause_inverted_strain
   use dd3_element_log_strain, only : polar_rotation, rotate_axes, stretch_of_green
   use dd3_element_shell_modes, only : enhance, enhanced_rates, set_modes
   use dd3_element_shell_strain, only : column_geometry, set_weights, natural_rates, &
@@ -111,7 +112,7 @@ contains
       call stretch_of_green(green, strain, inverse_stretch, positive)
       if (.not. positive) then
         verdict%outcome = verdict_retry
-        verdict%reason = "the assumed strain turns an element inside out"
+        verdict%cause = cause_inverted_strain
         return
       end if
       work%strain(1:3, p) = strain(1:3)
@@ -149,7 +150,7 @@ contains
     type(verdict_t), intent(inout) :: verdict
 
     verdict%outcome = verdict_retry
-    verdict%reason = "an element is turned inside out"
+    verdict%cause = cause_inverted
   end subroutine refuse_inverted
 
   !> Evaluate the contravariant base at a point.

@@ -229,16 +229,10 @@ module dd3_input_case
   type :: newton_spec_t
     !> Tolerance of the convergence criterion.
     real(wp) :: tolerance = 0.0_wp
-    !> Maximum of the tolerance in a phase in which all tools are released.
-    real(wp) :: release_tolerance = 0.0_wp
     !> Maximum number of iterations of an increment.
     integer :: iterations = 0
     !> Whether a failed increment is repeated with a smaller r.
     logical :: cutback = .false.
-    !> Factor on r for each new attempt.
-    real(wp) :: cutback_factor = 0.0_wp
-    !> Minimum of r; the run stops below it.
-    real(wp) :: cutback_min = 0.0_wp
     !> Iterations that the size of the increments is steered to; 0: not steered.
     integer :: target_iterations = 0
     !> Whether iterations are damped.

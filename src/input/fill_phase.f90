@@ -301,12 +301,8 @@ contains
     type(block_t), intent(in) :: block
 
     if (block%has("tolerance")) newton%tolerance = block%number("tolerance")
-    if (block%has("release_tolerance")) &
-        newton%release_tolerance = block%number("release_tolerance")
     if (block%has("iterations")) newton%iterations = nint(block%number("iterations"))
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
-    if (block%has("cutback_factor")) newton%cutback_factor = block%number("cutback_factor")
-    if (block%has("cutback_min")) newton%cutback_min = block%number("cutback_min")
     if (block%has("target_iterations")) &
         newton%target_iterations = nint(block%number("target_iterations"))
     if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp

@@ -192,20 +192,14 @@ contains
     key = [ &
       row("tolerance", kind_real, "", "1e-2", "tolerance of the convergence criterion", &
           lower=zero, upper=0.1_wp, lower_open=.true.), &
-      row("release_tolerance", kind_real, "", "1e-5", "maximum of tolerance in a phase in which "// &
-          "all tools are released", lower=zero, upper=0.1_wp, lower_open=.true.), &
       row("iterations", kind_integer, "", "30", "maximum number of iterations of an increment", &
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
-      row("cutback_factor", kind_real, "", "0.5", "factor on r for each new attempt", &
-          lower=0.01_wp, upper=0.9_wp), &
-      row("cutback_min", kind_real, "", "1e-5", "minimum of r; the run stops below it", &
-          lower=1.0e-9_wp, upper=1.0_wp), &
       row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
           "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
-      row("damping", kind_logical, "", "on", "on: shorten a first iteration with large "// &
-          "displacement gradients, and any that inverts an element or overshoots")]
+      row("damping", kind_logical, "", "on", "on: halve an iteration that inverts "// &
+          "an element or overshoots")]
   end function newton_keys
 
   function solver_keys() result(key)

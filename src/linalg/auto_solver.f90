@@ -161,7 +161,7 @@ contains
     if (self%may_iterate .and. self%memory(memory_rest) == 0 .and. is_timed(self)) then
       call self%cgs%factor_scaled(matrix, verdict)
       if (verdict%outcome == verdict_converged) self%ready = by_cgs
-      if (self%ready == by_none) call record_failure(self, verdict%reason)
+      if (self%ready == by_none) call record_failure(self, verdict%detail)
     else if (self%may_iterate .and. self%memory(memory_rest) > 0) then
       self%memory(memory_rest) = self%memory(memory_rest) - 1
       if (self%memory(memory_failures) > 0) self%reason = "CGS skipped; failures "// &
@@ -205,7 +205,7 @@ contains
       call self%block%factor_scaled(matrix, verdict)
       self%ready = by_block
       if (verdict%outcome == verdict_converged) return
-      self%reason = verdict%reason
+      self%reason = verdict%detail
     end if
     call factor_directly(self, matrix, verdict)
   end subroutine factor_completely
@@ -284,7 +284,9 @@ contains
     report%fallback = len_trim(self%reason) > 0
     report%reason = self%reason
     if (self%ready == by_direct) call self%direct%solve_scaled(matrix, b, x, report)
-    if (self%ready == by_none) report%reason = verdict%reason
+    if (self%ready /= by_none) return
+    report%cause = verdict%cause
+    report%reason = verdict%detail
   end subroutine auto_solver_solve
 
   !> Skip CGS for a while if it took longer than the complete factorisation.

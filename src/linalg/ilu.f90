@@ -9,7 +9,7 @@
 module dd3_linalg_ilu
   use dd3_base_kinds, only : i8, wp
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_ilu_factor, only : load_row, eliminate_row, finish_row
   use dd3_linalg_matrix, only : block_matrix_t
@@ -173,7 +173,8 @@ contains
             self%row(9*first - 8:9*last), self%block(:, :, first:last), self%shifted, good)
         if (.not. good) then
           verdict%outcome = verdict_retry
-          verdict%reason = "the incomplete factorisation grows without bound in block row " &
+          verdict%cause = cause_solver
+          verdict%detail = "the incomplete factorisation grows without bound in block row " &
               //to_text(i)
           return
         end if

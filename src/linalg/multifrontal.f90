@@ -6,7 +6,7 @@ module dd3_linalg_multifrontal
   use dd3_base_kinds, only : wp, i8
   use dd3_base_text, only : to_text
   use dd3_base_threads, only : most_threads
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dlaswp, dtrsv
   use dd3_linalg_front_assembly, only : add_border, add_part, put_blocks
@@ -197,7 +197,8 @@ contains
     if (all(self%work%failed == 0)) return
     associate (front => maxval(self%work%failed))
       verdict%outcome = verdict_retry
-      verdict%reason = "the factorisation grows without bound in block row " &
+      verdict%cause = cause_solver
+      verdict%detail = "the factorisation grows without bound in block row " &
           //to_text(self%tree%order(self%tree%first(front)))
     end associate
   end subroutine multifrontal_build

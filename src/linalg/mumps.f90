@@ -4,7 +4,8 @@
 module dd3_linalg_mumps
   use dd3_base_kinds, only : i8, wp
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular, &
+      cause_solver, cause_solver_memory
   use dd3_external_mumps_library, only : dmumps, dmumps_struc
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_front_tree, only : choose_ordering
@@ -155,11 +156,14 @@ contains
       if (status >= 0) return
       verdict%outcome = verdict_retry
       if (any(status == error_singular)) then
-        verdict%reason = "the matrix is singular"
+        verdict%cause = cause_singular
+        verdict%detail = "the matrix is singular"
       else if (any(status == error_memory) .or. any(status == error_workspace)) then
-        verdict%reason = "not enough memory for MUMPS"
+        verdict%cause = cause_solver_memory
+        verdict%detail = "not enough memory for MUMPS"
       else
-        verdict%reason = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &
+        verdict%cause = cause_solver
+        verdict%detail = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &
             to_text(library%infog(infog_argument))
       end if
     end associate

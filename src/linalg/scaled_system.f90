@@ -6,7 +6,7 @@ module dd3_linalg_scaled_system
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
   use dd3_base_threads, only : least_nodes, threads_for
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : own_rows
   implicit none
@@ -109,7 +109,8 @@ contains
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
     verdict%node = self%order(bad_row)
-    verdict%reason = "row of zeros or value that is not finite in block row " &
+    verdict%cause = cause_solver
+    verdict%detail = "row of zeros or value that is not finite in block row " &
         //to_text(verdict%node)//" of the matrix"
   end subroutine scaled_system_fill
 

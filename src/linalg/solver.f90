@@ -8,7 +8,7 @@ module dd3_linalg_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : i8, wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_base_verdict, only : verdict_t, verdict_converged, cause_solver
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
   use dd3_linalg_partition, only : order_by_owner
@@ -49,6 +49,8 @@ module dd3_linalg_solver
     real(wp) :: residual = huge(1.0_wp)
     !> Whether the direct solver replaced the iterative one.
     logical :: fallback = .false.
+    !> One of the `cause_*` values of a verdict, if not converged.
+    integer :: cause = cause_solver
     !> Reason for the fallback or for the failure, else empty.
     character(len=160) :: reason = ""
   end type solver_report_t

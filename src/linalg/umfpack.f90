@@ -5,7 +5,8 @@ module dd3_linalg_umfpack
   use, intrinsic :: iso_c_binding, only : c_int, c_double, c_ptr, c_null_ptr, c_associated
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular, &
+      cause_solver, cause_solver_memory
   use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_matrix, only : block_matrix_t
   implicit none
@@ -187,11 +188,14 @@ contains
     case (status_ok)
       verdict%outcome = verdict_converged
     case (status_singular)
-      verdict%reason = "the matrix is singular"
+      verdict%cause = cause_singular
+      verdict%detail = "the matrix is singular"
     case (status_memory)
-      verdict%reason = "not enough memory for the direct solver"
+      verdict%cause = cause_solver_memory
+      verdict%detail = "not enough memory for the direct solver"
     case default
-      verdict%reason = "the direct solver failed with status "//to_text(int(status))
+      verdict%cause = cause_solver
+      verdict%detail = "the direct solver failed with status "//to_text(int(status))
     end select
   end subroutine direct_factor
 

@@ -2,7 +2,7 @@
 module dd3_linalg_umfpack_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t
+  use dd3_base_verdict, only : verdict_t, cause_singular
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_residual, only : true_residual
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
@@ -94,8 +94,9 @@ contains
       end if
     end if
     report%converged = report%residual <= max(residual_limit, self%options%tolerance)
-    if (.not. report%converged) &
-        report%reason = "the direct solution does not satisfy the system: nearly singular"
+    if (report%converged) return
+    report%cause = cause_singular
+    report%reason = "the direct solution does not satisfy the system: nearly singular"
   end subroutine umfpack_solver_solve
 
   !> Free UMFPACK's factors.

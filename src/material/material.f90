@@ -2,8 +2,8 @@
 !> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, verdict_impossible
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, &
+      verdict_impossible, cause_large_strain, cause_none, cause_not_finite, cause_return_mapping
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
       flow_response_of, describe_composition => describe_internal_variables
@@ -13,7 +13,7 @@ module dd3_material_material
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : find_hardening
   use dd3_material_return_mapping, only : step_t
-  use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite, failure_text
+  use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_registry, only : find_criterion
   implicit none
@@ -102,13 +102,13 @@ contains
     verdict%outcome = verdict_impossible
     verdict%iterations = 0
     verdict%norm = 0.0_wp
-    ! Clearing a text that is blank already would cost more than an elastic update.
-    if (verdict%reason(1:1) /= " ") verdict%reason = ""
+    verdict%cause = cause_none
     if (.not. all_finite(stress_committed, internal_committed, strain)) then
-      verdict%reason = "stress, strain or internal variables are not finite"
+      verdict%cause = cause_not_finite
     else if (any(abs(strain) > strain_limit)) then
       verdict%outcome = verdict_retry
-      verdict%reason = "strain increment of "//to_text(maxval(abs(strain)), 4)//" is too large"
+      verdict%cause = cause_large_strain
+      verdict%value(1) = maxval(abs(strain))
     else
       substeps%count = self%least_substeps
       do while (substeps%count <= substep_limit)
@@ -127,7 +127,8 @@ contains
         substeps%count = 2*substeps%count
       end do
       verdict%outcome = verdict_retry
-      verdict%reason = failure_text(internal_committed, strain, step)
+      verdict%cause = cause_return_mapping
+      verdict%value = [maxval(abs(strain)), internal_committed(1), step%overstress, step%norm]
     end if
     stress = stress_committed
     internal_variables = internal_committed

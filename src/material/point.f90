@@ -3,8 +3,8 @@
 !> path that fails in one step is divided into halves, quarters and so on.
 module dd3_material_point
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_no_strain, &
+      cause_singular_tangent, cause_strain_bound
   use dd3_linalg_tensor, only : kelvin_rotation, solve_small
   use dd3_material_material, only : material_t
   implicit none
@@ -128,26 +128,12 @@ contains
     end do
     verdict%outcome = verdict_retry
     verdict%norm = norm2(merge(change, 0.0_wp, by_stress))
-    verdict%reason = failure_text(regular, within, verdict%norm)//"; the flow stress is "// &
-        to_text(material%flow_stress(self%internal_variables), 4)//" MPa"
+    verdict%cause = cause_no_strain
+    if (.not. regular) verdict%cause = cause_singular_tangent
+    if (.not. within) verdict%cause = cause_strain_bound
+    verdict%value(:2) = [merge(verdict%norm, largest_strain, within), &
+        material%flow_stress(self%internal_variables)]
   end subroutine drive_in_one_step
-
-  !> Describe why a target stress has not been reached.
-  pure function failure_text(regular, within, stress_error) result(text)
-    !> Whether the tangent is regular; whether the strain is within bounds.
-    logical, intent(in) :: regular, within
-    !> MPa.
-    real(wp), intent(in) :: stress_error
-    character(len=:), allocatable :: text
-
-    if (.not. within) then
-      text = "the target stress requires a strain beyond "//to_text(largest_strain)
-    else if (.not. regular) then
-      text = "the target stress cannot be reached: the tangent is singular"
-    else
-      text = "no strain found for the target stress; residual "//to_text(stress_error, 4)//" MPa"
-    end if
-  end function failure_text
 
   !> Solve for the change of strain that gives prescribed changes of stress and strain.
   pure subroutine solve_mixed(rotation, tangent, by_stress, change, regular)

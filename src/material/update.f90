@@ -2,12 +2,11 @@
 !> with the derivative of the final stress in the whole strain.
 module dd3_material_update
   use dd3_base_kinds, only : wp, i8
-  use dd3_base_text, only : to_text
   use dd3_material_composition, only : composition_t, evolve_internal_variables
   use dd3_material_return_mapping, only : step_t, integrate_step
   implicit none
   private
-  public :: substeps_t, integrate, differentiate, all_finite, failure_text
+  public :: substeps_t, integrate, differentiate, all_finite
 
   !> Equal substeps of a strain increment.
   type :: substeps_t
@@ -194,20 +193,5 @@ contains
           all_finite = .false.
     end do
   end function all_finite
-
-  !> Describe a failed integration.
-  pure function failure_text(start, strain, step) result(text)
-    !> Internal variables at the start.
-    real(wp), intent(in) :: start(:)
-    !> Strain increment.
-    real(wp), intent(in) :: strain(6)
-    !> The last substep tried.
-    type(step_t), intent(in) :: step
-    character(len=:), allocatable :: text
-
-    text = "return mapping fails: strain increment "//to_text(maxval(abs(strain)), 4)// &
-        ", plastic strain "//to_text(start(1), 4)//", trial/flow stress "// &
-        to_text(step%overstress, 4)//" in the last substep, residual "//to_text(step%norm, 4)
-  end function failure_text
 
 end module dd3_material_update

@@ -16,6 +16,9 @@ module dd3_model_phases
 
   !> Default height of the contact layer over the thickness.
   real(wp), parameter :: default_layer = 0.02_wp
+  !> Largest tolerance of the corrector when all tools are released: the residual stresses, by which
+  !> the criterion is scaled, are far larger than those that bend a slender sheet.
+  real(wp), parameter :: release_tolerance = 1.0e-5_wp
 
 contains
 
@@ -172,10 +175,8 @@ contains
         call stop_pressing(phase, t)
       end do
     end if
-    ! The residual stresses, by which the criterion is scaled, are far larger than those that bend a
-    ! slender sheet.
     if (size(phase%active) > 0 .and. .not. any(phase%active)) &
-        phase%newton%tolerance = min(phase%newton%tolerance, phase%newton%release_tolerance)
+        phase%newton%tolerance = min(phase%newton%tolerance, release_tolerance)
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return

@@ -6,7 +6,7 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, n_ranks, start_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_external_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
       ksp_get_iteration_number, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
       ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
@@ -101,7 +101,8 @@ contains
     verdict%outcome = verdict_converged
     if (ksp_set_up(self%ksp) == 0) return
     verdict%outcome = verdict_retry
-    verdict%reason = "PETSc could not factorise the matrix"
+    verdict%cause = cause_solver
+    verdict%detail = "PETSc could not factorise the matrix"
   end subroutine petsc_solver_factor
 
   !> Create PETSc's objects for a pattern.

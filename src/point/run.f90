@@ -6,8 +6,9 @@ module dd3_point_run
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption
   use dd3_base_log, only : log_t
+  use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_gradient
   use dd3_element_log_strain, only : polar_increment
   use dd3_input_case, only : case_t
   use dd3_linalg_tensor, only : determinant, identity, inverse, kelvin_factor, kelvin_from_tensor, &
@@ -132,7 +133,7 @@ contains
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//path%name//", step "// &
-            to_text(run%increment + 1)//": "//trim(verdict%reason))
+            to_text(run%increment + 1)//": "//cause_text(verdict, ""))
         return
       end if
       run%increment = run%increment + 1
@@ -160,7 +161,7 @@ contains
 
     call inverse(run%gradient, inverse_before, regular)
     regular = regular .and. determinant(gradient) > 0.0_wp
-    if (.not. regular) verdict%reason = "det F is not positive"
+    if (.not. regular) verdict%cause = cause_gradient
     if (.not. regular) return
     call polar_increment(matmul(gradient, inverse_before), strain, rotation)
     call apply_strain(run%state, material, kelvin_factor*strain, rotation, verdict)

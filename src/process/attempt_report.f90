@@ -1,12 +1,14 @@
 !> Reports on an attempt: its row of status.csv, and the message if it was the last one.
 module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged
+  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_no_progress
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
+  use dd3_process_limit, only : limiter_name
   use dd3_process_remedy, only : first_remedy
   use dd3_process_stepper, only : stepper_t
   implicit none
@@ -28,7 +30,7 @@ contains
       row%phase = phase%name
       row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
       row%r = attempt%limit%r
-      row%limiter = attempt%limit%name
+      row%limiter = limiter_name(attempt%limit%limiter)
       row%limiter_element = attempt%limit%element
       row%limiter_point = attempt%limit%point
       row%limiter_node = attempt%limit%node
@@ -49,7 +51,7 @@ contains
         row%reason = attempt%solver%reason
       else
         row%outcome = "failed"
-        row%reason = attempt%verdict%reason
+        row%reason = verdict_text(model, attempt%verdict)
       end if
     end associate
     call add_corrector(row, stepper)
@@ -60,17 +62,19 @@ contains
     type(status_row_t), intent(inout) :: row
     type(stepper_t), intent(in) :: stepper
 
-    associate (correction => stepper%attempt%correction, verdict => stepper%attempt%verdict)
+    associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
-      row%damped = correction%damped
-      if (size(correction%criterion) > 0) &
-          row%criterion = correction%criterion(size(correction%criterion))
+      row%damped = attempt%course%halved
+      if (allocated(attempt%course%norm)) then
+        if (size(attempt%course%norm) > 0) &
+            row%criterion = attempt%course%norm(size(attempt%course%norm))
+      end if
       if (verdict%element > 0) then
         row%worst_element = verdict%element
         row%worst_point = verdict%point
-      else if (correction%worst_node > 0) then
-        row%worst_node = correction%worst_node
-        row%worst_residual = correction%worst_residual
+      else if (attempt%residual%worst_node > 0) then
+        row%worst_node = attempt%residual%worst_node
+        row%worst_residual = attempt%residual%worst
       end if
     end associate
   end subroutine add_corrector
@@ -84,6 +88,15 @@ contains
     name = ""
     if (tool > 0) name = model%tool(tool)%name
   end function tool_name
+
+  !> Return the cause of a verdict as text.
+  function verdict_text(model, verdict) result(text)
+    type(model_t), intent(in) :: model
+    type(verdict_t), intent(in) :: verdict
+    character(len=:), allocatable :: text
+
+    text = cause_text(verdict, tool_name(model, verdict%tool))
+  end function verdict_text
 
   !> Return the message on a failed increment: its location, the reason and the first remedy to try.
   function failure_message(model, committed, stepper) result(message)
@@ -107,10 +120,15 @@ contains
 
     associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       message = "increment "//to_text(committed%increment + 1)//" of phase '" &
-          //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel) &
-          //" mm) did not converge"
+          //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel)//" mm) "
+      if (verdict%cause == cause_no_progress) then
+        message = message//"makes no progress: r = "//to_text(attempt%limit%r, 3)// &
+            ", limited by "//limiter_name(attempt%limit%limiter)
+        return
+      end if
+      message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
-      message = message//": "//trim(verdict%reason)
+      message = message//": "//verdict_text(model, verdict)
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
           //" point "//to_text(verdict%point)
       if (verdict%node == 0) return

@@ -1,7 +1,7 @@
-!> Last step of a corrector that has converged but for the force balance of a pressed tool.
+!> Force balance of the pressed tools, and the last step of a corrector that has converged but for
+!> it.
 module dd3_process_balance
   use dd3_base_kinds, only : wp
-  use dd3_base_clock, only : section_contact
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -9,11 +9,11 @@ module dd3_process_balance
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: balance_tools, tool_tolerance
+  public :: balance_tools, tool_imbalance
 
-  !> Largest residual of a pressed tool, over its force, that is accepted, and the one from which on
-  !> the motion of the tool alone reduces it.
-  real(wp), parameter :: tool_tolerance = 1.0e-3_wp, balanced = 1.0e-6_wp
+  !> Residuals of a pressed tool, over its force, between which the motion of the tool alone reduces
+  !> it.
+  real(wp), parameter :: largest = 1.0e-3_wp, balanced = 1.0e-6_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4
 
@@ -33,33 +33,47 @@ contains
     !> A tool was moved.
     logical, intent(out) :: moved
 
-    real(wp) :: distance(model%n_tool)
+    real(wp) :: fraction, distance
     integer :: k, tool
+    logical :: moves
 
     moved = .false.
-    call system%profile%start()
     associate (phase => model%phase(trial%phase))
       do k = 1, most_motions
-        distance = 0.0_wp
+        moves = .false.
         do tool = 1, model%n_tool
           if (.not. phase%pressed(tool)) cycle
-          associate (residual => abs(system%problem%tool_residual(tool)), &
-              force => pressed_force(trial, tool))
-            if (residual > balanced*force .and. residual <= tool_tolerance*force) &
-                distance(tool) = distance_to_balance(system, phase%direction(:, tool), tool)
-          end associate
-        end do
-        if (all(abs(distance) <= 0.0_wp)) exit
-        do tool = 1, model%n_tool
+          fraction = abs(system%problem%tool_residual(tool))/pressed_force(trial, tool)
+          if (fraction <= balanced .or. fraction > largest) cycle
+          distance = distance_to_balance(system, phase%direction(:, tool), tool)
+          moves = moves .or. abs(distance) > 0.0_wp
           trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
-              + distance(tool)*phase%direction(:, tool)
+              + distance*phase%direction(:, tool)
         end do
+        if (.not. moves) exit
         moved = .true.
         call evaluate_forces(model, committed, trial, system)
       end do
     end associate
-    call system%profile%add(section_contact)
   end subroutine balance_tools
+
+  !> Return the largest residual of a pressed tool in contact, over its force; 0 if all balance.
+  pure real(wp) function tool_imbalance(model, trial, system) result(imbalance)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    !> Evaluated at the trial state.
+    type(system_t), intent(in) :: system
+
+    integer :: tool
+
+    imbalance = 0.0_wp
+    do tool = 1, model%n_tool
+      if (.not. model%phase(trial%phase)%pressed(tool)) cycle
+      if (any(system%contact%tool == tool .and. system%contact%status /= status_gap)) imbalance = &
+          max(imbalance, abs(system%problem%tool_residual(tool))/pressed_force(trial, tool))
+    end do
+    if (imbalance <= balanced) imbalance = 0.0_wp
+  end function tool_imbalance
 
   !> Return the distance along its line at which the force of a pressed tool is balanced, mm; zero
   !> if nothing resists it.

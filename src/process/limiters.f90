@@ -3,14 +3,17 @@
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
-  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, broadcast_text, rank_of_smallest
+  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, rank_of_smallest
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : limit_t
+  use dd3_process_limit, only : limit_t, limiter_cutback, limiter_first_contact, limiter_force, &
+      limiter_gap, limiter_iterations, limiter_layer, limiter_none, limiter_output, limiter_phase, &
+      limiter_r_max, limiter_r_min, limiter_rotation, limiter_strain, limiter_stress, &
+      limiter_table, limiter_until
   use dd3_process_phase_end, only : next_output_progress, until_value
   use dd3_process_stepper, only : stepper_t
   implicit none
@@ -33,7 +36,8 @@ module dd3_process_limiters
 
   !> A row of the table.
   type :: limiter_t
-    character(len=16) :: name = ""
+    !> One of the `limiter_*` values.
+    integer :: limiter = limiter_none
     procedure(limiter_interface), pointer, nopass :: evaluate => null()
     !> The limiter does not lower r below r_min.
     logical :: above_r_min = .false.
@@ -46,18 +50,16 @@ module dd3_process_limiters
 contains
 
   !> Return the limiters in the order of their evaluation; the first of equal bounds wins.
-  function limiter_table() result(table)
+  function all_limiters() result(table)
     type(limiter_t), allocatable :: table(:)
 
-    table = [limiter_t("strain", strain_limit, above_r_min=.true.), &
-        limiter_t("rotation", rotation_limit, above_r_min=.true.), &
-        limiter_t("stress", stress_limit, above_r_min=.true.), &
-        limiter_t("force", force_limit, above_r_min=.true.), &
-        limiter_t("gap", gap_limit), &
-        limiter_t("layer", layer_limit), &
-        limiter_t("until", until_limit), &
-        limiter_t("output", output_limit)]
-  end function limiter_table
+    table = [limiter_t(limiter_strain, strain_limit, above_r_min=.true.), &
+        limiter_t(limiter_rotation, rotation_limit, above_r_min=.true.), &
+        limiter_t(limiter_stress, stress_limit, above_r_min=.true.), &
+        limiter_t(limiter_force, force_limit, above_r_min=.true.), &
+        limiter_t(limiter_gap, gap_limit), &
+        limiter_t(limiter_until, until_limit)]
+  end function all_limiters
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
   !> overrides, then the bound by earlier increments, the end of the phase and the other limiters.
@@ -70,22 +72,37 @@ contains
 
     type(limiter_t), allocatable :: table(:)
 
-    allocate (table, source=limiter_table())
-    associate (limit => stepper%attempt%limit, limits => model%phase(state%phase)%limits)
-      limit = limit_t(r=limits%r_max%value, name="r_max")
+    allocate (table, source=all_limiters())
+    associate (limit => stepper%attempt%limit, phase => model%phase(state%phase), &
+        limits => model%phase(state%phase)%limits)
+      limit = limit_t(r=limits%r_max%value, limiter=limiter_r_max)
       call apply(pack(table, table%above_r_min), model, state, stepper)
       if (limit%r < limits%r_min%value) then
         limit%r = limits%r_min%value
-        limit%name = "r_min"
+        limit%limiter = limiter_r_min
       end if
       call keep_smaller(limit, limit_t(r=state%r_cap, &
-          name=merge("iterations", "cutback   ", state%r_cap_by_iterations)))
-      call keep_smaller(limit, &
-          limit_t(r=(1.0_wp - state%progress)/stepper%prediction%progress, name="phase"))
-      call keep_smaller(limit, limit_t(r=(model%phase(state%phase)%next_kink(state%progress) &
-          - state%progress)/stepper%prediction%progress, name="table"))
+          limiter=merge(limiter_iterations, limiter_cutback, state%r_cap_by_iterations)))
+      call end_after(1.0_wp - state%progress, limiter_phase)
+      call end_after(phase%next_kink(state%progress) - state%progress, limiter_table)
       call apply(pack(table, .not. table%above_r_min), model, state, stepper)
+      if (any(state%start%layer_offset > 0.0_wp)) &
+          call end_after(progress_left(state%progress), limiter_layer)
+      call end_after(next_output_progress(model%output, phase, state) - state%progress, &
+          limiter_output)
     end associate
+
+  contains
+
+    !> Let the increment end no later than after some progress of the phase.
+    subroutine end_after(left, limiter)
+      real(wp), intent(in) :: left
+      integer, intent(in) :: limiter
+
+      if (left > 0.0_wp .and. left <= 1.0_wp) call keep_smaller(stepper%attempt%limit, &
+          limit_t(r=left/stepper%prediction%progress, limiter=limiter))
+    end subroutine end_after
+
   end subroutine limit_increment
 
   !> Apply limiters.
@@ -100,10 +117,10 @@ contains
 
     do i = 1, size(table)
       limit = table(i)%evaluate(model, state, stepper)
-      if (limit%name == "") limit%name = table(i)%name
+      if (limit%limiter == limiter_none) limit%limiter = table(i)%limiter
       if (stepper%system%partition%divided) call share_limit(limit)
       call keep_smaller(stepper%attempt%limit, limit)
-      if (table(i)%name == "force") stepper%attempt%force_limit = limit
+      if (table(i)%limiter == limiter_force) stepper%attempt%force_limit = limit
     end do
   end subroutine apply
 
@@ -111,16 +128,15 @@ contains
   subroutine share_limit(limit)
     type(limit_t), intent(inout) :: limit
 
-    integer :: rank, numbers(4)
+    integer :: rank, numbers(5)
     real(wp) :: values(2)
 
     rank = rank_of_smallest(limit%r, limit%element)
-    numbers = [limit%element, limit%point, limit%node, limit%tool]
+    numbers = [limit%element, limit%point, limit%node, limit%tool, limit%limiter]
     values = [limit%r, limit%force_size]
     call broadcast_integers(rank, size(numbers), numbers)
     call broadcast_reals(rank, size(values), values)
-    call broadcast_text(rank, limit%name)
-    limit = limit_t(values(1), limit%name, numbers(1), numbers(2), numbers(3), numbers(4), &
+    limit = limit_t(values(1), numbers(5), numbers(1), numbers(2), numbers(3), numbers(4), &
         values(2))
   end subroutine share_limit
 
@@ -340,25 +356,10 @@ contains
         depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
-            name=merge("gap          ", "first contact", touching(tool)))
+            limiter=merge(limiter_gap, limiter_first_contact, touching(tool)))
       end do
     end associate
   end function gap_limit
-
-  !> Return the bound at which the contact layers arrive at their places.
-  function layer_limit(model, state, stepper) result(limit)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(in) :: stepper
-    type(limit_t) :: limit
-
-    real(wp) :: left
-
-    if (model%n_tool == 0) return
-    left = progress_left(state%progress)
-    if (left > 0.0_wp .and. any(state%start%layer_offset > 0.0_wp)) &
-        limit%r = left/stepper%prediction%progress
-  end function layer_limit
 
   !> Return the bound at the early end of the phase, extrapolated linearly. The value is met with
   !> either sign: that of its rate or, from above, the opposite one.
@@ -389,18 +390,5 @@ contains
     end associate
     if (left > 0.0_wp .and. abs(rate) > 0.0_wp) limit%r = left/abs(rate)
   end function until_limit
-
-  !> Return the bound at the next output of fields.
-  function output_limit(model, state, stepper) result(limit)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(in) :: stepper
-    type(limit_t) :: limit
-
-    real(wp) :: progress
-
-    progress = next_output_progress(model%output, model%phase(state%phase), state)
-    if (progress <= 1.0_wp) limit%r = (progress - state%progress)/stepper%prediction%progress
-  end function output_limit
 
 end module dd3_process_limiters

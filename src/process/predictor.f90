@@ -18,7 +18,6 @@ module dd3_process_predictor
   use dd3_model_phase, only : phase_t
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : attempt_t
   use dd3_process_external, only : unfaded_forces
   use dd3_system_contact, only : predictor_contact
   use dd3_system_enhanced, only : enhanced_response
@@ -27,7 +26,7 @@ module dd3_process_predictor
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_partition, only : partition_t
   use dd3_system_reduced, only : contact_force_increment
-  use dd3_system_solve, only : solve_reduced
+  use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -75,13 +74,15 @@ contains
   end subroutine new_prediction
 
   !> Solve for the trial increment of the running phase.
-  subroutine predict(self, model, committed, system, attempt)
+  subroutine predict(self, model, committed, system, solver, verdict)
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
-    !> Gets the work of the linear solver, and a verdict on the solution.
-    type(attempt_t), intent(inout) :: attempt
+    !> Work of the linear solver, summed up.
+    type(solve_info_t), intent(inout) :: solver
+    !> Retry if there is no solution.
+    type(verdict_t), intent(out) :: verdict
 
     integer :: switch, switched
 
@@ -100,8 +101,8 @@ contains
         call assemble_stiffness(system, model, committed)
         call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
-        call solve_reduced(system, model, phase, committed%x, attempt%solver, attempt%verdict)
-        if (attempt%verdict%outcome /= verdict_converged) return
+        call solve_reduced(system, model, phase, committed%x, solver, verdict)
+        if (verdict%outcome /= verdict_converged) return
         call system%profile%start()
         self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), &
             [3, model%n_node])

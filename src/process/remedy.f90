@@ -3,12 +3,14 @@
 module dd3_process_remedy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_contact_operator, only : status_gap
+  use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
+      cause_led_inside, cause_lost_tool, cause_no_progress, cause_singular, cause_solver, &
+      cause_solver_memory
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_attempt, only : attempt_t
+  use dd3_process_step_control, only : attempt_t
   implicit none
   private
   public :: first_remedy
@@ -24,77 +26,73 @@ module dd3_process_remedy
   character(len=*), parameter :: cutback_remedy = "cutback = on in *NEWTON"
   character(len=*), parameter :: damping_remedy = "damping = on in *NEWTON"
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
+  character(len=*), parameter :: limit_remedy = "a larger value of this limit"
   character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
 
-  !> Factors on the penalty, on the height of the contact layer, on the limit of rotation, on the
-  !> tolerance after the release and on the number of iterations that are proposed; rotation proposed
-  !> if it is not limited, degrees.
-  real(wp), parameter :: penalty_factor = 0.1_wp, layer_factor = 2.0_wp, rotation_factor = 0.25_wp, &
-      tolerance_factor = 10.0_wp
+  !> Factors on the penalty, on the height of the contact layer, on the limit of rotation and on the
+  !> number of iterations that are proposed; rotation proposed if it is not limited, degrees.
+  real(wp), parameter :: penalty_factor = 0.1_wp, layer_factor = 2.0_wp, rotation_factor = 0.25_wp
   integer, parameter :: iterations_factor = 2
-  real(wp), parameter :: usual_rotation = 0.5_wp
+  character(len=*), parameter :: usual_rotation = "0.5"
 
 contains
 
-  !> Return the first remedy to try.
+  !> Return the first remedy to try; a setting that is off comes before those that change the model.
   function first_remedy(model, committed, attempt) result(remedy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
     type(attempt_t), intent(in) :: attempt
     character(len=:), allocatable :: remedy
 
-    associate (phase => model%phase(committed%phase), reason => attempt%verdict%reason)
-      if (begins(reason, "nothing resists")) then
-        remedy = contact_remedy
-      else if (begins(reason, "a prescribed motion")) then
-        remedy = motion_remedy
-      else if (begins(reason, "linear solver: not enough memory")) then
-        remedy = memory_remedy
-      else if (begins(reason, "linear solver")) then
-        remedy = solver_remedy
-        if (begins(attempt%solver%solver, "umfpack") .or. index(reason, "singular") > 0) &
-            remedy = support_remedy
-      else if (committed%increment == 0 .and. begins(reason, "an iteration moved")) then
-        remedy = support_remedy
-      else if (.not. phase%newton%cutback) then
+    remedy = remedy_of_input(committed, attempt)
+    if (len(remedy) > 0) return
+    associate (phase => model%phase(committed%phase), verdict => attempt%verdict)
+      if (.not. phase%newton%cutback) then
         remedy = cutback_remedy
       else if (.not. phase%newton%damping) then
         remedy = damping_remedy
+      else if (any(verdict%cause == [cause_large_step, cause_inverted, cause_inverted_strain])) then
+        remedy = usual_rotation
+        if (phase%limits%rotation%active) &
+            remedy = to_text(rotation_factor*phase%limits%rotation%value, 3)
+        remedy = "rotation = "//remedy//" in *LIMITS"//mesh_remedy
+      else if (verdict%element > 0) then
+        remedy = material_remedy
+      else if (attempt%touched) then
+        remedy = remedy_of_contact(model, phase, model%candidate_of(verdict%node))
       else
-        remedy = remedy_of_reason(model, phase, attempt)
+        remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)// &
+            " in *NEWTON"
       end if
     end associate
   end function first_remedy
 
-  !> Return the first remedy if all automatic ones are on.
-  function remedy_of_reason(model, phase, attempt) result(remedy)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
+  !> Return the remedy of a cause that only a change of the model, of the limits or of the solver
+  !> removes; empty for others.
+  function remedy_of_input(committed, attempt) result(remedy)
+    type(state_t), intent(in) :: committed
     type(attempt_t), intent(in) :: attempt
     character(len=:), allocatable :: remedy
 
-    real(wp) :: rotation
-    integer :: c
-
-    rotation = usual_rotation
-    if (phase%limits%rotation%active) rotation = rotation_factor*phase%limits%rotation%value
-    c = candidate_in_contact(model, attempt)
-    associate (reason => attempt%verdict%reason, newton => phase%newton)
-      if (begins(reason, "an iteration moved") .or. begins(reason, "an element") &
-          .or. begins(reason, "the assumed strain")) then
-        remedy = "rotation = "//to_text(rotation, 3)//" in *LIMITS"//mesh_remedy
-      else if (attempt%verdict%element > 0) then
-        remedy = material_remedy
-      else if (c > 0) then
-        remedy = remedy_of_contact(model, phase, c)
-      else if (ends_near_release_tolerance(phase, attempt%verdict%norm)) then
-        remedy = "release_tolerance = "//to_text(tolerance_factor*newton%release_tolerance, 3)// &
-            " in *NEWTON"
-      else
-        remedy = "iterations = "//to_text(iterations_factor*newton%iterations)//" in *NEWTON"
-      end if
-    end associate
-  end function remedy_of_reason
+    remedy = ""
+    select case (attempt%verdict%cause)
+    case (cause_no_progress)
+      remedy = limit_remedy
+    case (cause_lost_tool)
+      remedy = contact_remedy
+    case (cause_led_inside)
+      remedy = motion_remedy
+    case (cause_solver_memory)
+      remedy = memory_remedy
+    case (cause_singular)
+      remedy = support_remedy
+    case (cause_solver)
+      remedy = solver_remedy
+      if (attempt%solver%solver == "umfpack") remedy = support_remedy
+    case (cause_large_step)
+      if (committed%increment == 0) remedy = support_remedy
+    end select
+  end function remedy_of_input
 
   !> Return the first remedy where the contact of a candidate does not settle.
   function remedy_of_contact(model, phase, c) result(remedy)
@@ -110,37 +108,5 @@ contains
     end if
     remedy = remedy//" in *CONTACT"
   end function remedy_of_contact
-
-  !> Return the candidate at the node of a failure if a tool touched it in the last iterations; 0 if
-  !> none did. At a node without contact no penalty acts.
-  pure integer function candidate_in_contact(model, attempt) result(c)
-    type(model_t), intent(in) :: model
-    type(attempt_t), intent(in) :: attempt
-
-    c = 0
-    if (attempt%verdict%node > 0) c = model%candidate_of(attempt%verdict%node)
-    if (c == 0) return
-    if (.not. any(attempt%correction%status(c, :) > status_gap)) c = 0
-  end function candidate_in_contact
-
-  !> Whether all tools are released and a slightly larger tolerance would have been met.
-  pure logical function ends_near_release_tolerance(phase, criterion) result(ends)
-    type(phase_t), intent(in) :: phase
-    !> Of convergence, in the last iteration.
-    real(wp), intent(in) :: criterion
-
-    ends = .false.
-    if (size(phase%active) == 0 .or. any(phase%active)) return
-    associate (tolerance => phase%newton%release_tolerance)
-      ends = phase%newton%tolerance >= tolerance .and. criterion < tolerance_factor*tolerance
-    end associate
-  end function ends_near_release_tolerance
-
-  !> Whether a text begins with another.
-  pure logical function begins(text, start)
-    character(len=*), intent(in) :: text, start
-
-    begins = index(text, start) == 1
-  end function begins
 
 end module dd3_process_remedy

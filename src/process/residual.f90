@@ -13,7 +13,16 @@ module dd3_process_residual
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: evaluate_forces, evaluate_norm, pressed_force, lost_tool
+  public :: evaluate_forces, evaluate_norm, pressed_force, lost_tool, residual_t
+
+  !> Norm of the residuals.
+  type :: residual_t
+    !> N.
+    real(wp) :: norm = 0.0_wp
+    !> Node with the largest residual, and that residual, N.
+    integer :: worst_node = 0
+    real(wp) :: worst = 0.0_wp
+  end type residual_t
 
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: small = 1.0e-3_wp
@@ -63,16 +72,12 @@ contains
 
   !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
   !> of the enhanced strains and of the pressed tools in contact.
-  subroutine evaluate_norm(model, trial, system, norm, worst_node, worst_residual)
+  subroutine evaluate_norm(model, trial, system, found)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     !> Evaluated at the trial state.
     type(system_t), intent(in) :: system
-    !> N.
-    real(wp), intent(out) :: norm
-    !> Node with the largest residual, and that residual, N.
-    integer, intent(out) :: worst_node
-    real(wp), intent(out) :: worst_residual
+    type(residual_t), intent(out) :: found
 
     real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares
     integer :: node, c, tool
@@ -85,8 +90,8 @@ contains
         node = model%contact_node(c)
         contribution(node) = contribution(node) + sum(problem%contact_residual(:, c)**2)
       end do
-      worst_node = maxloc(contribution, dim=1)
-      worst_residual = contribution(worst_node)
+      found%worst_node = maxloc(contribution, dim=1)
+      found%worst = contribution(found%worst_node)
       sum_of_squares = sum(contribution) + enhanced_square(system%enhanced, model%thickness)
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
@@ -94,8 +99,8 @@ contains
             sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
       end do
     end associate
-    norm = sqrt(sum_of_squares)
-    worst_residual = sqrt(max(worst_residual, 0.0_wp))
+    found%norm = sqrt(sum_of_squares)
+    found%worst = sqrt(max(found%worst, 0.0_wp))
   end subroutine evaluate_norm
 
   !> Return the displacement of a pressed tool that has lost the sheet back to contact, mm; zero for
@@ -125,7 +130,8 @@ contains
 
     pressed_force = max(norm2(trial%tool_load(:, tool)), &
         small*norm2(trial%start%tool_load(:, tool)), &
-        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force))
+        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force), &
+        tiny(1.0_wp))
   end function pressed_force
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.

@@ -1,6 +1,7 @@
 !> Run of a job: phase by phase, increment by increment, with its records.
 module dd3_process_run
   use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_text
   use dd3_base_clock, only : profile_t, section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption
@@ -8,7 +9,8 @@ module dd3_process_run
   use dd3_base_ranks, only : n_ranks
   use dd3_base_text, only : text_t, to_text
   use dd3_base_threads, only : set_threads
-  use dd3_base_verdict, only : verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
+      cause_beyond_until, cause_no_progress
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
@@ -17,13 +19,15 @@ module dd3_process_run
   use dd3_output_records, only : records_t
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
-  use dd3_process_increment, only : accept_increment, prepare_increment, return_to_until, &
-      shrink_increment, try_increment
-  use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance
+  use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
+  use dd3_process_limit, only : limiter_name
+  use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
+      until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns
   use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
       support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
   use dd3_process_stepper, only : stepper_t
   use dd3_process_tool_observation, only : observe_tools
   use dd3_process_tool_warnings, only : tool_warnings
@@ -33,11 +37,6 @@ module dd3_process_run
   implicit none
   private
   public :: run_model, run_start_t, run_summary_t, solver_options
-
-  !> Smallest increment of the progress of a phase.
-  real(wp), parameter :: least_progress = 1.0e-12_wp
-  !> Ending of the message if an increment is smaller.
-  character(len=*), parameter :: no_progress_remedy = "; try first: a larger value of this limit"
 
   !> Initial data of a run.
   type :: run_start_t
@@ -265,11 +264,9 @@ contains
       began = wall_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
-      if (predicted .and. .not. makes_progress(stepper)) then
-        call fatal_error(error, "increment "//to_text(run%committed%increment + 1)// &
-            " of phase '"//phase%name//"' (travel "//to_text(run%committed%travel)// &
-            " mm) makes no progress: r = "//to_text(attempt%limit%r, 3)//", limited by "// &
-            trim(attempt%limit%name)//no_progress_remedy)
+      if (predicted .and. .not. makes_progress(attempt, stepper%prediction%progress)) then
+        attempt%verdict%cause = cause_no_progress
+        call fatal_error(error, failure_message(model, run%committed, stepper))
         return
       end if
       do
@@ -282,13 +279,13 @@ contains
         row%seconds = wall_time() - began
         began = wall_time()
         again = .false.
-        if (predicted .and. attempt%verdict%outcome == verdict_retry) &
-            call shrink_increment(phase, stepper, again)
+        if (predicted .and. phase%newton%cutback .and. attempt%verdict%outcome == verdict_retry) &
+            call cut_back(attempt, again)
         if (attempt%verdict%outcome == verdict_converged) then
-          call return_to_until(phase, run%committed, run%trial, stepper, again)
-          if (again) row%reason = "beyond the value of `until`"
+          call return_to_until(attempt, until_fraction(phase, run%committed, run%trial), again)
+          if (again) row%reason = cause_text(verdict_t(cause=cause_beyond_until), "")
         end if
-        if (again) again = makes_progress(stepper)
+        if (again) again = makes_progress(attempt, stepper%prediction%progress)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         run%summary%iterations = run%summary%iterations + row%iterations
@@ -314,13 +311,6 @@ contains
     call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
   end subroutine set_interruption
 
-  !> Whether an increment with the present r is large enough for the phase to end.
-  pure logical function makes_progress(stepper)
-    type(stepper_t), intent(in) :: stepper
-
-    makes_progress = stepper%attempt%limit%r*stepper%prediction%progress > least_progress
-  end function makes_progress
-
   !> Write an accepted increment to the records and show it.
   subroutine write_increment(run, model, next_output, log, error)
     type(run_t), intent(inout) :: run
@@ -345,8 +335,8 @@ contains
       view%travel = state%travel
       view%increment = state%increment
       view%r = attempt%limit%r
-      view%limiter = attempt%limit%name
-      view%iterations = size(attempt%correction%criterion)
+      view%limiter = limiter_name(attempt%limit%limiter)
+      view%iterations = size(attempt%course%norm)
       if (phase%control > 0) view%force = &
           dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
       call run%progress%update(log, view)

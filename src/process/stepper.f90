@@ -1,7 +1,7 @@
 !> Work data of the increments: system of equations, prediction and present attempt.
 module dd3_process_stepper
-  use dd3_process_attempt, only : attempt_t
   use dd3_process_predictor, only : prediction_t
+  use dd3_process_step_control, only : attempt_t
   use dd3_system_system, only : system_t
   implicit none
   private

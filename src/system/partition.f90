@@ -3,10 +3,11 @@
 !> elements between the nodes of two ranks are evaluated by both, with the same result.
 module dd3_system_partition
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, broadcast_text, &
-      largest_over_ranks, n_ranks, rank_of_smallest, sum_over_ranks, this_rank
+  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, largest_over_ranks, n_ranks, &
+      rank_of_smallest, sum_over_ranks, this_rank
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible, &
+      cause_ranks_differ
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -122,7 +123,7 @@ contains
     call largest_over_ranks(1, differs)
     if (differs(1) == 0) return
     verdict%outcome = verdict_impossible
-    verdict%reason = "the processes disagree about the contact: machines with different processors"
+    verdict%cause = cause_ranks_differ
   end subroutine check_agreement
 
   !> Give all ranks the state at the integration points of all elements.
@@ -147,25 +148,26 @@ contains
     type(partition_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
-    integer :: rank, numbers(6)
-    real(wp) :: norm(1)
+    integer :: rank, numbers(7)
+    real(wp) :: values(1 + size(verdict%value))
 
     if (.not. self%divided) return
     rank = rank_of_smallest(merge(1.0_wp, 0.0_wp, verdict%outcome == verdict_converged), &
         verdict%element)
     numbers = [verdict%outcome, verdict%iterations, verdict%node, verdict%element, &
-        verdict%point, verdict%tool]
-    norm = verdict%norm
+        verdict%point, verdict%tool, verdict%cause]
+    values = [verdict%norm, verdict%value]
     call broadcast_integers(rank, size(numbers), numbers)
-    call broadcast_reals(rank, 1, norm)
-    call broadcast_text(rank, verdict%reason)
+    call broadcast_reals(rank, size(values), values)
     verdict%outcome = numbers(1)
     verdict%iterations = numbers(2)
     verdict%node = numbers(3)
     verdict%element = numbers(4)
     verdict%point = numbers(5)
     verdict%tool = numbers(6)
-    verdict%norm = norm(1)
+    verdict%cause = numbers(7)
+    verdict%norm = values(1)
+    verdict%value = values(2:)
   end subroutine share_verdict
 
 end module dd3_system_partition

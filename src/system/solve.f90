@@ -2,7 +2,7 @@
 module dd3_system_solve
   use dd3_base_clock, only : section_assembly, section_factorisation, section_solve
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_lost_tool
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -46,17 +46,14 @@ contains
     call system%solver%factor(system%reduced, verdict)
     call system%profile%add(section_factorisation)
     if (verdict%outcome /= verdict_converged) then
-      if (verdict%node > model%n_node) then
-        call name_tool(model, verdict)
-      else
-        call name_solver(verdict, trim(verdict%reason))
-      end if
+      if (verdict%node > model%n_node) call name_tool(model, verdict)
       return
     end if
     call solve_factorised(system, system%problem%solution, info, report)
     if (.not. report%converged) then
       verdict%outcome = verdict_retry
-      call name_solver(verdict, report%reason)
+      verdict%cause = report%cause
+      verdict%detail = report%reason
       verdict%norm = report%residual
     end if
   end subroutine solve_reduced
@@ -78,18 +75,6 @@ contains
     if (report%fallback) info%reason = report%reason
   end subroutine solve_factorised
 
-  !> Set the reason of a linear solver that failed.
-  pure subroutine name_solver(verdict, reason)
-    type(verdict_t), intent(inout) :: verdict
-    character(len=*), intent(in) :: reason
-
-    character(len=*), parameter :: prefix = "linear solver: "
-    integer :: n
-
-    n = min(len(reason), len(verdict%reason) - len(prefix))
-    verdict%reason = prefix//reason(:n)
-  end subroutine name_solver
-
   !> Name the tool instead of its block row, which is empty if nothing resists the tool.
   subroutine name_tool(model, verdict)
     type(model_t), intent(in) :: model
@@ -97,7 +82,7 @@ contains
 
     verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
     verdict%node = 0
-    verdict%reason = "nothing resists the pressed tool "//model%tool(verdict%tool)%name
+    verdict%cause = cause_lost_tool
   end subroutine name_tool
 
 end module dd3_system_solve

@@ -9,6 +9,7 @@
 !> yield surface.
 program benchmark_robustness
   use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_material_check, only : describe_laws, law_hardening
   use dd3_material_composition, only : evolve_internal_variables
@@ -170,7 +171,7 @@ contains
     call material%update(stress, internal_variables, strain, stress_trial, internal_trial, &
         tangent, plastic, verdict)
     if (verdict%outcome /= verdict_converged) then
-      if (tally%failed == 0) tally%reason = verdict%reason
+      if (tally%failed == 0) tally%reason = cause_text(verdict, "")
       tally%failed = tally%failed + 1
       return
     end if

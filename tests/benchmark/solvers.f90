@@ -158,7 +158,7 @@ contains
     print '(2x,a8,a6,2x,a4,a7,i6,i4,4f10.3,2es10.1,1x,a)', options%method, level_text(options), &
         options%ordering, fill_text(options, matrix), report%iterations, report%restarts, &
         1.0e3_wp*[setup, least], megabytes, report%residual, &
-        maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%reason)//trim(report%reason)
+        maxval(abs(x - reference))/maxval(abs(reference)), trim(verdict%detail)//trim(report%reason)
     if (options%method /= "cgs") print '(10x,a)', trim(solver%description)
   end subroutine measure
 

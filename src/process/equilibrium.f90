@@ -1,0 +1,358 @@
+!> Equilibrium of a trial state, as the problem that the corrector solves: element forces, loads,
+!> contact and supports, with all non-linearities (plasticity, large rotations, contact, friction)
+!> in one residual.
+!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
+!> scaled by the norm of the internal forces where it exceeds that of the contact forces, and such
+!> that a residual that is round-off has converged.
+module dd3_process_equilibrium
+  use dd3_base_clock, only : section_assembly, section_contact, section_material
+  use dd3_base_kinds, only : wp
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
+      cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
+  use dd3_contact_closest, only : hint_t
+  use dd3_linalg_solver, only : solver_report_t
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : is_normal_held
+  use dd3_model_state, only : state_t
+  use dd3_process_balance, only : balance_tools, tool_imbalance
+  use dd3_process_newton, only : newton_problem_t
+  use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
+  use dd3_system_enhanced, only : enhanced_response, subtract_condensed
+  use dd3_system_internal, only : assemble_stiffness, update_material
+  use dd3_system_load_stiffness, only : add_load_stiffness
+  use dd3_system_reduced, only : contact_force_increment, reduce_equilibrium
+  use dd3_system_round_off, only : attainable_residual
+  use dd3_system_solve, only : solve_factorised, solve_info_t, solve_reduced
+  use dd3_system_system, only : system_t
+  implicit none
+  private
+  public :: equilibrium_t, unknowns_t
+
+  !> Unknowns of the increment, or a step of them.
+  type :: unknowns_t
+    !> Positions of the nodes, `(3, n_node)`, or displacements, mm.
+    real(wp), allocatable :: x(:, :)
+    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
+    real(wp), allocatable :: enhanced(:, :)
+    !> Contact forces, `(3, n_contact)`, N.
+    real(wp), allocatable :: lambda(:, :)
+    !> Displacements of the tools, `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool(:, :)
+  end type unknowns_t
+
+  !> The problem. What it is built on is pointed to, as the procedures of an abstract problem have
+  !> no argument for it; it must not outlive that.
+  type, extends(newton_problem_t) :: equilibrium_t
+    type(model_t), pointer :: model => null()
+    type(state_t), pointer :: committed => null()
+    !> State that is corrected.
+    type(state_t), pointer :: trial => null()
+    !> Evaluated at the trial state.
+    type(system_t), pointer :: system => null()
+    !> Trial state before the last step, and that step.
+    type(unknowns_t) :: start, step
+    integer, allocatable, private :: start_tool(:)
+    type(hint_t), allocatable, private :: start_hint(:, :)
+    !> Residual, and its scaled norm.
+    type(residual_t) :: residual
+    real(wp) :: norm = 0.0_wp
+    !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
+    integer, allocatable :: status(:, :)
+    !> Work of the linear solver.
+    type(solve_info_t) :: solver
+    !> Whether the stiffness of the trial state is assembled.
+    logical, private :: assembled = .false.
+  contains
+    procedure :: begin
+    procedure :: evaluate
+    procedure :: scaled_norm
+    procedure :: is_admissible
+    procedure :: linearise
+    procedure :: apply
+    procedure :: correction_left
+    procedure :: explain
+    procedure :: changing
+  end type equilibrium_t
+
+  !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
+  !> sheet at rest all forces are round-off.
+  real(wp), parameter :: negligible_strain = 1.0e-6_wp
+  !> Residual over the scale above which it is not round-off.
+  real(wp), parameter :: largest_round_off = 1.0e-3_wp
+  !> Weight of the balance of a pressed tool in the norm: what is off at the end of an increment is
+  !> a step in the force of the next.
+  real(wp), parameter :: tool_weight = 10.0_wp
+  !> Largest displacement of a node in an iteration, over the thickness of the sheet.
+  real(wp), parameter :: largest_step = 20.0_wp
+  !> Number of contact status kept, and the value before the first.
+  integer, parameter :: n_kept = 3, unknown = -1
+
+contains
+
+  !> Begin at the committed state with the step of the prediction. The tools make the whole of their
+  !> step, whatever fraction the sheet makes.
+  subroutine begin(self, step)
+    class(equilibrium_t), intent(inout) :: self
+    type(unknowns_t), intent(in) :: step
+
+    associate (trial => self%trial, problem => self%system%problem)
+      trial%tool_displacement = trial%tool_displacement + step%tool
+      call keep_start(self)
+      self%step = step
+      self%step%tool = 0.0_wp
+      allocate (self%status(size(trial%status), n_kept), source=unknown)
+      problem%prescribed = 0.0_wp
+      problem%tool_prescribed = 0.0_wp
+    end associate
+    call self%apply(1.0_wp)
+  end subroutine begin
+
+  !> Evaluate stresses, internal forces, contact and residual of the trial state.
+  subroutine evaluate(self, with_stiffness, verdict)
+    class(equilibrium_t), intent(inout) :: self
+    logical, intent(in) :: with_stiffness
+    type(verdict_t), intent(out) :: verdict
+
+    associate (system => self%system)
+      if (with_stiffness) call system%threads%begin_iteration()
+      call system%profile%start()
+      call update_material(system, self%model, self%committed, self%trial, with_stiffness, verdict)
+      call system%profile%add(section_material)
+      self%assembled = with_stiffness
+      if (verdict%outcome /= verdict_converged) return
+      call evaluate_forces(self%model, self%committed, self%trial, system)
+      call system%profile%add(section_contact)
+      call set_norm(self, .not. with_stiffness)
+      call system%partition%check_agreement(self%norm, verdict)
+    end associate
+  end subroutine evaluate
+
+  !> Set the scaled norm: the criterion of convergence, or the imbalance of a pressed tool if that
+  !> is larger and the criterion has met the tolerance.
+  subroutine set_norm(self, balance)
+    class(equilibrium_t), intent(inout) :: self
+    !> Whether the tools are balanced first.
+    logical, intent(in) :: balance
+
+    logical :: moved
+
+    associate (model => self%model, trial => self%trial, system => self%system, &
+        tolerance => self%model%phase(self%trial%phase)%newton%tolerance)
+      call evaluate_norm(model, trial, system, self%residual)
+      self%norm = criterion(self)
+      if (self%norm >= tolerance) return
+      moved = .false.
+      if (balance) call balance_tools(model, self%committed, trial, system, moved)
+      if (moved) then
+        call evaluate_norm(model, trial, system, self%residual)
+        self%norm = criterion(self)
+      end if
+      self%norm = max(self%norm, tool_weight*tool_imbalance(model, trial, system))
+    end associate
+  end subroutine set_norm
+
+  !> Return the criterion of convergence, eq. (19).
+  real(wp) function criterion(self)
+    class(equilibrium_t), intent(in) :: self
+
+    real(wp) :: force, scale
+
+    associate (trial => self%trial, system => self%system, model => self%model)
+      force = norm2(self%step%lambda) + self%residual%norm
+      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
+          negligible_strain*model%least_shear()*model%thickness**2)
+      associate (tolerance => model%phase(trial%phase)%newton%tolerance)
+        if (force >= tolerance*scale .and. force < largest_round_off*scale) scale = max(scale, &
+            attainable_residual(system%stiffness, trial%x, system%partition)/tolerance)
+      end associate
+      criterion = force/scale
+    end associate
+  end function criterion
+
+  !> Return the norm of the residual over its scale.
+  function scaled_norm(self) result(norm)
+    class(equilibrium_t), intent(inout) :: self
+    real(wp) :: norm
+
+    norm = self%norm
+  end function scaled_norm
+
+  !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
+  !> prescribed displacements have reached their positions.
+  function is_admissible(self) result(admissible)
+    class(equilibrium_t), intent(in) :: self
+    logical :: admissible
+
+    associate (model => self%model, trial => self%trial, contact => self%system%contact, &
+        problem => self%system%problem)
+      admissible = lost_tool(model, trial, contact) == 0 .and. &
+          all(contact%distance + contact%onset >= -model%tolerance%depth .or. contact%tool == 0)
+      if (problem%missed) admissible = admissible .and. all(abs(problem%target - trial%x) &
+          <= model%tolerance%closed .or. .not. model%phase(trial%phase)%prescribed)
+    end associate
+  end function is_admissible
+
+  !> Linearise at the trial state and solve for the step.
+  subroutine linearise(self, verdict)
+    class(equilibrium_t), intent(inout) :: self
+    !> Retry if there is no solution, or if it moves a node too far.
+    type(verdict_t), intent(out) :: verdict
+
+    logical :: first
+
+    first = self%assembled
+    self%status(:, 2:) = self%status(:, :n_kept - 1)
+    self%status(:, 1) = self%system%contact%status
+    associate (model => self%model, trial => self%trial, system => self%system, &
+        phase => self%model%phase(self%trial%phase))
+      call system%profile%start()
+      if (.not. first) call assemble_stiffness(system, model, self%committed, trial)
+      call subtract_condensed(system%enhanced, system%problem%residual)
+      call add_load_stiffness(system, model, trial)
+      if (system%problem%missed) then
+        where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x
+      end if
+      call system%profile%add(section_assembly)
+      call solve_reduced(system, model, phase, self%trial%x, self%solver, verdict)
+      if (first) call system%threads%end_iteration()
+      if (verdict%outcome /= verdict_converged) return
+      call keep_start(self)
+      call set_step(self)
+    end associate
+    call check_step(self, verdict)
+  end subroutine linearise
+
+  !> Keep the trial state before a step.
+  subroutine keep_start(self)
+    class(equilibrium_t), intent(inout) :: self
+
+    associate (trial => self%trial)
+      self%start = unknowns_t(trial%x, trial%enhanced, trial%lambda, trial%tool_displacement)
+      self%start_tool = trial%contact_tool
+      self%start_hint = trial%hint
+    end associate
+  end subroutine keep_start
+
+  !> Set the step from the solution of the linear system.
+  subroutine set_step(self)
+    class(equilibrium_t), intent(inout) :: self
+
+    integer :: tool, row
+
+    associate (model => self%model, system => self%system, step => self%step, &
+        solution => self%system%problem%solution)
+      step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
+      step%enhanced = enhanced_response(system%enhanced, model, solution) - system%enhanced%offset
+      call contact_force_increment(model, model%phase(self%trial%phase), system%contact, &
+          self%trial%x, system%stiffness, system%problem, step%lambda)
+      step%tool = 0.0_wp
+      do tool = 1, model%n_tool
+        row = model%tool_row(tool)
+        if (row > 0) step%tool(:, tool) = solution(3*row - 2:3*row)
+      end do
+    end associate
+  end subroutine set_step
+
+  !> Set a verdict to retry if the step moves a node too far.
+  subroutine check_step(self, verdict)
+    class(equilibrium_t), intent(in) :: self
+    type(verdict_t), intent(inout) :: verdict
+
+    associate (largest => maxval(abs(self%step%x), dim=1))
+      if (maxval(largest) <= largest_step*self%model%thickness) return
+      verdict%outcome = verdict_retry
+      verdict%cause = cause_large_step
+      verdict%node = maxloc(largest, dim=1)
+      verdict%value(1) = maxval(largest)
+    end associate
+  end subroutine check_step
+
+  !> Set the trial state to that before the step and a fraction of the step. A fraction may miss the
+  !> prescribed positions.
+  subroutine apply(self, fraction)
+    class(equilibrium_t), intent(inout) :: self
+    real(wp), intent(in) :: fraction
+
+    associate (trial => self%trial, start => self%start, step => self%step)
+      trial%x = start%x + fraction*step%x
+      trial%enhanced = start%enhanced + fraction*step%enhanced
+      trial%lambda = start%lambda + fraction*step%lambda
+      trial%tool_displacement = start%tool + fraction*step%tool
+      if (fraction >= 1.0_wp) return
+      trial%contact_tool = self%start_tool
+      trial%hint = self%start_hint
+      self%system%problem%missed = .true.
+    end associate
+  end subroutine apply
+
+  !> Return the norm of the displacements that the last matrix assigns to the residual of
+  !> equilibrium, over that of the last step; 0 if the solver fails.
+  function correction_left(self) result(norm)
+    class(equilibrium_t), intent(inout) :: self
+    real(wp) :: norm
+
+    real(wp) :: left(size(self%system%problem%solution))
+    type(solver_report_t) :: report
+
+    associate (system => self%system, phase => self%model%phase(self%trial%phase))
+      call reduce_equilibrium(self%model, phase, system%problem)
+      call solve_factorised(system, left, self%solver, report)
+      norm = 0.0_wp
+      if (.not. report%converged .or. all(abs(left) <= 0.0_wp)) return
+      norm = norm2(left)
+      norm = norm/max(norm2(system%problem%solution), epsilon(norm)*norm)
+    end associate
+  end function correction_left
+
+  !> Return the number of candidates whose status changed in the last linearisations.
+  pure integer function changing(self)
+    class(equilibrium_t), intent(in) :: self
+
+    changing = count(any(self%status /= unknown .and. &
+        self%status /= spread(self%status(:, 1), 2, n_kept), dim=2))
+  end function changing
+
+  !> Set the cause why the trial state is not in equilibrium: a pressed tool without contact, a node
+  !> led into a tool, a contact status that has not settled, the force on a tool, or the residual of
+  !> a node.
+  subroutine explain(self, verdict)
+    class(equilibrium_t), intent(in) :: self
+    type(verdict_t), intent(inout) :: verdict
+
+    associate (model => self%model, trial => self%trial, contact => self%system%contact, &
+        phase => self%model%phase(self%trial%phase), imbalance => self%system%problem%tool_residual)
+      verdict%tool = lost_tool(model, trial, contact)
+      verdict%cause = cause_lost_tool
+      if (verdict%tool > 0) return
+      verdict%node = self%residual%worst_node
+      verdict%cause = cause_led_inside
+      if (is_led_inside(self, model%candidate_of(verdict%node))) return
+      verdict%cause = cause_unsettled
+      if (self%changing() > 0) return
+      verdict%cause = cause_residual
+      verdict%value(1) = self%residual%worst
+      if (tool_weight*tool_imbalance(model, trial, self%system) < self%norm) return
+      verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
+      if (verdict%tool == 0) return
+      verdict%cause = cause_tool_force
+      verdict%node = 0
+      verdict%value(1) = abs(imbalance(verdict%tool))
+    end associate
+  end subroutine explain
+
+  !> Whether a candidate lies in a tool out of which its supports do not let it.
+  pure logical function is_led_inside(self, c)
+    class(equilibrium_t), intent(in) :: self
+    !> Number of the candidate; 0 for none.
+    integer, intent(in) :: c
+
+    is_led_inside = .false.
+    if (c == 0) return
+    associate (contact => self%system%contact)
+      if (contact%tool(c) == 0 .or. contact%distance(c) >= -self%model%tolerance%closed) return
+      is_led_inside = is_normal_held(self%model%phase(self%trial%phase), &
+          self%model%contact_node(c), contact%normal(:, c))
+    end associate
+  end function is_led_inside
+
+end module dd3_process_equilibrium
