@@ -176,6 +176,7 @@ module dd3_input_case
     real(wp) :: layer = 0.0_wp
     !> Number of parts of an element's edge between contact points.
     integer :: points = 1
+    type(location_t) :: points_at
     !> Penalty of the mixed formulation, N/mm.
     real(wp) :: penalty = 0.0_wp
     !> Search distance of the tools, mm; negative for the thickness of the sheet.

@@ -316,7 +316,10 @@ contains
     if (block%has("penalty")) contact%mixed = .true.
     if (block%has("formulation")) contact%mixed = block%word("formulation") == "mixed"
     if (block%has("layer")) contact%layer = block%number("layer")
-    if (block%has("points")) contact%points = nint(block%number("points"))
+    if (block%has("points")) then
+      contact%points = nint(block%number("points"))
+      contact%points_at = block%at("points")
+    end if
     if (block%has("penalty")) contact%penalty = block%number("penalty")
     if (block%has("search_distance")) contact%search_distance = block%number("search_distance")
   end subroutine fill_contact

@@ -63,7 +63,8 @@ contains
     if (errors%count > 0) return
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
-    call find_candidates(model, case, mesh)
+    call find_candidates(model, case, mesh, errors)
+    if (errors%count > 0) return
     call set_supports(model, case, mesh)
     call set_rim(model)
     call new_drawbeads(model, case, errors)
@@ -257,20 +258,27 @@ contains
   end function sheet_location
 
   !> Number the contact candidates, and the block rows of the tools that are pressed in some phase.
-  subroutine find_candidates(model, case, mesh)
+  subroutine find_candidates(model, case, mesh, errors)
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
 
     logical, allocatable :: member(:, :)
-    integer :: t, k
+    integer :: t, k, points
 
     allocate (member(model%n_tool, model%n_node), source=.false.)
     do t = 1, model%n_tool
       member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
     end do
     call find_contact_faces(model, member)
-    call set_contact_points(model, member, case%phase(1)%contact%points)
+    points = case%contact%points
+    if (points > 1 .and. model%element%n_face_node > 4) call errors%push_input( &
+        case%contact%points_at, "the faces of element "//trim(model%element%name)// &
+        " are not divided", "points = 1")
+    if (errors%count > 0) return
+    call set_contact_points(model, member, points)
     allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool

@@ -75,7 +75,7 @@ contains
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
           - state%tool_displacement(:, tool), hint, layer%height, &
-          model%tolerance%committed_depth, hit)
+          model%tolerance%committed_depth + state%layer_offset(tool), hit)
       if (.not. hit%found) cycle
       force = 0.0_wp
       if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
@@ -118,7 +118,7 @@ contains
           hint = hint_t()
           call find_contact(model%tool(t)%surface, model%point_position(c, state%x) &
               - state%tool_displacement(:, t), hint, layer%height, &
-              model%tolerance%committed_depth, hit)
+              model%tolerance%committed_depth + state%layer_offset(t), hit)
           if (.not. hit%found) cycle
           if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
               i=1, point%n_surface)])) cycle

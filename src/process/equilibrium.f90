@@ -66,6 +66,7 @@ module dd3_process_equilibrium
     procedure :: begin
     procedure :: evaluate
     procedure :: scaled_norm
+    procedure :: residual_norm
     procedure :: is_admissible
     procedure :: linearise
     procedure :: apply
@@ -169,13 +170,21 @@ contains
     end associate
   end function criterion
 
-  !> Return the norm of the residual over its scale.
+  !> Return the norm of residual and step over their scale.
   function scaled_norm(self) result(norm)
     class(equilibrium_t), intent(inout) :: self
     real(wp) :: norm
 
     norm = self%norm
   end function scaled_norm
+
+  !> Return the norm of the residual, N.
+  function residual_norm(self) result(norm)
+    class(equilibrium_t), intent(inout) :: self
+    real(wp) :: norm
+
+    norm = self%residual%norm
+  end function residual_norm
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
   !> prescribed displacements have reached their positions.

@@ -1,7 +1,7 @@
 !> Newton-Raphson iterations on an abstract problem. The step is that of the linearised problem;
 !> one that leaves the domain of the problem or overshoots is halved.
 !>
-!> A step overshoots if the norm has grown and the same matrix assigns a correction to the residual
+!> A step overshoots if the residual has grown and the same matrix assigns a correction to the residual
 !> left behind that is not small against the step. The growth alone is no reason to shorten a step:
 !> where the sheet rotates, the linear rotation stretches it, and the next iteration removes that
 !> residual at once. In a problem that is linear but for contact the correction vanishes.
@@ -28,6 +28,7 @@ module dd3_process_newton
   contains
     procedure(evaluate_interface), deferred :: evaluate
     procedure(norm_interface), deferred :: scaled_norm
+    procedure(norm_interface), deferred :: residual_norm
     procedure(is_admissible_interface), deferred :: is_admissible
     procedure(linearise_interface), deferred :: linearise
     procedure(apply_interface), deferred :: apply
@@ -45,8 +46,9 @@ module dd3_process_newton
       type(verdict_t), intent(out) :: verdict
     end subroutine evaluate_interface
 
-    !> `scaled_norm`: return the norm of the residual over its scale. `correction_left`: return the
-    !> norm of the step that the last matrix assigns to the residual, over that of the last step.
+    !> `scaled_norm`: return the norm of residual and step over their scale, which tells convergence.
+    !> `residual_norm`: return the norm of the residual alone. `correction_left`: return the norm of
+    !> the step that the last matrix assigns to the residual, over that of the last step.
     function norm_interface(self) result(norm)
       import :: newton_problem_t, wp
       class(newton_problem_t), intent(inout) :: self
@@ -111,17 +113,20 @@ contains
     logical, intent(in) :: damping
     type(newton_course_t), intent(out) :: course
 
+    real(wp) :: before
     integer :: j
 
+    before = huge(1.0_wp)
     course%norm = [real(wp) ::]
     do j = 1, iterations
       course%outcome = newton_interrupted
       if (interrupted()) return
       course%iterations = j
       course%outcome = newton_invalid
-      call evaluate(problem, damping, course)
+      call evaluate(problem, damping, before, course)
       if (course%verdict%outcome /= verdict_converged) return
       course%norm = [course%norm, problem%scaled_norm()]
+      before = problem%residual_norm()
       course%outcome = newton_converged
       if (j > 1 .and. course%norm(j) < tolerance) then
         if (problem%is_admissible()) return
@@ -137,10 +142,12 @@ contains
   end subroutine solve
 
   !> Evaluate the problem after a step, which is halved if need be.
-  subroutine evaluate(problem, damping, course)
+  subroutine evaluate(problem, damping, before, course)
     class(newton_problem_t), intent(inout) :: problem
     logical, intent(in) :: damping
-    !> Holds the number of the iteration and the norms before it.
+    !> Norm of the residual before the step.
+    real(wp), intent(in) :: before
+    !> Holds the number of the iteration.
     type(newton_course_t), intent(inout) :: course
 
     integer :: k
@@ -149,7 +156,7 @@ contains
       call problem%evaluate(course%iterations == 1, course%verdict)
       if (.not. damping .or. k == most_halvings) return
       if (course%verdict%outcome == verdict_converged) then
-        if (.not. overshoots(problem, course%norm)) return
+        if (.not. overshoots(problem, course%iterations, before)) return
       end if
       course%halved = course%halved + 1
       call problem%apply(0.5_wp**(k + 1))
@@ -157,14 +164,15 @@ contains
   end subroutine evaluate
 
   !> Whether the last step overshoots. That to the first iteration has no matrix.
-  logical function overshoots(problem, norm)
+  logical function overshoots(problem, iteration, before)
     class(newton_problem_t), intent(inout) :: problem
-    !> Norms before the step.
-    real(wp), intent(in) :: norm(:)
+    integer, intent(in) :: iteration
+    !> Norm of the residual before the step.
+    real(wp), intent(in) :: before
 
     overshoots = .false.
-    if (size(norm) == 0) return
-    if (problem%scaled_norm() <= norm(size(norm))) return
+    if (iteration == 1) return
+    if (problem%residual_norm() <= before) return
     overshoots = problem%correction_left() > largest_ratio
   end function overshoots
 

@@ -137,7 +137,7 @@ contains
       do j = 1, n
         do k = 1, 3
           right = matmul(stiffness, b(:, k, j))
-          value = left(:, 1)*right(1) + left(:, 2)*right(2) + left(:, 3)*right(3)
+          value(:3*n) = left(:3*n, 1)*right(1) + left(:3*n, 2)*right(2) + left(:3*n, 3)*right(3)
           do i = 1, n
             block(:, k, i, j) = block(:, k, i, j) + value(3*i - 2:3*i)
           end do

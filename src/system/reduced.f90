@@ -271,5 +271,4 @@ contains
     if (allocated(stiffness%owner)) call sum_over_ranks(size(increment), increment)
   end subroutine contact_force_increment
 
-
 end module dd3_system_reduced
