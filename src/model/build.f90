@@ -274,9 +274,9 @@ contains
     end do
     call find_contact_faces(model, member)
     points = case%contact%points
-    if (points > 1 .and. model%element%n_face_node > 4) call errors%push_input( &
-        case%contact%points_at, "the faces of element "//trim(model%element%name)// &
-        " are not divided", "points = 1")
+    if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
+        case%contact%points_at, "points between the nodes need a sheet of one layer of elements "// &
+        "with eight nodes", "points = 1, or one element through the thickness")
     if (errors%count > 0) return
     call set_contact_points(model, member, points)
     allocate (model%tool_row(model%n_tool), source=0)
@@ -287,6 +287,20 @@ contains
       model%tool_row(t) = k
     end do
   end subroutine find_candidates
+
+  !> Whether the sheet is one layer of elements with eight nodes: all nodes are at its faces. In a
+  !> layer that is not bounded by both faces the couples of the forces between the nodes would bend it.
+  pure logical function is_one_layer(model)
+    type(model_t), intent(in) :: model
+
+    integer :: e
+
+    is_one_layer = model%element%n_node == 8
+    do e = 1, merge(model%n_element, 0, is_one_layer)
+      is_one_layer = is_one_layer &
+          .and. all(model%column(2, model%connectivity(:4, e)) == model%connectivity(5:, e))
+    end do
+  end function is_one_layer
 
   !> Whether a tool is pressed in some phase.
   pure logical function is_pressed(case, tool)

@@ -164,11 +164,25 @@ contains
           negligible_strain*model%least_shear()*model%thickness**2)
       associate (tolerance => model%phase(trial%phase)%newton%tolerance)
         if (force >= tolerance*scale .and. force < largest_round_off*scale) scale = max(scale, &
-            attainable_residual(system%stiffness, trial%x, system%partition)/tolerance)
+            round_off_of_forces(self)/tolerance)
       end associate
       criterion = force/scale
     end associate
   end function criterion
+
+  !> Return the norm of the residual below which it is round-off, N. In the compliant formulation the
+  !> reduced matrix is that of the sheet and the contact layers.
+  real(wp) function round_off_of_forces(self) result(residual)
+    class(equilibrium_t), intent(in) :: self
+
+    associate (system => self%system, trial => self%trial)
+      if (self%model%phase(trial%phase)%mixed) then
+        residual = attainable_residual(system%stiffness, trial%x, system%partition)
+      else
+        residual = attainable_residual(system%reduced, trial%x, system%partition)
+      end if
+    end associate
+  end function round_off_of_forces
 
   !> Return the norm of residual and step over their scale.
   function scaled_norm(self) result(norm)
