@@ -28,7 +28,7 @@ module dd3_contact_compliant
 
   !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is of
   !> this order, pressures of bending over a radius and of ironing are far above.
-  real(wp), parameter :: reference_pressure = 5.0e-6_wp
+  real(wp), parameter :: reference_pressure = 1.0e-5_wp
   !> Scale s over the stiffness E A/t of the sheet through its thickness.
   real(wp), parameter :: scale_fraction = 1.0e-3_wp
 

@@ -56,6 +56,8 @@ module dd3_process_equilibrium
     !> Residual, and its scaled norm.
     type(residual_t) :: residual
     real(wp) :: norm = 0.0_wp
+    !> Number of linearisations in this increment.
+    integer, private :: linearisations = 0
     !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
     integer, allocatable :: status(:, :)
     !> Work of the linear solver.
@@ -85,6 +87,12 @@ module dd3_process_equilibrium
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
+  !> Number of steps in an increment that are bounded, in which the contact status of the prediction is
+  !> wrong, and the largest difference of the displacements of two nodes of an element over their
+  !> distance in them: a strain or rotation, beyond which the status would carry the sheet far from
+  !> the solution.
+  integer, parameter :: bounded_steps = 2
+  real(wp), parameter :: largest_gradient = 0.005_wp
   !> Number of contact status kept, and the value before the first.
   integer, parameter :: n_kept = 3, unknown = -1
 
@@ -242,6 +250,9 @@ contains
       call keep_start(self)
       call set_step(self)
     end associate
+    self%linearisations = self%linearisations + 1
+    if (self%model%phase(self%trial%phase)%newton%damping .and. &
+        self%linearisations <= bounded_steps) call bound_step(self)
     call check_step(self, verdict)
   end subroutine linearise
 
@@ -275,6 +286,44 @@ contains
       end do
     end associate
   end subroutine set_step
+
+  !> Scale a step with large displacement gradients.
+  subroutine bound_step(self)
+    class(equilibrium_t), intent(inout) :: self
+
+    real(wp) :: gradient
+
+    gradient = displacement_gradient(self)
+    if (gradient <= largest_gradient) return
+    associate (step => self%step, factor => largest_gradient/gradient)
+      step%x = factor*step%x
+      step%enhanced = factor*step%enhanced
+      step%lambda = factor*step%lambda
+      step%tool = factor*step%tool
+      self%system%problem%solution = factor*self%system%problem%solution
+    end associate
+  end subroutine bound_step
+
+  !> Return the largest difference of the step at two nodes of an element over their distance.
+  pure real(wp) function displacement_gradient(self) result(gradient)
+    class(equilibrium_t), intent(in) :: self
+
+    real(wp) :: square
+    integer :: e, i, j
+
+    square = 0.0_wp
+    do e = 1, self%model%n_element
+      associate (node => self%model%connectivity(:, e))
+        do i = 2, size(node)
+          do j = 1, i - 1
+            square = max(square, sum((self%step%x(:, node(i)) - self%step%x(:, node(j)))**2) &
+                /sum((self%trial%x(:, node(i)) - self%trial%x(:, node(j)))**2))
+          end do
+        end do
+      end associate
+    end do
+    gradient = sqrt(square)
+  end function displacement_gradient
 
   !> Set a verdict to retry if the step moves a node too far.
   subroutine check_step(self, verdict)

@@ -145,7 +145,8 @@ contains
       associate (x => model%point_position(c, state%x), phase => model%phase(state%phase))
         hint = hint_t()
         call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
-            model%tolerance%touch, model%tolerance%committed_depth, hit)
+            model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
+            model%tolerance%committed_depth + state%layer_offset(tool), hit)
         if (.not. hit%found) cycle
         do d = 0, 3
           direction = hit%normal

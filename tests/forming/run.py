@@ -198,7 +198,7 @@ def check_press(options, element):
     close(f"{name}: pressure", found.field("contact_pressure")[bottom], 1.2, 1e-6)
     close(f"{name}: area", found["table_area"], 60.0, 1e-9)
     close(f"{name}: largest pressure", found["table_pressure"], 1.2, 1e-6)
-    ratio = 1.2 / (5e-6 * 100)  # pressure over p_0 of the contact layer
+    ratio = 1.2 / (1e-5 * 100)  # pressure over p_0 of the contact layer
     gap = 0.02 * 2 / (2 + ratio + math.sqrt(ratio * (ratio + 4)))
     close(f"{name}: gap", found.field("contact_gap")[bottom], gap, 1e-6)
     for field, value in (("contact_pressure", 0.0), ("contact_tool", 0), ("slip_path", 0.0), ("contact_gap", 0.5)):

@@ -7,7 +7,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from frame import Outcome, Section, Value  # noqa: E402
 
-HEIGHT, FORCE = 0.01, 5e-6 * 2.1e5 * 100.0  # of the layer: h, mm, and p_0 A, N
+HEIGHT, FORCE = 0.01, 1e-5 * 2.1e5 * 100.0  # of the layer: h, mm, and p_0 A, N
 FRICTION, STICK = 0.144, 0.16  # progress of the drag at which the block still sticks
 
 
@@ -36,7 +36,7 @@ def values(bench):
 
 SECTIONS = [Section("V18 Block on a table: contact layer", """
 A table is lifted to a block of 10 x 10 x 1 mm, E = 2.1e5, ν = 0, and presses it through its contact layer of
-h = 0.01 mm; then the block is dragged, µ = 0.144. With F_0 = 5e-6 E A and x = g/h, g the gap that the run finds, the
+h = 0.01 mm; then the block is dragged, µ = 0.144. With F_0 = 1e-5 E A and x = g/h, g the gap that the run finds, the
 normal force is F_0 (1/x - 2 + x). While the block sticks, its foot slips elastically by T h/(N + F_0), which is below
 µ h; then T = µ N. The layer stores F_0 h [(1 - x)(x - 3)/2 - ln x]: work of the table less internal work. Works are
 sums over increments of 1 % of h, whose error is of second order. Deck `tests/verification/contact_layer/case.dat`.

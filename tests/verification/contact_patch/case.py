@@ -9,7 +9,7 @@ from closed_forms import POISSON, YOUNG, bisect  # noqa: E402
 from frame import Outcome, Section, Value  # noqa: E402
 
 LOAD, AREA, LENGTH = 21600.0, 108.0, 12.0  # N, mm2, mm; the thickness is 1 mm
-HEIGHT, PRESSURE = 0.02, 5e-6 * YOUNG  # of the contact layer: h, mm, and p_0, MPa
+HEIGHT, PRESSURE = 0.02, 1e-5 * YOUNG  # of the contact layer: h, mm, and p_0, MPa
 
 
 def stretches():
@@ -59,7 +59,7 @@ def values(bench):
 SECTIONS = [Section("V31 Patch test of the contact", """
 A sheet of 12 x 9 x 1 mm in graded elements, oblique ones too, is pressed between two flat tools by 200 MPa, without
 friction: stress and deformation are uniform. Hencky's elasticity, ν = 0.3. The mixed formulation leaves no gap, the
-compliant one everywhere that of its law: x = g/h with p = p_0 (1/x - 2 + x), h = 0.02 mm and p_0 = 5e-6 E, on the
+compliant one everywhere that of its law: x = g/h with p = p_0 (1/x - 2 + x), h = 0.02 mm and p_0 = 1e-5 E, on the
 initial area; with points between the nodes, of one layer of elements, too. The tools start at the sheet: their layers
 advance over the first tenth of the phase, which is work of the tools. Both layers store A p_0 h [(1 - x)(x - 3)/2 -
 ln x]. Deck `tests/verification/contact_patch/case.dat`.
