@@ -5,29 +5,30 @@
 !> with the square of the pressure. Contact opens and closes without a step of its stiffness, and is
 !> rigid where the sheet is pinched, as no pressure closes the gap.
 !>
-!> With the contact force lambda as unknown beside g, the force of the law is taken where the line of
-!> slope s through the point (g, -lambda.n) meets the curve p A (the resolvent of a monotone
+!> With the contact force lambda as unknown beside g, the force of the law is taken where the line
+!> of slope s through the point (g, -lambda.n) meets the curve p A (the resolvent of a monotone
 !> operator). It exists for any g, also a negative one, and Newton's method converges where it does
 !> not for p(g). The solution does not depend on s; the normal law of the mixed formulation is the
 !> limit h -> 0 with the penalty s.
 !>
-!> Friction sticks elastically: T lambda = tau + k T w with the tangential force tau of the committed
-!> state, rotated with the normal, the slip w since then, and k = (p_0 + p) A/h with p of the committed
-!> state: the elastic slip is below mu h. The force whose tangential part is compared with the
-!> friction is
+!> Friction sticks elastically: T lambda = tau + k T w with the tangential force tau of the
+!> committed state, rotated with the normal, the slip w since then, and k = (p_0 + p) A/h with p of
+!> the committed state: the elastic slip is below mu h. The force whose tangential part is compared
+!> with the friction is
 !>     v = lambda + s_t [w - (lambda - tau)/k],    s_t = min(s, k).
-!> Source: Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (resolvent); Wriggers, Computational
-!> Contact Mechanics, 2nd ed. (2006), chapters 5 and 10 (barrier, elastic stick).
+!> Source: Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (resolvent); Wriggers,
+!> Computational Contact Mechanics, 2nd ed. (2006), chapters 5 and 10 (barrier, elastic stick).
 module dd3_contact_compliant
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : coulomb_operator, no_direction, normal_force_t, status_gap, &
       status_slip, status_stick, traction_t
   implicit none
   private
-  public :: layer_t, new_layer, layer_gap, gap_under_force, layer_energy, compliant_operator, rotated
+  public :: layer_t, new_layer, layer_gap, gap_under_force, layer_energy, compliant_operator, &
+      rotated
 
-  !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is of
-  !> this order, pressures of bending over a radius and of ironing are far above.
+  !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is
+  !> of this order, pressures of bending over a radius and of ironing are far above.
   real(wp), parameter :: reference_pressure = 1.0e-5_wp
   !> Scale s over the stiffness E A/t of the sheet through its thickness.
   real(wp), parameter :: scale_fraction = 1.0e-3_wp

@@ -97,7 +97,8 @@ contains
   end subroutine contact_operator_of_status
 
   !> Kernel: evaluate force and linearisation of a node in contact by Coulomb's law.
-  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
+  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, &
+      e)
     !> Stick or slip.
     integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), dnormal(3, 3)

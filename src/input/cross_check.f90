@@ -213,8 +213,8 @@ contains
         block%at("penalty"), "the compliant formulation has no penalty", "formulation = mixed")
     if (.not. contact%mixed .or. contact%points == 1) return
     if (block%given("points")) then
-      call errors%push_input(block%at("points"), "the mixed formulation has its points at the nodes", &
-          "points = 1")
+      call errors%push_input(block%at("points"), &
+          "the mixed formulation has its points at the nodes", "points = 1")
     else
       call errors%push_input(block%opened, "the mixed formulation has its points at the nodes", &
           "formulation = compliant, or points = 1 in *CONTACT")

@@ -130,9 +130,9 @@ contains
           "penalty is given", choices="compliant mixed"), &
       row("layer", kind_real, "", "-", "height of the layer of the compliant formulation, "// &
           "over the thickness of the sheet; default: 0.02", lower=1.0e-4_wp, upper=0.2_wp), &
-      row("points", kind_integer, "", "1", "parts of an element's edge between contact points in "// &
-          "the compliant formulation; 1: points at the nodes; more: points between the nodes too, "// &
-          "on a surface curved by the columns of nodes", lower=1.0_wp, upper=4.0_wp), &
+      row("points", kind_integer, "", "1", "parts of an element's edge between contact points "// &
+          "in the compliant formulation; 1: points at the nodes; more: points between the "// &
+          "nodes too, on a surface curved by the columns of nodes", lower=1.0_wp, upper=4.0_wp), &
       row("penalty", kind_real, "N/mm", "-", "penalty of the mixed formulation; default: "// &
           "from stiffness, thickness and mesh", lower=1.0e-3_wp, upper=1.0e9_wp), &
       row("search_distance", kind_real, "mm", "-", &

@@ -40,7 +40,8 @@ module dd3_linalg_multifrontal
     !> Where the blocks of the two parts of each front begin in `block`, `(2*n_front + 1)`; the
     !> block's number in the matrix and the place of its first entry in the part.
     integer, allocatable :: block_start(:), block(:), entry(:)
-    !> Branch of each front, and where its border begins in the workspace of the branch, `(n_front)`.
+    !> Branch of each front, and where its border begins in the workspace of the branch,
+    !> `(n_front)`.
     integer, allocatable :: branch_of(:)
     integer(i8), allocatable :: border_at(:)
     !> Workspaces of the trunk, 0, and of the branches.

@@ -275,8 +275,8 @@ contains
     call find_contact_faces(model, member)
     points = case%contact%points
     if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
-        case%contact%points_at, "points between the nodes need a sheet of one layer of elements "// &
-        "with eight nodes", "points = 1, or one element through the thickness")
+        case%contact%points_at, "points between the nodes need a sheet of one layer of "// &
+        "elements with eight nodes", "points = 1, or one element through the thickness")
     if (errors%count > 0) return
     call set_contact_points(model, member, points)
     allocate (model%tool_row(model%n_tool), source=0)
@@ -289,7 +289,8 @@ contains
   end subroutine find_candidates
 
   !> Whether the sheet is one layer of elements with eight nodes: all nodes are at its faces. In a
-  !> layer that is not bounded by both faces the couples of the forces between the nodes would bend it.
+  !> layer that is not bounded by both faces the couples of the forces between the nodes would bend
+  !> it.
   pure logical function is_one_layer(model)
     type(model_t), intent(in) :: model
 
@@ -385,7 +386,8 @@ contains
         node = model%contact_node(c)
         hint = hint_t()
         call find_contact(model%tool(t)%surface, model%point_position(c, model%x0) &
-            - model%tool(t)%position, hint, model%tolerance%start_search, model%tolerance%start_search, hit)
+            - model%tool(t)%position, hint, model%tolerance%start_search, &
+            model%tolerance%start_search, hit)
         if (.not. hit%found) cycle
         if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
         if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth* &

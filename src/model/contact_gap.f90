@@ -11,8 +11,8 @@ module dd3_model_contact_gap
 
 contains
 
-  !> Return the gaps, `(n_contact_node)`, mm; at most the search distance of the phase, which is also the
-  !> value where no active tool is that near.
+  !> Return the gaps, `(n_contact_node)`, mm; at most the search distance of the phase, which is
+  !> also the value where no active tool is that near.
   function contact_gaps(model, state) result(gap)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

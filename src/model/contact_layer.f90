@@ -1,6 +1,6 @@
-!> Contact layer of the tools in the compliant formulation. A tool may start at the sheet, inside the
-!> height of its layer. So that the sheet starts without pressure, the layer begins behind its place
-!> by what is missing, and advances to it over the first part of the phase.
+!> Contact layer of the tools in the compliant formulation. A tool may start at the sheet, inside
+!> the height of its layer. So that the sheet starts without pressure, the layer begins behind its
+!> place by what is missing, and advances to it over the first part of the phase.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
@@ -52,8 +52,8 @@ contains
     offset_rate = merge(-1.0_wp/advance, 0.0_wp, progress_left(progress) > 0.0_wp)
   end function offset_rate
 
-  !> Return the offset with which a tool starts, mm: such that the sheet keeps the force on a tool in
-  !> contact in the mean of its points, and that a tool without contact has no pressure.
+  !> Return the offset with which a tool starts, mm: such that the sheet keeps the force on a tool
+  !> in contact in the mean of its points, and that a tool without contact has no pressure.
   function starting_offset(model, phase, state, tool) result(offset)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
@@ -91,9 +91,9 @@ contains
     if (total > 0.0_wp) offset = max(0.0_wp, offset/total)
   end function starting_offset
 
-  !> Return the offsets at the points that prescribed displacements hold along the normal, mm, negative
-  !> at others, `(n_contact)`: such that the force stays that at the start of the phase. The
-  !> displacements there do not follow from the contact.
+  !> Return the offsets at the points that prescribed displacements hold along the normal, mm,
+  !> negative at others, `(n_contact)`: such that the force stays that at the start of the phase.
+  !> The displacements there do not follow from the contact.
   function held_offsets(model, phase, state) result(offset)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase

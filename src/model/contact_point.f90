@@ -1,11 +1,11 @@
 !> Contact point: a point of the sheet's surface at which the law of contact holds. It is a node, or
 !> lies on a face or an edge between nodes, on the surface
 !>     x = sum_a N_a x_a + sum_a (v_a.n_a) n_a,    v_a = sum_b s_ab x_b,
-!> with the bilinear functions N_a of the face and the directions n_a of the columns of nodes from the
-!> opposite face of the sheet. The second sum bends the face: each of its edges is the cubic whose
-!> slopes at the ends are at right angles to the columns there, x = x_a + xi e - h_a (e.n_a) n_a
-!> - h_b (-e.n_b) n_b with e = x_b - x_a, h_a = xi (1 - xi)^2 and h_b = xi^2 (1 - xi); in between,
-!> opposite edges are blended linearly. Only displacements enter.
+!> with the bilinear functions N_a of the face and the directions n_a of the columns of nodes from
+!> the opposite face of the sheet. The second sum bends the face: each of its edges is the cubic
+!> whose slopes at the ends are at right angles to the columns there, x = x_a + xi e - h_a (e.n_a)
+!> n_a - h_b (-e.n_b) n_b with e = x_b - x_a, h_a = xi (1 - xi)^2 and h_b = xi^2 (1 - xi); in
+!> between, opposite edges are blended linearly. Only displacements enter.
 !> Source: Coons, Surfaces for computer-aided design of space forms, MIT (1967) (blending of edges);
 !> Nagata, Comput. Aided Geom. Des. 22 (2005) 327-347 (faces curved by the normals at the nodes).
 module dd3_model_contact_point
@@ -123,8 +123,8 @@ contains
     end do
   end function position
 
-  !> Evaluate n at a node, v of that node, mm, and the derivative of n in the vector along the column,
-  !> 1/mm.
+  !> Evaluate n at a node, v of that node, mm, and the derivative of n in the vector along the
+  !> column, 1/mm.
   pure subroutine column(self, x, a, n, v, p)
     class(contact_point_t), intent(in) :: self
     real(wp), intent(in) :: x(:, :)

@@ -1,7 +1,7 @@
 !> Contact points of the sheet. In the mixed formulation they are the nodes of the contact faces; in
 !> the compliant one each face is divided, and the corners of the parts are the points, those on an
-!> edge common to its faces. The area of a point is the integral of the hat function of its part over
-!> the faces, so that a uniform pressure gives the consistent forces on the nodes.
+!> edge common to its faces. The area of a point is the integral of the hat function of its part
+!> over the faces, so that a uniform pressure gives the consistent forces on the nodes.
 module dd3_model_contact_points
   use dd3_base_kinds, only : wp
   use dd3_model_contact_point, only : contact_point_t, edge_point, face_point, node_point
@@ -76,8 +76,8 @@ contains
     call set_stiffness(model, point_areas(model, model%x0), list%element(:list%n))
   end subroutine set_contact_points
 
-  !> Set the element of each point, and the places of its nodes there. A node that belongs to no face
-  !> gets an element at it.
+  !> Set the element of each point, and the places of its nodes there. A node that belongs to no
+  !> face gets an element at it.
   subroutine set_elements(model, element)
     type(model_t), intent(inout) :: model
     !> Of the points on faces; 0 for others.
@@ -140,8 +140,8 @@ contains
         call add_edge(1, 4, number(0, 1:divisions - 1))
         do j = 1, divisions - 1
           do i = 1, divisions - 1
-            call add_point(list, face_point(corner, model%opposite(corner), place_on_edge(i), place_on_edge(j)), &
-                all(member(:, corner), dim=2))
+            call add_point(list, face_point(corner, model%opposite(corner), place_on_edge(i), &
+                place_on_edge(j)), all(member(:, corner), dim=2))
             number(i, j) = list%n
           end do
         end do
@@ -178,8 +178,9 @@ contains
         end do
         if (p == 0) then
           do i = 1, size(number)
-            call add_point(list, edge_point(corner([low, high]), model%opposite(corner([low, high])), &
-                place_on_edge(i)), all(member(:, corner([low, high])), dim=2))
+            call add_point(list, edge_point(corner([low, high]), &
+                model%opposite(corner([low, high])), place_on_edge(i)), &
+                all(member(:, corner([low, high])), dim=2))
             if (i == 1) p = list%n
           end do
           list%next(p) = list%first(corner(low))
@@ -301,15 +302,16 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the nodes of a face with eight or nine of them, mm2: their weights, times the
-  !> Jacobian there.
+  !> Return the areas of the nodes of a face with eight or nine of them, mm2: their weights, times
+  !> the Jacobian there.
   pure function areas_of_many(weight, x) result(area)
     real(wp), intent(in) :: weight(:)
     !> Corners, mm.
     real(wp), intent(in) :: x(3, 4)
     real(wp) :: area(size(weight))
 
-    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1], row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
+    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1]
+    integer, parameter :: row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
     real(wp) :: jacobian(0:2, 0:2)
     integer :: i
 

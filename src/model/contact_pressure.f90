@@ -27,8 +27,8 @@ contains
     real(wp) :: area(model%n_node)
 
     area = nodal_areas(model, state%x)
-    pressure = sum(nodal_normals(model, state%x)*model%nodal_contact_forces(state%x, state%lambda), &
-        dim=1)
+    pressure = sum(nodal_normals(model, state%x) &
+        *model%nodal_contact_forces(state%x, state%lambda), dim=1)
     where (area > 0.0_wp)
       pressure = pressure/max(area, tiny(1.0_wp))
     elsewhere

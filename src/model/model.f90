@@ -92,8 +92,8 @@ module dd3_model_model
     integer, allocatable :: opposite(:)
     !> Faces on which a tool can touch the sheet: positions in `face`.
     integer, allocatable :: contact_face(:)
-    !> Contact points on each of these faces, `(:, size(contact_face))`: the corners of its parts, row by
-    !> row, or all its nodes if it has more than four.
+    !> Contact points on each of these faces, `(:, size(contact_face))`: the corners of its parts,
+    !> row by row, or all its nodes if it has more than four.
     integer, allocatable :: face_point(:, :)
     !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
     !> tool is never pressed.
@@ -144,8 +144,8 @@ contains
     position = self%contact_point(c)%position(x)
   end function point_position
 
-  !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the contact
-  !> points.
+  !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
+  !> contact points.
   pure function nodal_contact_forces(self, x, point_force) result(force)
     class(model_t), intent(in) :: self
     !> Positions of the nodes, `(3, n_node)`, mm.

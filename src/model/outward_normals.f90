@@ -10,8 +10,8 @@ module dd3_model_outward_normals
 
 contains
 
-  !> Return the outward unit normals at the nodes, `(3, n_node)`: the mean over the contact faces at a
-  !> node, by area; zero for a node without contact faces.
+  !> Return the outward unit normals at the nodes, `(3, n_node)`: the mean over the contact faces at
+  !> a node, by area; zero for a node without contact faces.
   pure function nodal_normals(model, x) result(normal)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
@@ -37,8 +37,8 @@ contains
     end do
   end function nodal_normals
 
-  !> Return the outward unit normals at the contact points, `(3, n_contact)`: between nodes, the mean of
-  !> those of the nodes.
+  !> Return the outward unit normals at the contact points, `(3, n_contact)`: between nodes, the
+  !> mean of those of the nodes.
   pure function outward_normals(model, x) result(normal)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.

@@ -16,8 +16,9 @@ module dd3_model_state
     real(wp), allocatable :: tool_displacement(:, :)
     !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
-    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm, and by
-    !> which it does at points that are held along the normal, `(n_contact)`, negative for others.
+    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm, and
+    !> by which it does at points that are held along the normal, `(n_contact)`, negative for
+    !> others.
     real(wp), allocatable :: layer_offset(:), held_offset(:)
     !> Total forces on the sets with loads at the start and at the end of the phase, `(3, n_load)`,
     !> N.

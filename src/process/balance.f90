@@ -22,8 +22,8 @@ contains
   !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has
   !> converged. Where many nodes lie flat under a tool, the last of them open and close for many
   !> iterations with forces far below the tolerance of the nodes, but not below that of the tool. An
-  !> increment that began with a tool out of balance would take many iterations too. Larger residuals
-  !> are left to the iterations.
+  !> increment that began with a tool out of balance would take many iterations too. Larger
+  !> residuals are left to the iterations.
   subroutine balance_tools(model, committed, trial, system, moved)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed

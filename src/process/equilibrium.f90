@@ -87,8 +87,8 @@ module dd3_process_equilibrium
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Number of steps in an increment that are bounded, in which the contact status of the prediction is
-  !> wrong, and the largest difference of the displacements of two nodes of an element over their
+  !> Number of steps in an increment that are bounded, in which the contact status of the prediction
+  !> is wrong, and the largest difference of the displacements of two nodes of an element over their
   !> distance in them: a strain or rotation, beyond which the status would carry the sheet far from
   !> the solution.
   integer, parameter :: bounded_steps = 2
@@ -178,8 +178,8 @@ contains
     end associate
   end function criterion
 
-  !> Return the norm of the residual below which it is round-off, N. In the compliant formulation the
-  !> reduced matrix is that of the sheet and the contact layers.
+  !> Return the norm of the residual below which it is round-off, N. In the compliant formulation
+  !> the reduced matrix is that of the sheet and the contact layers.
   real(wp) function round_off_of_forces(self) result(residual)
     class(equilibrium_t), intent(in) :: self
 

@@ -1,10 +1,10 @@
 !> Newton-Raphson iterations on an abstract problem. The step is that of the linearised problem;
 !> one that leaves the domain of the problem or overshoots is halved.
 !>
-!> A step overshoots if the residual has grown and the same matrix assigns a correction to the residual
-!> left behind that is not small against the step. The growth alone is no reason to shorten a step:
-!> where the sheet rotates, the linear rotation stretches it, and the next iteration removes that
-!> residual at once. In a problem that is linear but for contact the correction vanishes.
+!> A step overshoots if the residual has grown and the same matrix assigns a correction to the
+!> residual left behind that is not small against the step. The growth alone is no reason to shorten
+!> a step: where the sheet rotates, the linear rotation stretches it, and the next iteration removes
+!> that residual at once. In a problem that is linear but for contact the correction vanishes.
 !> Source: P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (natural monotonicity
 !> test, simplified Newton correction, contraction).
 module dd3_process_newton
@@ -46,9 +46,10 @@ module dd3_process_newton
       type(verdict_t), intent(out) :: verdict
     end subroutine evaluate_interface
 
-    !> `scaled_norm`: return the norm of residual and step over their scale, which tells convergence.
-    !> `residual_norm`: return the norm of the residual alone. `correction_left`: return the norm of
-    !> the step that the last matrix assigns to the residual, over that of the last step.
+    !> `scaled_norm`: return the norm of residual and step over their scale, which tells
+    !> convergence. `residual_norm`: return the norm of the residual alone. `correction_left`:
+    !> return the norm of the step that the last matrix assigns to the residual, over that of the
+    !> last step.
     function norm_interface(self) result(norm)
       import :: newton_problem_t, wp
       class(newton_problem_t), intent(inout) :: self

@@ -36,8 +36,8 @@ contains
         " (`free` frees them)"
   end function kept_note
 
-  !> Return a warning if a phase with an early end went on to its end, or beyond the value that should
-  !> end it; empty otherwise.
+  !> Return a warning if a phase with an early end went on to its end, or beyond the value that
+  !> should end it; empty otherwise.
   function until_warning(phase, state) result(text)
     type(phase_t), intent(in) :: phase
     !> State at the end of the phase.
@@ -95,8 +95,8 @@ contains
     end associate
   end function press_warning
 
-  !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at the
-  !> start of a phase; empty otherwise.
+  !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at
+  !> the start of a phase; empty otherwise.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.

@@ -18,8 +18,9 @@ module dd3_system_contact
   private
   public :: evaluate_contact, predictor_contact
 
-  !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does not
-  !> follow from equilibrium, but grows or falls by the penalty times the gap in every iteration.
+  !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does
+  !> not follow from equilibrium, but grows or falls by the penalty times the gap in every
+  !> iteration.
   real(wp), parameter :: held_factor = 1.0e4_wp
   !> Part of the layer that is left, where the predictor takes its stiffness at first contact.
   real(wp), parameter :: at_onset = 0.5_wp
@@ -240,8 +241,8 @@ contains
   end subroutine find_and_predict
 
   !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
-  !> the tool has no contact, those within `touch` of the layer resist as inside it: at the onset its
-  !> slope is zero.
+  !> the tool has no contact, those within `touch` of the layer resist as inside it: at the onset
+  !> its slope is zero.
   subroutine predict_layer(self, c, layer, offset, hit, touching, model)
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c

@@ -25,8 +25,8 @@ module dd3_system_contact_work
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
     real(wp), allocatable :: d(:, :, :), e(:, :, :)
-    !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N, `(3,
-    !> n_contact)`.
+    !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N,
+    !> `(3, n_contact)`.
     integer, allocatable :: committed_tool(:)
     real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
     !> Positions of the points in the committed state, `(3, n_contact)`, mm.

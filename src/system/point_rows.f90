@@ -1,8 +1,8 @@
 !> Contributions of the contact points to the reduced system in the compliant formulation.
 !>
-!> The law of contact has one force at a gap, so that the force lambda of a point follows from its own
-!> equation: with the law linearised as dF = D (dx - dw) + E dlambda (dx: the point's displacement B du,
-!> dw: the tool's),
+!> The law of contact has one force at a gap, so that the force lambda of a point follows from its
+!> own equation: with the law linearised as dF = D (dx - dw) + E dlambda (dx: the point's
+!> displacement B du, dw: the tool's),
 !>     dlambda = (I - E)^-1 [F - lambda + D (B du - dw)],
 !>     [K + B^T (I - E)^-1 D B + G] du = -r - B^T (I - E)^-1 (F - lambda - D dw),
 !> r with B^T lambda in it. G is the derivative of B^T F at a constant F.

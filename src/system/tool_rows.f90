@@ -1,5 +1,5 @@
-!> Rows of the tools that can be pressed in the reduced system: for each the balance of its force along
-!> its line, and two that constrain it to the line.
+!> Rows of the tools that can be pressed in the reduced system: for each the balance of its force
+!> along its line, and two that constrain it to the line.
 module dd3_system_tool_rows
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
