@@ -13,6 +13,9 @@ module dd3_linalg_umfpack_solver
 
   !> Relative residual accepted where the tolerance asks for less.
   real(wp), parameter :: residual_limit = 1.0e-6_wp
+  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is taken
+  !> for that of a slender sheet and not of a singular matrix.
+  real(wp), parameter :: largest_round_off = 1.0e-3_wp
 
   !> Direct solver of the library UMFPACK.
   type, extends(linear_solver_t) :: umfpack_solver_t
@@ -69,7 +72,8 @@ contains
     call self%factors%factor(matrix, verdict)
   end subroutine umfpack_solver_factor
 
-  !> Solve and check the true residual.
+  !> Solve and check the true residual. That of a slender free sheet cannot be smaller than the
+  !> round-off of the product of matrix and solution.
   subroutine umfpack_solver_solve(self, matrix, b, x, report)
     class(umfpack_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
@@ -77,7 +81,7 @@ contains
     real(wp), intent(inout) :: x(:)
     type(solver_report_t), intent(inout) :: report
 
-    real(wp) :: residual
+    real(wp) :: residual, round_off
     logical :: good
 
     report%method = "umfpack"
@@ -93,7 +97,10 @@ contains
         x = self%y
       end if
     end if
-    report%converged = report%residual <= max(residual_limit, self%options%tolerance)
+    round_off = epsilon(1.0_wp)*maxval(abs(matrix%value))*norm2(self%y) &
+        /max(norm2(b), tiny(1.0_wp))
+    if (.not. round_off <= largest_round_off) round_off = 0.0_wp
+    report%converged = report%residual <= max(residual_limit, self%options%tolerance, round_off)
     if (report%converged) return
     report%cause = cause_singular
     report%reason = "the direct solution does not satisfy the system: nearly singular"
