@@ -47,9 +47,6 @@ contains
       if (.not. case%phase(i)%source%valid) cycle
       call check_limits(case%phase(i)%limits, case%phase(i)%source, errors)
       call check_contact(case%phase(i)%contact, case%phase(i)%source, errors)
-      if (case%phase(i)%source%given("points")) call errors%push_input( &
-          case%phase(i)%source%at("points"), "the contact points are those of all phases", &
-          "points in *CONTACT")
     end do
   end subroutine cross_check
 

@@ -226,7 +226,9 @@ contains
     type(parameter_t), allocatable :: inherited(:)
     integer :: i
 
+    ! The contact points are those of the whole job.
     inherited = [limits_keys(), newton_keys(), contact_keys()]
+    inherited = pack(inherited, [(inherited(i)%name /= "points", i=1, size(inherited))])
     inherited%default = "-"
     key = [ &
       row("control", kind_name, "", "", "controlling tool, or load"), &

@@ -15,8 +15,8 @@ module dd3_model_contact_layer
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
-  !> Progress by which two places in a phase differ.
-  real(wp), parameter :: step = 1.0e-9_wp
+  !> Progress below which a rest is round-off.
+  real(wp), parameter :: no_progress = 1.0e-9_wp
 
 contains
 
@@ -42,7 +42,7 @@ contains
     real(wp), intent(in) :: progress
 
     progress_left = max(0.0_wp, advance - progress)
-    if (progress_left <= step) progress_left = 0.0_wp
+    if (progress_left <= no_progress) progress_left = 0.0_wp
   end function progress_left
 
   !> Return the derivative of the offset factor behind a progress.
@@ -64,10 +64,11 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
     type(layer_t) :: layer
-    real(wp) :: force, total
+    real(wp) :: force, total, moment, missing
     integer :: c
 
-    offset = 0.0_wp
+    missing = 0.0_wp
+    moment = 0.0_wp
     total = 0.0_wp
     do c = 1, model%n_contact
       if (.not. model%candidate(tool, c)) cycle
@@ -80,15 +81,12 @@ contains
       force = 0.0_wp
       if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
           force = max(0.0_wp, -dot_product(state%lambda(:, c), hit%normal))
-      if (force > 0.0_wp .and. total <= 0.0_wp) offset = 0.0_wp
-      if (force > 0.0_wp) then
-        offset = offset + force*(gap_under_force(layer, force) - hit%distance)
-        total = total + force
-      else if (total <= 0.0_wp) then
-        offset = max(offset, layer%height - hit%distance)
-      end if
+      missing = max(missing, layer%height - hit%distance)
+      moment = moment + force*(gap_under_force(layer, force) - hit%distance)
+      total = total + force
     end do
-    if (total > 0.0_wp) offset = max(0.0_wp, offset/total)
+    offset = missing
+    if (total > 0.0_wp) offset = max(0.0_wp, moment/total)
   end function starting_offset
 
   !> Return the offsets at the points that prescribed displacements hold along the normal, mm,

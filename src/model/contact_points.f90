@@ -76,7 +76,7 @@ contains
     call set_stiffness(model, point_areas(model, model%x0), list%element(:list%n))
   end subroutine set_contact_points
 
-  !> Set the element of each point, and the places of its nodes there. A node that belongs to no
+  !> Set the element of each point and the places of its nodes in it. A node that belongs to no
   !> face gets an element at it.
   subroutine set_elements(model, element)
     type(model_t), intent(inout) :: model
@@ -111,7 +111,7 @@ contains
     list%candidate(:, list%n) = candidate
   end subroutine add_point
 
-  !> Add the points of a face that are not in the list yet, and the areas of all.
+  !> Add the points of a face that are not in the list yet.
   subroutine add_face(list, model, member, f, divisions, face_point_number)
     type(point_list_t), intent(inout) :: list
     type(model_t), intent(in) :: model
@@ -120,13 +120,12 @@ contains
     !> Numbers of the points.
     integer, intent(out) :: face_point_number(:)
 
-    integer :: i, j
-    integer :: number(0:divisions, 0:divisions)
+    integer :: i, j, number(0:divisions, 0:divisions)
 
     associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
       if (size(node) > 4) then
         face_point_number = model%candidate_of(node)
-        call set_element(list%element, face_point_number, model%face%element(f))
+        call set_missing(list%element, face_point_number, model%face%element(f))
         return
       end if
       number(0, 0) = model%candidate_of(corner(1))
@@ -147,7 +146,7 @@ contains
         end do
       end if
       face_point_number = reshape(number, [size(number)])
-      call set_element(list%element, face_point_number, model%face%element(f))
+      call set_missing(list%element, face_point_number, model%face%element(f))
     end associate
 
   contains
@@ -194,7 +193,7 @@ contains
   end subroutine add_face
 
   !> Set the element of the points that have none yet.
-  pure subroutine set_element(of_point, number, element)
+  pure subroutine set_missing(of_point, number, element)
     integer, intent(inout) :: of_point(:)
     integer, intent(in) :: number(:), element
 
@@ -203,7 +202,7 @@ contains
     do i = 1, size(number)
       if (of_point(number(i)) == 0) of_point(number(i)) = element
     end do
-  end subroutine set_element
+  end subroutine set_missing
 
   !> Set the nodes opposite to those of the contact faces.
   subroutine set_opposites(model)
@@ -333,13 +332,8 @@ contains
     if (.not. allocated(model%contact_face)) return
     divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
     do f = 1, size(model%contact_face)
-      associate (corner => x(:, model%face%corner(:, model%contact_face(f))), &
-          point => model%face_point(:, f))
-        if (model%element%n_face_node > 4) then
-          area(point) = area(point) + areas_of_many(model%element%face_weight, corner)
-        else
-          area(point) = area(point) + areas_of_parts(divisions, corner)
-        end if
+      associate (point => model%face_point(:, f))
+        area(point) = area(point) + areas_of_face(model, x, f, divisions)
       end associate
     end do
   end function point_areas
@@ -351,24 +345,40 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: area(:)
 
-    real(wp) :: corners(4)
     integer :: f
 
     allocate (area(model%n_node), source=0.0_wp)
     if (.not. allocated(model%contact_face)) return
     do f = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(f)), &
-          node => model%face%node(:, model%contact_face(f)))
+      associate (node => model%face%node(:, model%contact_face(f)))
         if (size(node) > 4) then
-          area(node) = area(node) + areas_of_many(model%element%face_weight, x(:, corner))
+          area(node) = area(node) + areas_of_face(model, x, f, 1)
         else
-          corners = areas_of_parts(1, x(:, corner))
-          area(node) = area(node) &
-              + corners([1, 2, 4, 3])
+          area(node([1, 2, 4, 3])) = area(node([1, 2, 4, 3])) + areas_of_face(model, x, f, 1)
         end if
       end associate
     end do
   end function nodal_areas
+
+  !> Return the areas of the points of a contact face, in the order of `face_point`, mm2.
+  pure function areas_of_face(model, x, f, divisions) result(area)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Number among the contact faces.
+    integer, intent(in) :: f
+    !> Number of parts of an edge of a face with four nodes.
+    integer, intent(in) :: divisions
+    real(wp), allocatable :: area(:)
+
+    associate (corner => x(:, model%face%corner(:, model%contact_face(f))))
+      if (model%element%n_face_node > 4) then
+        area = areas_of_many(model%element%face_weight, corner)
+      else
+        area = areas_of_parts(divisions, corner)
+      end if
+    end associate
+  end function areas_of_face
 
   !> Set the stiffness of the sheet through its thickness under each point, E A/t, with its area A,
   !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets

@@ -43,16 +43,35 @@ contains
     !> Has the pattern of the stiffness.
     type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: c, node
+    integer :: node
 
     call copy_blocks(stiffness, reduced)
     do node = 1, model%n_node
       problem%rhs(3*node - 2:3*node) = -problem%residual(:, node)
     end do
     call start_tool_rows(model, phase, problem, reduced)
-    if (.not. phase%mixed) &
-        call add_points(model, phase, contact, x, position, problem, reduced)
-    do c = 1, merge(model%n_contact, 0, phase%mixed)
+    if (phase%mixed) then
+      call reduce_nodes(model, phase, contact, problem, reduced)
+    else
+      call add_points(model, phase, contact, x, position, problem, reduced)
+    end if
+    if (allocated(reduced%owner)) call share_tool_rows(model, phase, reduced)
+    call finish_tool_rows(model, phase, contact, problem, reduced)
+    call prescribe(phase, problem, reduced)
+  end subroutine reduce
+
+  !> Reduce the rows of all candidates in the mixed formulation.
+  subroutine reduce_nodes(model, phase, contact, problem, reduced)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    type(contact_work_t), intent(in) :: contact
+    !> Residuals; gets the right-hand side.
+    type(linear_problem_t), intent(inout) :: problem
+    type(block_matrix_t), intent(inout) :: reduced
+
+    integer :: c, node
+
+    do c = 1, model%n_contact
       node = model%contact_node(c)
       problem%remaining(:, :, c) = identity - contact%e(:, :, c)
       problem%contact_tool(c) = 0
@@ -63,10 +82,7 @@ contains
       end if
       call reduce_node(model, phase, contact, c, problem, reduced)
     end do
-    if (allocated(reduced%owner)) call share_tool_rows(model, phase, reduced)
-    call finish_tool_rows(model, phase, contact, problem, reduced)
-    call prescribe(phase, problem, reduced)
-  end subroutine reduce
+  end subroutine reduce_nodes
 
   !> Replace the row of a candidate in contact by its reduced row, and add its contribution to the
   !> row of a pressed tool.
@@ -145,10 +161,7 @@ contains
     do node = 1, model%n_node
       residual = merge(0.0_wp, problem%residual(:, node), phase%prescribed(:, node))
       problem%rhs(3*node - 2:3*node) = -residual
-      if (.not. phase%mixed) then
-        problem%rhs(3*node - 2:3*node) = -merge(0.0_wp, residual, phase%prescribed(:, node))
-        cycle
-      end if
+      if (.not. phase%mixed) cycle
       c = model%candidate_of(node)
       if (c == 0) cycle
       tool = problem%contact_tool(c)
