@@ -88,11 +88,11 @@ module dd3_process_equilibrium
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Number of steps in an increment that are bounded, in which the contact status of the prediction
-  !> is wrong, and the largest difference of the displacements of two nodes of an element over their
-  !> distance in them: a strain or rotation, beyond which the status would carry the sheet far from
-  !> the solution.
-  integer, parameter :: bounded_steps = 2
-  real(wp), parameter :: largest_gradient = 0.005_wp
+  !> is wrong; the largest difference of the displacements of two nodes of an element over their
+  !> distance in the first: a strain or rotation, beyond which the status would carry the sheet far
+  !> from the solution; and its growth from step to step.
+  integer, parameter :: bounded_steps = 3
+  real(wp), parameter :: first_gradient = 0.005_wp, gradient_growth = 4.0_wp
   !> Number of contact status kept, and the value before the first.
   integer, parameter :: n_kept = 3, unknown = -1
 
@@ -151,7 +151,8 @@ contains
       self%norm = criterion(self)
       if (self%norm >= tolerance) return
       moved = .false.
-      if (balance) call balance_tools(model, self%committed, trial, system, moved)
+      if (balance .and. model%phase(trial%phase)%mixed) call balance_tools(model, self%committed, &
+          trial, system, moved)
       if (moved) then
         call evaluate_norm(model, trial, system, self%residual)
         self%norm = criterion(self)
@@ -291,11 +292,12 @@ contains
   subroutine bound_step(self)
     class(equilibrium_t), intent(inout) :: self
 
-    real(wp) :: gradient
+    real(wp) :: gradient, largest
 
     gradient = displacement_gradient(self)
-    if (gradient <= largest_gradient) return
-    associate (step => self%step, factor => largest_gradient/gradient)
+    largest = first_gradient*gradient_growth**(self%linearisations - 1)
+    if (gradient <= largest) return
+    associate (step => self%step, factor => largest/gradient)
       step%x = factor*step%x
       step%enhanced = factor*step%enhanced
       step%lambda = factor*step%lambda
