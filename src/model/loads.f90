@@ -1,5 +1,5 @@
 !> External forces on the nodes: the loads of the input, each the total force on a node set, and the
-!> fading contact forces of released tools.
+!> fading forces of lost constraints.
 module dd3_model_loads
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -63,11 +63,11 @@ contains
     if (all(on_face(node))) weight = force(node)/sum(force(node))
   end subroutine face_load_weights
 
-  !> Return the stiffness of the spring that replaces the contact of a released node, N/mm. A
-  !> contact force that only faded would be a dead load: two opposing ones deflect the sheet between
-  !> them further, and a sheet that yields collapses under loads that the tools' shape could bear.
+  !> Return the stiffness of the spring that replaces a lost constraint of a node, N/mm. A contact
+  !> force that only faded would be a dead load: two opposing ones deflect the sheet between them
+  !> further, and a sheet that yields collapses under loads that the tools' shape could bear.
   pure real(wp) function spring_stiffness(force, thickness)
-    !> Contact force at the release, N.
+    !> Force at the loss, N.
     real(wp), intent(in) :: force(3)
     !> Of the sheet at the node, mm.
     real(wp), intent(in) :: thickness
@@ -96,7 +96,7 @@ contains
     type(load_set_t), intent(in) :: set(:)
     !> Total force on each set, `(3, size(set))`, N.
     real(wp), intent(in) :: load(:, :)
-    !> Contact forces of the nodes on released tools that have not faded yet, `(3, n_node)`, N.
+    !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
     real(wp), intent(in) :: fading(:, :)
     !> Nodal forces, `(3, n_node)`, N.
     real(wp), intent(out) :: force(:, :)

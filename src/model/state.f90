@@ -27,11 +27,9 @@ module dd3_model_state
     real(wp), allocatable :: pressure(:), pressure_end(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Contact forces of the nodes on released tools that fade over the phase, `(3, n_node)`, N.
+    !> Forces of the nodes on constraints that are lost, tools, draw-beads and supports, which fade
+    !> over the phase, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
-    !> Reactions of the directions that are free again, as forces on the sheet that fade over the
-    !> phase, `(3, n_node)`, N.
-    real(wp), allocatable :: reaction(:, :)
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
     !> Whether the force of `until` is approached from below; true for a displacement.
@@ -62,8 +60,7 @@ module dd3_model_state
     real(wp), allocatable :: x(:, :)
     !> Internal forces, `(3, n_node)`, N.
     real(wp), allocatable :: internal_force(:, :)
-    !> External forces, `(3, n_node)`, N: loads, and the fading forces of released contacts
-    !> and freed directions.
+    !> External forces, `(3, n_node)`, N: loads, and the fading forces of lost constraints.
     real(wp), allocatable :: external_force(:, :)
     !> Total forces on the sets with loads, `(3, n_load)`, N, and pressures, `(n_pressure)`, MPa.
     real(wp), allocatable :: load(:, :), pressure(:)
@@ -87,7 +84,7 @@ module dd3_model_state
     integer, allocatable :: contact_tool(:)
     !> Last closest point on each tool, `(n_tool, n_contact)`.
     type(hint_t), allocatable :: hint(:, :)
-    !> Contact forces of the nodes on released tools that have not faded yet, `(3, n_node)`, N.
+    !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
     !> Tool that released each node last, `(n_node)`; 0 for none.
     integer, allocatable :: fading_tool(:)
@@ -220,7 +217,6 @@ contains
         source=0.0_wp)
     allocate (self%x, source=state%x)
     allocate (self%fading, mold=state%fading)
-    allocate (self%reaction, mold=state%x)
     allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)
     self%tool_displacement = 0.0_wp
     self%tool_load = 0.0_wp
@@ -228,7 +224,6 @@ contains
     self%load = 0.0_wp
     self%load_end = 0.0_wp
     self%fading = 0.0_wp
-    self%reaction = 0.0_wp
   end subroutine new_phase_start
 
 end module dd3_model_state

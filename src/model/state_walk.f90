@@ -130,7 +130,6 @@ contains
     call visitor%reals("start_pressure_end", size(start%pressure_end), start%pressure_end)
     call visitor%reals("start_x", size(start%x), start%x)
     call visitor%reals("start_fading", size(start%fading), start%fading)
-    call visitor%reals("start_reaction", size(start%reaction), start%reaction)
     call visitor%reals("start_plastic_strain", size(start%plastic_strain), start%plastic_strain)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start

@@ -7,7 +7,6 @@ module dd3_output_history
   use dd3_base_text, only : newline
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
-  use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
@@ -227,8 +226,8 @@ contains
 
     reaction = 0.0_wp
     do i = 1, size(node)
-      reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i)) &
-          + fading_factor(state%progress)*state%start%reaction(:, node(i))
+      reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i))
+      if (state%fading_tool(node(i)) == 0) reaction = reaction - state%fading(:, node(i))
     end do
     force = model%nodal_contact_forces(state%x, state%lambda)
     reaction = reaction + sum(force(:, node), dim=2)

@@ -1,5 +1,5 @@
-!> External forces of a trial state: loads, pressures, and forces that fade over the phase. Contact
-!> forces of released tools fade with springs that hold the sheet where the tools left it.
+!> External forces of a trial state: loads, pressures, and the forces of lost constraints, which
+!> fade over the phase with springs that hold the sheet where the constraints left it.
 module dd3_process_external
   use dd3_base_kinds, only : wp
   use dd3_model_contact_layer, only : offset_factor
@@ -43,14 +43,13 @@ contains
     associate (force => state%external_force)
       state%fading = fading_factor(state%progress)*unfaded_forces(model, state)
       call nodal_forces(model%load_set, state%load, state%fading, force)
-      force = force + fading_factor(state%progress)*state%start%reaction
       if (size(state%bead_load) > 0) force = force + state%bead_load
       if (size(state%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           state%pressure, state%x, force)
     end associate
   end subroutine evaluate_external
 
-  !> Return the forces of the nodes on released tools and on their springs before they fade, N.
+  !> Return the forces of the nodes on lost constraints and on their springs before they fade, N.
   pure function unfaded_forces(model, state) result(force)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -9,7 +9,6 @@ module dd3_process_phase_start
   use dd3_input_case, only : until_force
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
-  use dd3_model_loads, only : fading_factor
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
@@ -27,9 +26,8 @@ module dd3_process_phase_start
 
 contains
 
-  !> Begin a phase: forces continue from their present values, released contacts and reactions of
-  !> freed directions become forces that fade over the phase, and a pressed tool without contact
-  !> approaches the sheet.
+  !> Begin a phase: forces continue from their present values, those of lost constraints become
+  !> forces that fade over the phase, and a pressed tool without contact approaches the sheet.
   !>
   !> The energy of the contact layers of released tools goes to the tools.
   !>
@@ -195,8 +193,7 @@ contains
     end associate
   end subroutine set_tool_loads
 
-  !> Turn the reactions of the directions that the phase frees into fading forces. Those of the
-  !> phase before that have not faded yet continue.
+  !> Turn the reactions of the directions that the phase frees into fading forces.
   subroutine free_directions(model, number, state)
     type(model_t), intent(in) :: model
     integer, intent(in) :: number
@@ -212,9 +209,7 @@ contains
     reaction = state%internal_force - state%external_force
     reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
     where (.not. freed) reaction = 0.0_wp
-    reaction = reaction + fading_factor(state%progress)*state%start%reaction
-    where (model%phase(number)%prescribed) reaction = 0.0_wp
-    state%start%reaction = reaction
+    state%fading = state%fading - reaction
     if (any(freed)) state%plastic = .false.
   end subroutine free_directions
 
@@ -222,7 +217,7 @@ contains
   subroutine release_beads(model, number, state)
     type(model_t), intent(in) :: model
     integer, intent(in) :: number
-    !> The state at the end of the phase before, with the fading reactions.
+    !> The state at the end of the phase before.
     type(state_t), intent(inout) :: state
 
     real(wp), allocatable :: remaining(:, :)
@@ -230,10 +225,7 @@ contains
     if (size(state%bead_load) == 0 .or. number == 1) return
     if (all(model%phase(number)%bead_active .or. .not. model%phase(number - 1)%bead_active)) return
     remaining = remaining_bead_load(model, number, state)
-    associate (reaction => state%start%reaction, phase => model%phase(number))
-      reaction = reaction + state%bead_load - remaining
-      where (phase%prescribed) reaction = 0.0_wp
-    end associate
+    state%fading = state%fading - (state%bead_load - remaining)
     state%bead_load = remaining
     state%plastic = .false.
   end subroutine release_beads

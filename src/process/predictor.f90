@@ -138,7 +138,6 @@ contains
           faded*unfaded_forces(model, committed), problem%residual)
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
-      problem%residual = problem%residual + faded*start%reaction
       call advance_layers(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)

@@ -82,7 +82,6 @@ contains
         return
       end if
       call nodal_forces(model%load_set, start%load, start%fading, force)
-      force = force + start%reaction
       if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
           start%pressure, state%x, force)
       resultant = free_resultant(model, state, force)
@@ -139,8 +138,7 @@ contains
       end do
       k = maxloc(abs(reaction), dim=1)
       scale = max(0.0_wp, maxval(norm2(start%fading, dim=1)), &
-          maxval(norm2(start%reaction, dim=1)), maxval(norm2(start%load, dim=1)), &
-          maxval(norm2(start%load_end, dim=1)))
+          maxval(norm2(start%load, dim=1)), maxval(norm2(start%load_end, dim=1)))
       if (abs(reaction(k)) > notable_reaction*scale) text = "warning: "
       text = text//"phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &

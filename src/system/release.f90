@@ -1,4 +1,4 @@
-!> Stiffness of the springs that hold the sheet where released tools left it, while they fade.
+!> Stiffness of the springs that hold the sheet where lost constraints left it, while they fade.
 module dd3_system_release
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
