@@ -252,7 +252,8 @@ contains
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
       row("free", kind_other, "", "-", &
-          "directions that displace has led until now; their reactions fade over the phase", &
+          "directions that displace has led until now; their reactions fade over the phase, "// &
+          "with springs", &
           repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &

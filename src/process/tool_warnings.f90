@@ -1,9 +1,10 @@
 !> Warnings about the tools at the end of a phase, or of a run that stops within one: without
-!> contact, entered between the nodes of the sheet, crossed.
+!> contact, entered between the nodes of the sheet, crossed, with ironing.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_tool_crossing, only : crossing_t, find_crossing
@@ -37,7 +38,9 @@ contains
         if (ended) call add(warnings, model, state, contact_warning(model, state, a))
         call add(warnings, model, state, depth_warning(model, state, a))
         do b = a + 1, model%n_tool
-          if (active(b)) call add(warnings, model, state, crossing_warning(model, state, a, b))
+          if (.not. active(b)) cycle
+          call add(warnings, model, state, crossing_warning(model, state, a, b))
+          call add(warnings, model, state, ironing_warning(model, state, a, b))
         end do
       end do
     end associate
@@ -186,5 +189,47 @@ contains
         "' crossed each other: they overlap by "//to_text(crossing%depth, 3)//" mm near "// &
         to_text(crossing%x(1), 4)//" "//to_text(crossing%x(2), 4)//" "//to_text(crossing%x(3), 4)
   end function crossing_warning
+
+  !> Return a warning if two tools that move relative to each other pinch the sheet in a given
+  !> clearance and contact points lie between its nodes too: there the transverse shear of a column
+  !> of nodes, which ironing grades along the sheet, is taken for a curvature of the surface, and
+  !> the points thin the sheet too much.
+  function ironing_warning(model, state, a, b) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tools.
+    integer, intent(in) :: a, b
+    character(len=:), allocatable :: text
+
+    integer :: c, pinched
+
+    text = ""
+    if (model%n_contact == model%n_contact_node) return
+    associate (phase => model%phase(state%phase))
+      if (any(phase%pressed([a, b]))) return
+      if (norm2(phase%move(:, a) - phase%move(:, b)) <= 0.0_wp) return
+    end associate
+    pinched = 0
+    do c = 1, model%n_contact_node
+      if (.not. touches(c, a)) cycle
+      associate (opposite => model%candidate_of(model%opposite(model%contact_node(c))))
+        if (opposite == 0) cycle
+        if (touches(opposite, b)) pinched = pinched + 1
+      end associate
+    end do
+    if (pinched == 0) return
+    text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
+        "' pinch the sheet at "//to_text(pinched)//" columns of nodes: where it is ironed, forces "// &
+        "are too low with contact points between the nodes; compare with points = 1 in *CONTACT"
+
+  contains
+
+    !> Whether a contact point touches a tool.
+    pure logical function touches(c, tool)
+      integer, intent(in) :: c, tool
+
+      touches = state%contact_tool(c) == tool .and. state%status(c) /= status_gap
+    end function touches
+  end function ironing_warning
 
 end module dd3_process_tool_warnings
