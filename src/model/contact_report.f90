@@ -1,16 +1,19 @@
 !> Settings of the contact as text, for `--check` and the log: the gap under pressure in the
 !> compliant formulation, the penalty in the mixed one, and the search distance. Without values in
-!> the input they follow from the model.
+!> the input they follow from the model. Gaps of the layers at the end of a phase.
 module dd3_model_contact_report
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : newline, to_text
-  use dd3_contact_compliant, only : layer_gap
+  use dd3_contact_compliant, only : gap_under_force, layer_gap
+  use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
   use dd3_model_penalty, only : contact_penalty
   use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
   implicit none
   private
-  public :: contact_report
+  public :: contact_report, gap_note
 
   !> Pressures whose gap is reported, MPa.
   real(wp), parameter :: reported_pressure(3) = [1.0_wp, 100.0_wp, 500.0_wp]
@@ -102,5 +105,39 @@ contains
     text = text//" N/mm"
     if (phase%penalty <= 0.0_wp) text = text//" (automatic)"
   end function penalties
+
+  !> Return a note on the mean gap between sheet and tools, weighted by the contact forces: what the
+  !> layers keep the sheet off the tools. Empty in the mixed formulation and without contact.
+  function gap_note(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: moment(model%n_tool), total(model%n_tool), force
+    integer :: c, tool
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      if (phase%mixed) return
+      moment = 0.0_wp
+      total = 0.0_wp
+      do c = 1, model%n_contact
+        if (state%status(c) == status_gap) cycle
+        force = norm2(state%lambda(:, c))
+        associate (t => state%contact_tool(c))
+          moment(t) = moment(t) + force*gap_under_force(layer_at(model, phase, c), force)
+          total(t) = total(t) + force
+        end associate
+      end do
+      do tool = 1, model%n_tool
+        if (total(tool) <= 0.0_wp) cycle
+        text = text//", "//to_text(moment(tool)/total(tool), 2)//" mm at '"// &
+            model%tool(tool)%name//"'"
+      end do
+      if (len(text) > 0) text = "phase '"//phase%name// &
+          "': mean gap in the contact layers by force"//text(2:)
+    end associate
+  end function gap_note
 
 end module dd3_model_contact_report

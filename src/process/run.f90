@@ -13,6 +13,7 @@ module dd3_process_run
       cause_beyond_until, cause_no_progress
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
+  use dd3_model_contact_report, only : gap_note
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
@@ -195,6 +196,7 @@ contains
         call say_if_any(log, until_warning(phase, committed))
         call say_if_any(log, release_warning(phase, committed))
         call say_if_any(log, reaction_note(model, committed))
+        call say_if_any(log, gap_note(model, committed))
       end if
       call tool_warnings(model, committed, ended, warnings)
       do i = 1, size(warnings)
