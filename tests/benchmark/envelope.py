@@ -4,7 +4,7 @@
     tests/benchmark/envelope.py --program build/release/dd3imp --work build/envelope
     tests/benchmark/envelope.py ... --label soft --contact "formulation = compliant; layer = 0.01" --problems squeeze
     tests/benchmark/envelope.py ... --label fine --limits "depth = 0.0025; rotation = 1" --problems squeeze --store
-    tests/benchmark/envelope.py --work build/envelope --compare mixed soft
+    tests/benchmark/envelope.py --work build/envelope --compare mixed soft --ablation
 
 --contact, --limits and --newton give lines of the blocks *CONTACT, *LIMITS and *NEWTON; they replace those of the same
 keys in the decks. Each run is kept in the folder of its label and problem, and not repeated without --again. A run that
@@ -17,13 +17,18 @@ import concurrent.futures
 import functools
 import json
 import math
+import os
 import pathlib
+import re
 import shutil
+import signal
+import subprocess
 import sys
+import time
 from dataclasses import dataclass, field
 
-from ablation import DEAD_LOAD, end_text, execute
-from problems import CASES, PROBLEMS, ROOT, coining, merged, of_file, with_paths, without
+import problems
+from problems import CASES, ROOT, merged, of_file, with_paths, without
 
 sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests" / "forming")]
 import studies  # noqa: E402  (first: it changes to the Python environment)
@@ -39,10 +44,12 @@ from scripts import Problem, put_table, run  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).with_name("envelope_reference.json")
 REPORT = ROOT / "docs" / "reports" / "contact.md"
+ABLATION = ROOT / "docs" / "reports" / "ablation.md"
 KEYWORDS = ("contact", "limits", "newton")  # options that change blocks of the decks
 ALLOWED = 2.0  # deviation of a quantity, %
 EFFORT = ["end", "increments", "cut-backs", "iterations", "per increment", "processor time, s", "depth, thicknesses"]
 DRAW_BENDING = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
+DEAD_LOAD = 1.0  # of the capstan, N
 STEP = 0.02  # interval of the travels at which a force is averaged, mm
 
 
@@ -193,8 +200,8 @@ class Job:
 
 def first_contact(folder):
     """Return the case first_contact with default settings."""
-    return without(PROBLEMS["first contact"](folder), "LIMITS", "NEWTON", "CONTACT").replace("*PHASE",
-                                                                                             "*CONTACT\n*PHASE")
+    return without(of_file(CASES / "first_contact" / "case.dat")(folder), "LIMITS", "NEWTON",
+                   "CONTACT").replace("*PHASE", "*CONTACT\n*PHASE")
 
 
 def u_bend(folder):
@@ -204,8 +211,8 @@ def u_bend(folder):
 
 
 def air_bending(folder):
-    """Return the strip of the ablation with default settings."""
-    return with_paths(PROBLEMS["air bending"](folder), folder).replace("*PHASE", "*CONTACT\n*PHASE")
+    """Return the air bending with default settings."""
+    return with_paths(problems.air_bending(folder), folder).replace("*PHASE", "*CONTACT\n*PHASE")
 
 
 def draw_bending(_):
@@ -241,14 +248,14 @@ ROUND = {**forces("punch", 5, 10, 20), **mean_forces("punch", 2, 30, 35, 40, 44,
          **thinnest(48), "largest thickness at 48 mm, mm": lambda found: found.thickness(48, np.max)}
 ENVELOPE = {
     "holder_gap": Job(of_file(CASES / "holder_gap" / "case.dat"), 0.78, HELD),
-    "coining": Job(coining, 1.0, forces("ram", 0.005, 0.01)),
+    "coining": Job(problems.coining, 1.0, forces("ram", 0.005, 0.01)),
     "squeeze": squeeze(0),
     "squeeze_friction": squeeze(0.05),
     "first_contact": Job(first_contact, 0.78, {**forces("punch", 6, 7, 8), "force of the support, N":
                                                lambda found: found.end("end_rz", "draw")}),
     "flat_punch": Job(of_file(CASES / "flat_punch" / "case.dat"), 0.78, forces("punch", 1)),
     "air_bending": Job(air_bending, 1.0, forces("punch", 5, 10, 15, 20, 25)),
-    "capstan": Job(PROBLEMS["capstan"], 0.02, {"T1/T2": tension_ratio}, notes={"T1/T2, error, %": tension_error}),
+    "capstan": Job(of_file(CASES / "capstan" / "case.dat"), 0.02, {"T1/T2": tension_ratio}, notes={"T1/T2, error, %": tension_error}),
     "u_bend": Job(u_bend, 1.0, mean_forces("punch", 1, 2, 4, 6, 8), notes=roughness(1, 9, 1)),
     "strip_19.6kN_2mm": strip(88, 280),
     "strip_19.6kN_1mm": strip(175, 280),
@@ -273,6 +280,32 @@ def lines_of(text):
     return lines
 
 
+def execute(words, limit):
+    """Run a command; return its exit code (None after the limit, s), processor time, s, and errors."""
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment) as child:
+        late, began, used = False, time.monotonic(), 0.0
+        while child.poll() is None:
+            time.sleep(0.05)
+            used = processor_time(child.pid) or used
+            if used > limit and not late:
+                late, began = True, time.monotonic()
+                child.send_signal(signal.SIGTERM)
+            if late and time.monotonic() - began > 60:
+                child.kill()
+        errors = child.stderr.read().decode("utf-8", errors="replace")
+    return None if late else child.returncode, used, errors
+
+
+def processor_time(pid):
+    """Return the processor time of a process, s; 0 if it has ended."""
+    try:
+        words = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def make(options, job, folder, blocks):
     """Make a run in a folder, with lines of blocks of its deck by their keyword, unless it is there."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -293,6 +326,16 @@ def make(options, job, folder, blocks):
     if code in (1, 2):
         raise Problem(f"{deck}: exit code {code}: {errors}")
     record.write_text(json.dumps({"code": code, "seconds": seconds, "errors": errors}, indent=2), encoding="utf-8")
+
+
+def end_text(code, last, deck):
+    """Return how a run ended."""
+    phases = re.findall(r"^\*PHASE (\w+)", deck.read_text(encoding="utf-8"), re.MULTILINE)
+    if code == 0:
+        return "reached"
+    place = f"{phases[int(last['phase']) - 1] if last['phase'].isdigit() else last['phase']} " \
+            f"{100 * float(last['progress']):.0f} %"
+    return ("limit of time in " if code is None else "stopped in ") + place
 
 
 @dataclass
@@ -373,6 +416,16 @@ def tables(measured, references):
                         studies.table(["problem", "quantity", "reference", *heads], quantities)))
 
 
+def ablation(measured, labels):
+    """Return the table of increments, cut-backs and iterations by problem and label."""
+    rows = []
+    for name, runs in measured.items():
+        found = (runs.get(label) for label in labels)
+        rows.append([name, *("" if run is None else ", ".join(run.effort[1:4]) + ("" if run.reached else " (stopped)")
+                             for run in found)])
+    return studies.table(["problem", *labels], rows)
+
+
 def store(options, measured):
     """Put the values of the runs that have reached their end, and their settings, into the file of the reference."""
     path, label = options.reference, options.label
@@ -408,6 +461,8 @@ def parser():
     found.add_argument("--reference", type=pathlib.Path, default=REFERENCE, help="file of the reference values")
     found.add_argument("--store", action="store_true", help="put the values of the runs into the reference")
     found.add_argument("--write", action="store_true", help="put the tables into docs/reports/contact.md")
+    found.add_argument("--ablation", action="store_true",
+                       help="put the effort of the labels of --compare into docs/reports/ablation.md")
     found.add_argument("--again", action="store_true", help="repeat runs that are there")
     found.add_argument("--seconds", type=float, default=1800.0, help="processor time of a run, s (1800)")
     found.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
@@ -440,6 +495,8 @@ def main():
     print(text)
     if options.write:
         put_table(REPORT, "envelope", text)
+    if options.ablation:
+        put_table(ABLATION, "ablation", ablation(measured, labels))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
-"""Forming problems for measurements: input files without *LIMITS and *NEWTON, and the surfaces of their tools.
+"""Forming problems for measurements: decks, the surfaces of their tools, and changes of their blocks.
 
-Each function of PROBLEMS writes what the problem needs into a folder and returns the text of its deck. Penalty and
-remedies are set by `with_settings`, single keys by `merged`.
+A problem is a function that writes what its deck needs into a folder and returns the deck's text.
 """
 import math
 import pathlib
@@ -10,7 +9,6 @@ import re
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BENDING = ROOT / "input_files" / "bending"
 CASES = ROOT / "tests" / "cases"
-W = math.sqrt(0.5)
 
 STEEL = """*MATERIAL steel
   young = 2.1e5
@@ -27,16 +25,6 @@ def without(text, *keywords):
     for keyword in keywords:
         text = re.sub(rf"^\*{keyword}\b.*?(?=^\*|\Z)", "", text, flags=re.DOTALL | re.MULTILINE)
     return text
-
-
-def with_settings(text, newton=(), penalty=None):
-    """Return a deck with the lines of a *NEWTON block, and with a penalty, N/mm; without them, with the defaults."""
-    text = without(text, "LIMITS", "NEWTON", "CONTACT")
-    blocks = "*CONTACT\n" + (f"  penalty = {penalty:g}\n" if penalty else "")
-    if newton:
-        blocks += "*NEWTON\n" + "".join(f"  {line}\n" for line in newton)
-    place = text.index("*PHASE")
-    return text[:place] + blocks + text[place:]
 
 
 def merged(text, keyword, lines):
@@ -76,11 +64,6 @@ def line(start, end):
     return [(*start, 1.0), (*end, 1.0)]
 
 
-def quarter(start, corner, end):
-    """Return a quarter of a circle."""
-    return [(*start, 1.0), (*corner, W), (*end, 1.0)]
-
-
 def arcs(centre, radius, first, last, pieces):
     """Return an arc around a centre, angles in degrees from x."""
     found = []
@@ -97,27 +80,7 @@ def extruded(path, profile, y0, y1):
     write_patches(path, [[[(x, y, z, w) for x, z, w in piece] for y in (y0, y1)] for piece in profile])
 
 
-def around_corner(path, profile, centre, edge, inwards, extra=()):
-    """Write a profile (distance from the corner's centre, z) along two edges and round the corner between them."""
-    patches = list(extra)
-    for piece in profile:
-        for plan in (lambda r: [(centre + r, edge, 1.0), (centre + r, centre, 1.0)],
-                     lambda r: [(centre + r, centre, 1.0), (centre + r, centre + r, W), (centre, centre + r, 1.0)],
-                     lambda r: [(centre, centre + r, 1.0), (edge, centre + r, 1.0)]):
-            rows = [[(*plan(r)[k][:2], z, w * plan(r)[k][2]) for r, z, w in piece] for k in range(len(plan(1)))]
-            patches.append(rows[::-1] if inwards else rows)
-    write_patches(path, patches)
-
-
 # ---- problems --------------------------------------------------------------------------------------------------------
-
-def bending(skew):
-    """Return the problem of the bending test on mesh (a), skew 0, or (b), skew 1."""
-    def deck(_):
-        text = (BENDING / "bending.dat").read_text(encoding="utf-8")
-        return with_paths(re.sub(r"skew = [\d.]+", f"skew = {skew}", without(text, "SOLVER")), BENDING)
-    return deck
-
 
 def of_file(path):
     """Return the problem of an input file."""
@@ -129,49 +92,12 @@ def of_file(path):
     return deck
 
 
-def drawing(force):
-    """Return the problem of NUMISHEET'93 draw bending, one half, with a force on its blank-holder, N."""
-    def deck(folder):
-        t = 0.78
-        extruded(folder / "die.bez", [line((26, -90), (26, -5)), quarter((26, -5), (26, 0), (31, 0)),
-                                      line((31, 0), (200, 0))], -10, 45)
-        extruded(folder / "holder.bez", [line((26, t), (200, t))], 45, -10)
-        extruded(folder / "punch.bez", [line((-10, t), (20, t)), quarter((20, t), (25, t), (25, 5 + t)),
-                                        line((25, 5 + t), (25, 95))], 45, -10)
-        return blank("175 35 0.78", "188 1 2") + tools(punch=("z_max", 0.144), die=("z_min", 0.144),
-                                                       holder=("z_max", 0.144)) + HALF + clamp(force) + draw(70)
-    return deck
-
-
-def cup(folder):
-    """Return the NUMISHEET'93 square cup, one quarter."""
-    t, centre, edge = 0.78, 25.0, -10.0
-    around_corner(folder / "die.bez", [line((12, -60), (12, -5)), quarter((12, -5), (12, 0), (17, 0)),
-                                       line((17, 0), (85, 0))], centre, edge, False)
-    bottom = [[(x, y, t, 1.0) for x, y in row]
-              for row in (((edge, centre), (centre, centre)), ((edge, edge), (centre, edge)))]
-    around_corner(folder / "punch.bez", [line((0, t), (2, t)), quarter((2, t), (10, t), (10, 8 + t)),
-                                         line((10, 8 + t), (10, 90))], centre, edge, True, [bottom])
-    around_corner(folder / "holder.bez", [line((12, t), (85, t))], centre, edge, True)
-    symmetry = "*BOUNDARY symmetry_x\n  set = x_min\n  fix = x\n*BOUNDARY symmetry_y\n  set = y_min\n  fix = y\n"
-    return blank("75 75 0.78", "20 20 2") + tools(punch=("z_max", 0.144), die=("z_min", 0.144),
-                                                  holder=("z_max", 0.144)) + symmetry + clamp(4900) + draw(40)
-
-
 def air_bending(folder):
     """Return a strip bent by a cylindrical punch over a rounded die, one half."""
     cylinder_punch(folder)
     extruded(folder / "die.bez", [*arcs((34, -4), 4, 180, 90, 2), line((34, 0), (80, 0))], -10, 30)
     return blank("80 20 1", "40 4 2") + tools(punch=("z_max", 0.1), die=("z_min", 0.1)) + HALF + \
         "*PHASE bend\n  control = punch\n  trial = 1\n  hold = die\n  move = punch 0 0 -25\n"
-
-
-def stretching(folder):
-    """Return a clamped strip stretched by a cylindrical punch under a force, one half."""
-    cylinder_punch(folder)
-    return blank("40 20 1", "20 4 2") + tools(punch=("z_max", 0.1)) + HALF + \
-        "*BOUNDARY clamped\n  set = x_max\n  fix = x y z\n" + \
-        "*PHASE stretch\n  control = load\n  trial = 0.05\n  press = punch 0 0 -3000\n"
 
 
 def coining(folder):
@@ -206,28 +132,3 @@ HALF = """*SET corner
   set = corner
   fix = y
 """
-
-
-def clamp(force):
-    """Return the phase in which the blank-holder is pressed, N."""
-    return "*PHASE clamp\n  control = load\n  trial = 0.1\n  hold = die\n  hold = punch\n" \
-        f"  press = holder 0 0 -{force}\n"
-
-
-def draw(way):
-    """Return the phase in which the punch moves, mm."""
-    return f"*PHASE draw\n  control = punch\n  trial = 1\n  move = punch 0 0 -{way}\n"
-
-
-PROBLEMS = {
-    "U-bend, mesh (a)": bending(0),
-    "U-bend, mesh (b)": bending(1),
-    "U-bend, fine mesh": of_file(BENDING / "fine.dat"),
-    "air bending": air_bending,
-    "capstan": of_file(CASES / "capstan" / "case.dat"),
-    "first contact": of_file(CASES / "first_contact" / "case.dat"),
-    "stretching by a force": stretching,
-    "square cup": cup,
-    "draw bending, 19.6 kN": drawing(9800),
-    "draw bending, 2.45 kN": drawing(1225),
-}
