@@ -1,13 +1,13 @@
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp
-  use dd3_contact_compliant, only : layer_energy
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_compliant, only : layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
-  use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   implicit none
   private
@@ -40,19 +40,42 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    real(wp), allocatable :: normal(:, :)
+    type(layer_t) :: layer
     integer :: c
 
     contact_energy = 0.0_wp
     if (.not. allocated(model%contact_face)) return
     if (model%phase(state%phase)%mixed) return
-    normal = outward_normals(model, state%x)
     do c = 1, model%n_contact
-      if (state%status(c) /= status_gap) contact_energy = contact_energy + layer_energy( &
-          layer_at(model, model%phase(state%phase), c), &
-          dot_product(normal(:, c), state%lambda(:, c)))
+      if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
+      layer = layer_at(model, model%phase(state%phase), c)
+      contact_energy = contact_energy + layer_energy(layer, normal_force(model, state, c, layer))
     end do
   end function contact_energy
+
+  !> Return the normal force between a point in contact and its tool, N, positive in compression. It
+  !> is that along the tool's normal: along the normal of a face of the sheet, which is not at right
+  !> angles to a curved tool, the friction would count too.
+  pure real(wp) function normal_force(model, state, c, layer)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Number of the candidate.
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    real(wp) :: offset
+
+    associate (tool => state%contact_tool(c))
+      offset = max(state%layer_offset(tool), state%start%held_offset(c))
+      hint = state%hint(tool, c)
+      call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
+          - state%tool_displacement(:, tool), hint, layer%height, &
+          model%tolerance%committed_depth + offset, hit)
+    end associate
+    normal_force = -dot_product(hit%normal, state%lambda(:, c))
+  end function normal_force
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.

@@ -83,7 +83,7 @@ contains
     type(state_t), intent(in) :: old
     type(state_t), intent(inout) :: new
 
-    real(wp) :: force(3), tool_motion(3), slip(3), advance
+    real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance
     integer :: c, tool
 
     new%tool_work = old%tool_work
@@ -95,14 +95,26 @@ contains
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
       tool_motion = new%tool_displacement(:, tool) - old%tool_displacement(:, tool)
       slip = model%point_position(c, new%x) - model%point_position(c, old%x) - tool_motion
-      slip = slip - dot_product(contact%normal(:, c), slip)*contact%normal(:, c)
+      normal = contact%normal(:, c)
+      if (contact%committed_tool(c) == tool) normal = &
+          mean_normal(contact%committed_normal(:, c), normal)
+      slip = slip - dot_product(normal, slip)*normal
       advance = old%layer_offset(tool) - new%layer_offset(tool)
-      new%tool_work = new%tool_work - dot_product(force, tool_motion &
-          + advance*contact%normal(:, c))
+      new%tool_work = new%tool_work - dot_product(force, tool_motion + advance*normal)
       new%friction_work = new%friction_work + dot_product(force, slip)
       if (new%status(c) == status_slip .and. old%status(c) /= status_gap) &
           new%slip_path(c) = new%slip_path(c) + norm2(slip)
     end do
   end subroutine add_contact_work
+
+  !> Return the mean direction of two unit normals that are not opposite. The chord along which a
+  !> point slides over a radius is at right angles to it.
+  pure function mean_normal(first, second) result(mean)
+    real(wp), intent(in) :: first(3), second(3)
+    real(wp) :: mean(3)
+
+    mean = first + second
+    mean = mean/norm2(mean)
+  end function mean_normal
 
 end module dd3_process_work

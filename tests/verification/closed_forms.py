@@ -94,6 +94,30 @@ def drag(place, load=2.0, friction=0.2, radius=10.0):
     return -load * math.tan(math.asin(place / radius) - math.atan(friction))
 
 
+def drag_normal(place, load=2.0, friction=0.2, radius=10.0):
+    """Return the normal force on the edge that is drawn over a cylinder."""
+    angle = math.atan(friction)
+    return load * math.cos(angle) / math.cos(math.asin(place / radius) - angle)
+
+
+def drag_work(first, last, friction=0.2, radius=10.0, steps=1000):
+    """Return the friction work on the edge between two places: the force times the arc, by Simpson's rule."""
+    start, step = math.asin(first / radius), (math.asin(last / radius) - math.asin(first / radius)) / steps
+    weights = [1 if n in (0, steps) else 4 if n % 2 else 2 for n in range(steps + 1)]
+    return friction * radius * step / 3 * sum(weight * drag_normal(radius * math.sin(start + n * step), radius=radius)
+                                              for n, weight in enumerate(weights))
+
+
+def layer_gap(pressure):
+    """Return the part of a contact layer that is left under a pressure over p_0."""
+    return 2 / (2 + pressure + math.sqrt(pressure * (pressure + 4)))
+
+
+def layer_energy(left):
+    """Return the energy of a contact layer over F_0 h, by the part that is left of it."""
+    return (1 - left) * (left - 3) / 2 - math.log(left)
+
+
 def belt(angle=math.pi / 2):
     """Return the ratio of the tensions of a belt (Euler, Eytelwein)."""
     return math.exp(FRICTION * angle)

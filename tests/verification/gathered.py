@@ -16,6 +16,13 @@ def run(bench, name, **settings):
     return bench.run(label, CASES / name / "case.dat", settings)
 
 
+def run_with(bench, name, label, old, new):
+    """Run a case of tests/cases with another text in its deck."""
+    folder = CASES / name
+    deck = (folder / "case.dat").read_text(encoding="utf-8").replace(old, new)
+    return bench.run(f"{name}_{label}", deck.replace("cylinder.bez", str(folder / "cylinder.bez")))
+
+
 def patch_tests(bench):
     values = []
     for name, law, tolerance in (("patch_elastic", exact.tension_elastic, 1e-9),
@@ -132,9 +139,34 @@ def dragged_edge(bench):
     return Outcome(values)
 
 
+def dragged_edge_with_layer(bench):
+    found = run_with(bench, "cylinder_drag", "layer", "penalty = ${p}", "layer = 0.02")
+    height, reference = 0.02, 1e-5 * 1e3 * 2.0  # of the layer: h, mm, and p_0 A, N
+    values, ends = [], []
+    for progress in (0.2, 0.6, 1.0):
+        place = 0.01 + 4.99 * progress
+        gap = height * exact.layer_gap(exact.drag_normal(place) / reference)
+        values.append(Value(f"force at x = {place:.3f} mm, N", exact.drag(place, radius=10 + gap),
+                            found.at("cylinder_fx", progress, "drag"), 1e-4, absolute=True))
+        ends.append((place, gap, found.at("friction_work", progress, "drag")))
+    left = exact.layer_gap(exact.drag_normal(5.0) / reference)
+    (first, gap, before), (last, _, after) = ends[0], ends[-1]
+    x, z = found.last("edge_x"), found.last("edge_z")
+    return Outcome([*values,
+                    Value("gap at the end, mm", height * left, math.hypot(x, z + 10) - 10, 1e-4),
+                    Value("friction work from x = 1.008 to 5 mm, mJ", exact.drag_work(first, last, radius=10 + gap),
+                          after - before, 2e-4),
+                    Value("energy in the layer at the end, mJ", height * reference * exact.layer_energy(left),
+                          found.last("contact_energy"), 1e-3)])
+
+
 def strip_on_cylinder(bench):
-    found = run(bench, "capstan")
-    return Outcome([Value("T1/T2", exact.belt(), -1 / found.last("left_rx"), 0.02)])
+    values = []
+    for name, contact in (("layer of 0.02, the default", "layer = 0.02"), ("layer of 0.2", "layer = 0.2"),
+                          ("mixed", "formulation = mixed")):
+        found = run_with(bench, "capstan", contact.replace(" ", ""), "*CONTACT\n", f"*CONTACT\n  {contact}\n")
+        values.append(Value(f"{name}: T1/T2", exact.belt(), -1 / found.last("left_rx"), 2e-3))
+    return Outcome(values)
 
 
 def blank_holder(bench):
@@ -192,9 +224,16 @@ An edge under a load N = 2 N is drawn over the top of a cylinder of radius 10 mm
 sin α = x/R: force -N tan(α - atan µ). At most 7 iterations in an increment, which needs the curvature of the tool in
 the tangent. Case `tests/cases/cylinder_drag`.
 """, dragged_edge),
+    Section("V19 Edge drawn over a cylinder: contact layer", """
+The same with a contact layer of h = 0.02 mm in place of the mixed formulation, F_0 = p_0 A = 0.02 N
+(the two nodes of the edge, without a face in contact, each have the thickness squared as area): the edge slides on a
+circle of radius R + g, with the normal force N cos φ/cos(α - φ), φ = atan µ, which sets the gap g. Friction work: µ
+times the normal force, over the arc. Energy of the layer: F_0 h [(1 - x)(x - 3)/2 - ln x], x = g/h.
+""", dragged_edge_with_layer),
     Section("V20 Strip over a cylinder", """
-A thin elastic strip slides over a quarter of a fixed cylinder, µ = 0.144. Euler, Eytelwein: T1/T2 = exp(µ π/2). Case
-`tests/cases/capstan`; other thicknesses and penalties in [capstan.md](reports/capstan.md).
+A thin elastic strip slides over a quarter of a fixed cylinder, µ = 0.144, in the compliant formulation and the mixed
+one. Euler, Eytelwein: T1/T2 = exp(µ π/2), whatever the height of the layer. Case `tests/cases/capstan`; other
+thicknesses and penalties in [capstan.md](reports/capstan.md).
 """, strip_on_cylinder),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (a), the first 5 mm of the draw: the force on the pressed tool
