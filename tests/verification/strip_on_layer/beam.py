@@ -16,7 +16,7 @@ PLANE = YOUNG / (1 - POISSON**2)
 BENDING = PLANE * THICKNESS**3 / 12
 SHEAR = 5 / 6 * THICKNESS * YOUNG / 2 / (1 + POISSON)
 REFERENCE = 1e-5 * YOUNG  # pressure p_0 of the layer, MPa
-PARTS = (0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.7)  # beginnings of the parts of the strip, over its length
+PARTS = (0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.7)  # beginnings of the parts, over the length
 LEAST = 0.03  # part of the layer below which its law goes on as a line, for the trial states
 
 
@@ -85,7 +85,7 @@ class Strip:
         return [round(fraction * self.steps) for fraction in (*PARTS, 1)]
 
     def starts(self, unknowns):
-        """Return the states at the beginning of the parts: at the middle height, force along x and moment are unknown."""
+        """Return the states at the beginning of the parts; in the middle z, force along x and moment are unknown."""
         height, along, moment = unknowns[:3]
         return [(0.0, height, 0.0, along, self.middle, moment),
                 *(unknowns[i:i + 6] for i in range(3, len(unknowns), 6))]

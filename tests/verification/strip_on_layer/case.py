@@ -16,7 +16,7 @@ SOFT, PRESSURE, LINE = 0.2, 0.05, 0.006  # h, mm; pressure on the strip, MPa, an
 
 
 def run(bench, name, elements, **settings):
-    """Run the strip, with the positions of the nodes of its lower face in the history; return run and numbers of nodes."""
+    """Run the strip with the positions of the nodes of its lower face in the history; return the run and their x."""
     deck = (HERE / "case.dat").read_text(encoding="utf-8").replace("${tool}.bez", str(HERE / "${tool}.bez"))
     places = [settings["length"] * i / elements for i in range(elements + 1)]
     for i, x in enumerate(places):
@@ -93,13 +93,14 @@ def wrapped(bench):
     for load, (strip, states) in zip(wanted, solved(40.0, beam.cylinder(RADIUS), loads, wanted)):
         gaps, end, energy = of_beam(strip, states)
         found, places = run(bench, f"end_{load[1]:g}", 160, tool="cylinder", length=40, end=load[1], step=0.05)
-        low = [math.hypot(found.last(f"low{i}_x"), found.last(f"low{i}_z") + RADIUS) - RADIUS for i in range(len(places))]
+        low = [math.hypot(found.last(f"low{i}_x"), found.last(f"low{i}_z") + RADIUS) - RADIUS
+               for i in range(len(places))]
         name = f"{load[1]:g} N/mm"
         result += [Value(f"{name}: height of the end, mm", end - 0.5, found.last("end_z") - 0.5, 5e-4),
                    Value(f"{name}: gap in the middle, mm", gaps[0], low[0], 5e-3),
                    Value(f"{name}: smallest gap, mm", min(gaps), min(low), 5e-3),
-                   Value(f"{name}: its place, mm", 40 * gaps.index(min(gaps)) / strip.steps, places[low.index(min(low))],
-                         0.3, absolute=True),
+                   Value(f"{name}: its place, mm", 40 * gaps.index(min(gaps)) / strip.steps,
+                         places[low.index(min(low))], 0.3, absolute=True),
                    Value(f"{name}: energy in the layer, mJ", energy, found.last("contact_energy"), 2e-3)]
         curves.append((name, [40 * n / strip.steps for n in range(strip.steps + 1)],
                        [beam.layer_pressure(gap, HEIGHT) for gap in gaps], places,
@@ -120,11 +121,12 @@ def draw(axes, curves):
 
 SECTIONS = [
     Section("V32 Strip on a contact layer: line load", f"""
-An elastic strip of thickness t = 1 mm, E = 2.1e5, ν = 0.3, lies on the contact layer of a table, plane strain, one half
-of it, elements of 0.5 mm. Under a pressure p the layer is a foundation of stiffness k = p_0/h (1/x² - 1), x = g/h, and a
-small line load P changes the gap by P b/(2 k) e^(-b x) (cos b x + sin b x), b = (k/(4 E' I))^(1/4), E' I = E t³/(12 (1 -
-ν²)) (Hetényi, Beams on Elastic Foundation, 1946). Here h = {SOFT:g} mm, p = {PRESSURE:g} MPa, P = {2 * LINE:g} N/mm. The
-tolerances are 0.5 % of the largest change. Deck `tests/verification/strip_on_layer/case.dat`.
+An elastic strip of thickness t = 1 mm, E = 2.1e5, ν = 0.3, lies on the contact layer of a table, plane strain, one
+half of it, elements of 0.5 mm. Under a pressure p the layer is a foundation of stiffness k = p_0/h (1/x² - 1),
+x = g/h, and a small line load P changes the gap by P b/(2 k) e^(-b x) (cos b x + sin b x), b = (k/(4 E' I))^(1/4),
+E' I = E t³/(12 (1 - ν²)) (Hetényi, Beams on Elastic Foundation, 1946). Here h = {SOFT:g} mm, p = {PRESSURE:g} MPa,
+P = {2 * LINE:g} N/mm. The tolerances are 0.5 % of the largest change. Deck
+`tests/verification/strip_on_layer/case.dat`.
 """, linear, after="""
 With k = c E/t and E I = E t³/12 the length 1/b is t (3 c)^(-1/4): over it the layer spreads the line forces with which a
 strip leaves a cylinder, 2.4 t with c = 0.01, that of the default layer on steel at 6 MPa. Elements that are much longer
@@ -138,8 +140,8 @@ stretches (Reissner 1972) on the same layer, by multiple shooting (`tests/verifi
     Section("V32 Strip on a contact layer: strip over a cylinder", f"""
 A strip of 80 x 1 mm, elements of 0.25 mm, is bent over a cylinder of radius {RADIUS:g} mm with the default layer by
 vertical dead loads at its ends. At 7.5 N/mm it touches in the middle; at 20 N/mm it lies on the cylinder, the moment
-there is nearly E' I/R, and leaves it with the pressure of a line force that the layer spreads. Expected: the same rod, with
-large rotations: outside the contact the elastica.
+there is nearly E' I/R, and leaves it with the pressure of a line force that the layer spreads. Expected: the same rod,
+with large rotations: outside the contact the elastica.
 """, wrapped, after="""
 Lines: the rod.
 """),
