@@ -8,6 +8,10 @@ sys.path.insert(0, str(HERE.parent))
 from closed_forms import POISSON, YOUNG, bisect  # noqa: E402
 from frame import Outcome, Section, Value  # noqa: E402
 
+FRICTION, PRESSED, STICK, BACK = 0.144, 20.0, 0.0015, 0.001  # pressure, MPa, and elastic slips of the drag, mm
+# Parts of the lower face, 12 x 9 mm, that belong to the corner and to an inner node, mm2: of four nodes, of nine.
+PARTS = {"hex8": {"corner": 1.8 * 1.35, "inner": 3.0 * 3.15},
+         "hex27": {"corner": 3.6 * 2.7 / 36, "inner": 6.0 * 6.3 / 36}}
 LOAD, AREA, LENGTH = 21600.0, 108.0, 12.0  # N, mm2, mm; the thickness is 1 mm
 HEIGHT, PRESSURE = 0.02, 1e-5 * YOUNG  # of the contact layer: h, mm, and p_0, MPa
 
@@ -56,6 +60,25 @@ def values(bench):
                                    found.last("tool_work") - found.last("internal_work"), 1e-3)])
 
 
+def drag(bench):
+    """Compare the tractions at nodes with parts of the face of different size with the uniform ones."""
+    stiffness, limit = (PRESSURE + PRESSED) / HEIGHT, FRICTION * PRESSED
+    result = []
+    for element, points in (("hex8", 1), ("hex27", 1), ("solid_shell", 1), ("solid_shell", 2)):
+        one_layer = {"layers": 1, "heights": "0 1"} if points > 1 else {}
+        found = bench.run(f"contact_drag_{element}_{points}", HERE / "drag.dat",
+                          {"element": element, "points": points, **one_layer})
+        name = f"`{element}`{f', points = {points}' if points > 1 else ''}"
+        parts = PARTS.get(element, PARTS["hex8"])
+        for phase, expected in (("stick", stiffness * STICK), ("slip", limit), ("back", limit - stiffness * BACK)):
+            result.append(Value(f"{name}, {phase}: mean traction, MPa", expected,
+                                found.last("table_fx", phase) / AREA, 1e-8))
+            result += [Value(f"{name}, {phase}: {place} node, MPa", expected,
+                             (found.last(f"{place}_rx", phase) - found.last(f"{place}_rx", "press")) / part, 1e-8)
+                       for place, part in parts.items()]
+    return Outcome(result)
+
+
 SECTIONS = [Section("V31 Patch test of the contact", """
 A sheet of 12 x 9 x 1 mm in graded elements, oblique ones too, is pressed between two flat tools by 200 MPa, without
 friction: stress and deformation are uniform. Hencky's elasticity, ν = 0.3. The mixed formulation leaves no gap, the
@@ -63,4 +86,10 @@ compliant one everywhere that of its law: x = g/h with p = p_0 (1/x - 2 + x), h 
 initial area; with points between the nodes, of one layer of elements, too. The tools start at the sheet: their layers
 advance over the first tenth of the phase, which is work of the tools. Both layers store A p_0 h [(1 - x)(x - 3)/2 -
 ln x]. Deck `tests/verification/contact_patch/case.dat`.
-""", values)]
+""", values),
+            Section("V31 Patch test of the contact: stick and slip", f"""
+The same sheet on one table, µ = {FRICTION:g}, under a pressure of {PRESSED:g} MPa; all its nodes are moved along x and
+held along y. With the law of elastic stick the traction is uniform: k d, k = (p_0 + p)/h, after a slip of d = {STICK:g}
+mm; µ p while it slips; µ p less k d after d = {BACK:g} mm back. Tractions at the nodes: the reaction, less that before
+the drag, over the part of the face. Deck `tests/verification/contact_patch/drag.dat`.
+""", drag)]
