@@ -8,7 +8,6 @@ module dd3_process_attempt_report
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
-  use dd3_process_limit, only : limiter_name
   use dd3_process_remedy, only : first_remedy
   use dd3_process_stepper, only : stepper_t
   implicit none
@@ -30,7 +29,7 @@ contains
       row%phase = phase%name
       row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
       row%r = attempt%limit%r
-      row%limiter = limiter_name(attempt%limit%limiter)
+      row%limiter = attempt%limit%limiter
       row%limiter_element = attempt%limit%element
       row%limiter_point = attempt%limit%point
       row%limiter_node = attempt%limit%node
@@ -123,7 +122,7 @@ contains
           //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel)//" mm) "
       if (verdict%cause == cause_no_progress) then
         message = message//"makes no progress: r = "//to_text(attempt%limit%r, 3)// &
-            ", limited by "//limiter_name(attempt%limit%limiter)
+            ", limited by "//trim(attempt%limit%limiter)
         return
       end if
       message = message//"did not converge"

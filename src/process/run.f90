@@ -20,7 +20,6 @@ module dd3_process_run
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
   use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
-  use dd3_process_limit, only : limiter_name
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
       until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns
@@ -327,7 +326,7 @@ contains
       view%travel = state%travel
       view%increment = state%increment
       view%r = attempt%limit%r
-      view%limiter = limiter_name(attempt%limit%limiter)
+      view%limiter = trim(attempt%limit%limiter)
       view%iterations = size(attempt%course%norm)
       if (phase%control > 0) view%force = &
           dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
