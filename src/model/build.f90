@@ -29,7 +29,6 @@ module dd3_model_build
   use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
-  use dd3_model_tool_gaps, only : set_gaps
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
   private
@@ -69,8 +68,7 @@ contains
     call set_rim(model)
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
-    call new_phases(model, case, mesh)
-    call set_gaps(model, case, errors)
+    call new_phases(model, case, mesh, errors)
     call check_loads(model, case, errors)
     call set_output(model, case, mesh)
     call check_start(model, case, errors)

@@ -215,19 +215,16 @@ contains
     integer, intent(in) :: f
     integer :: opposite(4)
 
-    real(wp) :: natural(3, 4), place(3)
-    integer :: i, k, across
+    real(wp) :: distance(model%element%n_node)
+    integer :: i, k
 
-    associate (nodes => model%connectivity(:, model%face%element(f)), element => model%element)
+    associate (nodes => model%connectivity(:, model%face%element(f)), &
+        place => model%element%node, corner => model%face%corner(:, f))
       do i = 1, 4
-        natural(:, i) = element%node(:, findloc(nodes, model%face%corner(i, f), dim=1))
-      end do
-      across = maxloc(abs(sum(natural, dim=2)), dim=1)
-      do i = 1, 4
-        place = natural(:, i)
-        place(across) = -place(across)
-        k = minloc(sum(abs(element%node - spread(place, 2, element%n_node)), dim=1), dim=1)
-        opposite(i) = nodes(k)
+        distance = sum(abs(place - spread(place(:, findloc(nodes, corner(i), dim=1)), 2, &
+            size(nodes))), dim=1)
+        opposite(i) = nodes(minloc(distance, dim=1, &
+            mask=[(all(nodes(k) /= corner), k=1, size(nodes))]))
       end do
     end associate
   end function opposite_nodes

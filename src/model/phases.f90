@@ -1,7 +1,9 @@
 !> Phases of the case with all names resolved. What a phase does not name stays unchanged: tools are
 !> held, forces and loads kept.
 module dd3_model_phases
+  use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
+  use dd3_contact_separation, only : offset_at_gap
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
@@ -23,11 +25,13 @@ module dd3_model_phases
 contains
 
   !> Resolve all phases of the case.
-  subroutine new_phases(model, case, mesh)
+  subroutine new_phases(model, case, mesh, errors)
     !> The model with its tools, candidates and supports.
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
 
     type(phase_t) :: before
     logical :: led(3, model%n_node), unloaded
@@ -50,6 +54,7 @@ contains
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
+    call set_gaps(model, case, errors)
   end subroutine new_phases
 
   !> Make the phase before the first one: no motion, no load.
@@ -348,5 +353,52 @@ contains
 
     unit = vector/norm2(vector)
   end function unit
+
+  !> Set the displacements at which tools have the gaps of the input.
+  subroutine set_gaps(model, case, errors)
+    !> With its tools and phases.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: gap, start(3)
+    logical :: found
+    integer :: i, k
+
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%gap)
+        associate (spec => case%phase(i)%gap(k))
+          gap = spec%value
+          if (spec%in_thicknesses) gap = gap*model%thickness
+          associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
+            start = tool%position - other%position
+            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
+            call offset_at_gap(tool%surface, other%surface, start, gap, &
+                model%phase(i)%gap_offset(spec%tool), found)
+            if (.not. found) call errors%push_input(spec%at, "no displacement along z gives this "// &
+                "gap between '"//tool%name//"' and '"//other%name//"'", &
+                "two tools whose surfaces face each other along z")
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine set_gaps
+
+  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
+  pure function aside(model, phase, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: phase
+    integer, intent(in) :: tool
+    real(wp) :: aside(2)
+
+    integer :: i
+
+    aside = 0.0_wp
+    do i = 1, phase
+      aside = aside + model%phase(i)%move(:2, tool)
+    end do
+  end function aside
 
 end module dd3_model_phases

@@ -9,7 +9,7 @@ module dd3_process_attempt_report
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
   use dd3_process_remedy, only : first_remedy
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : stepper_t
   implicit none
   private
   public :: status_row, failure_message

@@ -17,7 +17,7 @@ module dd3_process_equilibrium
   use dd3_process_balance, only : balance_tools, tool_imbalance
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
-  use dd3_system_enhanced, only : enhanced_response, subtract_condensed
+  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : contact_force_increment, reduce_equilibrium
@@ -234,7 +234,7 @@ contains
         phase => self%model%phase(self%trial%phase))
       call system%profile%start()
       if (.not. self%assembled) call assemble_stiffness(system, model, self%committed, trial)
-      call subtract_condensed(system%enhanced, system%problem%residual)
+      system%problem%residual = system%problem%residual - system%enhanced%force
       call add_load_stiffness(system, model, trial)
       if (system%problem%missed) then
         where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x

@@ -11,8 +11,7 @@ module dd3_process_limiters
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_phase_end, only : next_output_progress, until_value
-  use dd3_process_step_control, only : limit_t
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : limit_t, stepper_t
   implicit none
   private
   public :: limit_increment
@@ -193,20 +192,18 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: inverse_a, inverse_b, bound(model%n_element)
+    real(wp) :: inverse(2), bound(model%n_element)
     integer :: e, point(model%n_element)
 
     associate (limits => model%phase(state%phase)%limits)
       if (.not. (limits%stress_tangential%active .or. limits%stress_normal%active)) return
-      inverse_a = 0.0_wp
-      inverse_b = 0.0_wp
-      if (limits%stress_tangential%active) inverse_a = 1.0_wp/limits%stress_tangential%value
-      if (limits%stress_normal%active) inverse_b = 1.0_wp/limits%stress_normal%value
+      inverse = 0.0_wp
+      if (limits%stress_tangential%active) inverse(1) = 1.0_wp/limits%stress_tangential%value
+      if (limits%stress_normal%active) inverse(2) = 1.0_wp/limits%stress_normal%value
     end associate
     !$omp parallel do num_threads(model%element_threads()) private(e)
     do e = 1, model%n_element
-      call smallest_stress_bound(model, state, stepper, e, [inverse_a, inverse_b], bound(e), &
-          point(e))
+      call smallest_stress_bound(model, state, stepper, e, inverse, bound(e), point(e))
     end do
     !$omp end parallel do
     e = minloc(bound, dim=1)

@@ -15,6 +15,7 @@ module dd3_process_run
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_tool_depth, only : observe_tools
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_records, only : records_t
   use dd3_output_status, only : status_row_t
@@ -26,9 +27,7 @@ module dd3_process_run
   use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
       support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
-  use dd3_process_stepper, only : stepper_t
-  use dd3_process_tool_observation, only : observe_tools
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_partition, only : partition_report
