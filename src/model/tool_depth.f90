@@ -203,7 +203,7 @@ contains
     real(wp) :: x(3)
     integer :: i
 
-    if (is_far(face, hint) .or. is_beside_plane(model, hint, tool)) return
+    if (is_beside_plane(model, hint, tool)) return
     start = hint(maxloc(hint%patch, dim=1))
     do i = 1, size(sample_shape, 2)
       x = matmul(face%x, sample_shape(:, i))
@@ -216,21 +216,6 @@ contains
       call keep_larger(self, -hit%distance, x, face)
     end do
   end subroutine probe_tool
-
-  !> Whether the last searches of the corners show that the tool is farther than the face's size.
-  pure logical function is_far(face, hint)
-    type(face_t), intent(in) :: face
-    type(hint_t), intent(in) :: hint(4)
-
-    integer :: i
-
-    is_far = .false.
-    do i = 1, 4
-      if (hint(i)%due .or. hint(i)%patch > 0) return
-      if (hint(i)%clearance - norm2(face%x(:, i) - hint(i)%anchor) < face%size) return
-    end do
-    is_far = .true.
-  end function is_far
 
   !> Whether the closest points of all corners lie on one plane: no other point is deeper then.
   pure logical function is_beside_plane(model, hint, tool)
