@@ -3,7 +3,7 @@ module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_no_progress
+  use dd3_base_verdict, only : verdict_converged, cause_no_progress
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -50,7 +50,7 @@ contains
         row%reason = attempt%solver%reason
       else
         row%outcome = "failed"
-        row%reason = verdict_text(model, attempt%verdict)
+        row%reason = cause_text(attempt%verdict, tool_name(model, attempt%verdict%tool))
       end if
     end associate
     call add_corrector(row, stepper)
@@ -88,15 +88,6 @@ contains
     if (tool > 0) name = model%tool(tool)%name
   end function tool_name
 
-  !> Return the cause of a verdict as text.
-  function verdict_text(model, verdict) result(text)
-    type(model_t), intent(in) :: model
-    type(verdict_t), intent(in) :: verdict
-    character(len=:), allocatable :: text
-
-    text = cause_text(verdict, tool_name(model, verdict%tool))
-  end function verdict_text
-
   !> Return the message on a failed increment: its location, the reason and the first remedy to try.
   function failure_message(model, committed, stepper) result(message)
     type(model_t), intent(in) :: model
@@ -127,7 +118,7 @@ contains
       end if
       message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
-      message = message//": "//verdict_text(model, verdict)
+      message = message//": "//cause_text(verdict, tool_name(model, verdict%tool))
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
           //" point "//to_text(verdict%point)
       if (verdict%node == 0) return

@@ -61,8 +61,9 @@ contains
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*model%phase(committed%phase)%length
       trial%hint%due = .true.
-      call equilibrium%begin(unknowns_t(r*prediction%displacement, r*prediction%enhanced, &
-          r*prediction%lambda, r*prediction%tool_displacement))
+      associate (step => prediction%step)
+        call equilibrium%begin(unknowns_t(r*step%x, r*step%enhanced, r*step%lambda, r*step%tool))
+      end associate
       call set_loads(model, trial)
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)

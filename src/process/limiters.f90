@@ -36,9 +36,9 @@ module dd3_process_limiters
 
 contains
 
-  !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the first:
-  !> those that r_min overrides, then the bound by earlier increments, the end of the phase and the
-  !> other limiters.
+  !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the
+  !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase and
+  !> the other limiters.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.
@@ -264,7 +264,7 @@ contains
       do c = 1, model%n_contact
         if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
         b = max(norm2(state%lambda(:, c)), limits%force_floor%value*mean)
-        ellipsoid = ellipsoid_norm(stepper%prediction%lambda(:, c), contact%normal(:, c), &
+        ellipsoid = ellipsoid_norm(stepper%prediction%step%lambda(:, c), contact%normal(:, c), &
             limits%force%value)
         if (ellipsoid <= 0.0_wp) cycle
         if (b/ellipsoid < limit%r) limit = limit_t(r=b/ellipsoid, node=model%contact_node(c), &
@@ -305,7 +305,7 @@ contains
     integer :: c, node, tool
 
     touching = .false.
-    associate (contact => stepper%system%contact, prediction => stepper%prediction, &
+    associate (contact => stepper%system%contact, step => stepper%prediction%step, &
         allowed => model%phase(state%phase)%limits%depth)
       do c = 1, model%n_contact
         if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
@@ -315,8 +315,8 @@ contains
         if (tool == 0 .or. contact%status(c) /= status_gap) cycle
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
-        approach = dot_product(prediction%tool_displacement(:, tool) &
-            - model%contact_point(c)%change(state%x, prediction%displacement), &
+        approach = dot_product(step%tool(:, tool) &
+            - model%contact_point(c)%change(state%x, step%x), &
             contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
         if (touching(tool) .and. .not. allowed%active) cycle
@@ -344,12 +344,12 @@ contains
       if (tool == 0) return
       line = phase%direction(:, tool)
       if (phase%until%kind == until_displacement) then
-        rate = dot_product(line, stepper%prediction%tool_displacement(:, tool))
+        rate = dot_product(line, stepper%prediction%step%tool(:, tool))
       else
         rate = 0.0_wp
         do c = 1, model%n_contact
           if (state%contact_tool(c) == tool) &
-              rate = rate + dot_product(line, stepper%prediction%lambda(:, c))
+              rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
         end do
       end if
       target = merge(1.0_wp, -1.0_wp, state%start%until_from_below)*phase%until%value

@@ -1,7 +1,7 @@
 !> Warnings about the tools at the end of a phase, or of a run that stops within one: without
 !> contact, entered between the nodes of the sheet, crossed: points of one tool that a phase moved
-!> from the front of another tool's surface to behind it. Points are samples of the patches, and only
-!> those not far behind are found, so that slight overlaps may be missed.
+!> from the front of another tool's surface to behind it. Points are samples of the patches, and
+!> only those not far behind are found, so that slight overlaps may be missed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
