@@ -194,40 +194,28 @@ contains
     end do
   end subroutine set_missing
 
-  !> Set the nodes opposite to those of the contact faces.
+  !> Set the nodes opposite to those of the contact faces, across their elements.
   subroutine set_opposites(model)
     type(model_t), intent(inout) :: model
 
-    integer :: i
+    real(wp) :: distance(model%element%n_node)
+    integer :: f, i, k
 
     allocate (model%opposite(model%n_node), source=0)
     if (model%element%n_node /= 8) return
-    do i = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(i)))
-        model%opposite(corner) = opposite_nodes(model, model%contact_face(i))
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)), &
+          node => model%connectivity(:, model%face%element(model%contact_face(f))), &
+          place => model%element%node)
+        do i = 1, 4
+          k = findloc(node, corner(i), dim=1)
+          distance = sum(abs(place - spread(place(:, k), 2, 8)), dim=1)
+          model%opposite(corner(i)) = node(minloc(distance, dim=1, &
+              mask=[(all(node(k) /= corner), k=1, 8)]))
+        end do
       end associate
     end do
   end subroutine set_opposites
-
-  !> Return the nodes opposite to the corners of a face across its element.
-  pure function opposite_nodes(model, f) result(opposite)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: f
-    integer :: opposite(4)
-
-    real(wp) :: distance(model%element%n_node)
-    integer :: i, k
-
-    associate (nodes => model%connectivity(:, model%face%element(f)), &
-        place => model%element%node, corner => model%face%corner(:, f))
-      do i = 1, 4
-        distance = sum(abs(place - spread(place(:, findloc(nodes, corner(i), dim=1)), 2, &
-            size(nodes))), dim=1)
-        opposite(i) = nodes(minloc(distance, dim=1, &
-            mask=[(all(nodes(k) /= corner), k=1, size(nodes))]))
-      end do
-    end associate
-  end function opposite_nodes
 
   !> Return the integrals of the hat functions of the parts of a face, mm2, row by row, exact for a
   !> plane face.
