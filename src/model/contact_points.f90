@@ -43,6 +43,7 @@ contains
     integer, intent(in) :: divisions
 
     type(point_list_t) :: list
+    logical, allocatable :: candidate(:, :)
     integer :: i, c, f, most
 
     most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
@@ -64,12 +65,13 @@ contains
     model%n_contact = list%n
     model%contact_point = list%point(:list%n)
     model%contact_node = model%contact_point%node(1)
-    allocate (model%candidate(model%n_tool, list%n))
+    allocate (candidate(model%n_tool, list%n))
     do c = 1, list%n
       associate (point => model%contact_point(c))
-        model%candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
+        candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
       end associate
     end do
+    call move_alloc(candidate, model%candidate)
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)
   end subroutine set_contact_points
