@@ -22,9 +22,7 @@ module dd3_app_job
   use dd3_input_reader, only : read_case
   use dd3_linalg_solver, only : linear_solver_t
   use dd3_model_build, only : new_model
-  use dd3_model_contact_report, only : contact_report
-  use dd3_model_drawbead_report, only : drawbead_report
-  use dd3_model_limits_report, only : limits_report
+  use dd3_model_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_model_materials, only : law_sources
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state

@@ -51,19 +51,17 @@ contains
     real(wp), intent(in) :: x(:, :)
     type(bead_point_t), allocatable, intent(out) :: point(:)
 
-    integer :: b, q, n
+    integer :: b, q
 
-    allocate (point(64))
-    n = 0
+    allocate (point(0))
     do b = 1, size(model%drawbead)
       if (.not. active(b)) cycle
       do q = 1, size(model%bead_face, 2)
         associate (node => model%bead_face(:, q))
-          call add_face(model%drawbead(b), b, node, x(:, node), point, n)
+          call add_face(model%drawbead(b), b, node, x(:, node), point)
         end associate
       end do
     end do
-    point = point(:n)
   end subroutine find_bead_points
 
   !> Return the length of a bead on the sheet, mm.
@@ -75,14 +73,12 @@ contains
   end function covered_length
 
   !> Add the points of a bead on a quadrilateral.
-  subroutine add_face(bead, number, node, x, point, n)
+  subroutine add_face(bead, number, node, x, point)
     type(drawbead_t), intent(in) :: bead
     integer, intent(in) :: number, node(4)
     !> mm.
     real(wp), intent(in) :: x(3, 4)
     type(bead_point_t), allocatable, intent(inout) :: point(:)
-    !> Number of points so far.
-    integer, intent(inout) :: n
 
     type(bead_point_t) :: new
     real(wp) :: normal(3), lower(2), upper(2), part(2)
@@ -106,28 +102,11 @@ contains
         do g = 1, 2
           new%shape = shape_at(x(:2, :), line(:, 1) + (part(1) + abscissa(g)*(part(2) - part(1))) &
               *(line(:, 2) - line(:, 1)))
-          call append(point, n, new)
+          point = [point, new]
         end do
       end associate
     end do
   end subroutine add_face
-
-  !> Append a point.
-  subroutine append(point, n, new)
-    type(bead_point_t), allocatable, intent(inout) :: point(:)
-    integer, intent(inout) :: n
-    type(bead_point_t), intent(in) :: new
-
-    type(bead_point_t), allocatable :: larger(:)
-
-    if (n == size(point)) then
-      allocate (larger(2*n))
-      larger(:n) = point
-      call move_alloc(larger, point)
-    end if
-    n = n + 1
-    point(n) = new
-  end subroutine append
 
   !> Find the part of a line inside a quadrilateral, seen along z. A line on an edge belongs to one
   !> of the two faces that share the edge; both compute their sides of it with the same round-off.
@@ -141,13 +120,13 @@ contains
     real(wp), intent(out) :: part(2)
 
     real(wp) :: side(2)
-    integer :: a, b, e
+    integer :: a, b, e, next
 
     part = [0.0_wp, 1.0_wp]
     do e = 1, 4
-      a = e
-      b = mod(e, 4) + 1
-      if (node(a) > node(b)) call swap(a, b)
+      next = mod(e, 4) + 1
+      a = merge(e, next, node(e) <= node(next))
+      b = e + next - a
       side = [side_of(x(:2, a), x(:2, b), line(:, 1)), side_of(x(:2, a), x(:2, b), line(:, 2))]
       if (a == e .neqv. anticlockwise) side = -side
       if (all(abs(side) <= 0.0_wp)) then
@@ -164,17 +143,6 @@ contains
     end do
     part(2) = max(part(1), part(2))
   end subroutine clip
-
-  !> Exchange two numbers.
-  pure subroutine swap(a, b)
-    integer, intent(inout) :: a, b
-
-    integer :: c
-
-    c = a
-    a = b
-    b = c
-  end subroutine swap
 
   !> Return twice the area of a triangle, positive for a point to the left of the line from a to b.
   pure real(wp) function side_of(a, b, point)

@@ -15,7 +15,7 @@ module dd3_model_build
   use dd3_linalg_solver_registry, only : missing_package, solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
-  use dd3_mesh_mesh, only : mesh_t
+  use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_model_contact_points, only : find_contact_faces, set_contact_points
   use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
@@ -29,7 +29,6 @@ module dd3_model_build
   use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
-  use dd3_model_tool_gaps, only : set_gaps
   use dd3_model_tool_surface, only : read_tool_surface
   implicit none
   private
@@ -69,8 +68,7 @@ contains
     call set_rim(model)
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
-    call new_phases(model, case, mesh)
-    call set_gaps(model, case, errors)
+    call new_phases(model, case, mesh, errors)
     call check_loads(model, case, errors)
     call set_output(model, case, mesh)
     call check_start(model, case, errors)
@@ -207,16 +205,17 @@ contains
 
     type(element_work_t) :: work
     type(verdict_t) :: verdict
-    integer :: e
+    integer :: e, i
 
     model%n_node = mesh%n_node
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
-    if (model%element%n_enhanced > 0) model%element%stacked = stacked(mesh)
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     call set_columns(model)
+    if (model%element%n_enhanced > 0) &
+        model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
     call set_thickness(model, mesh%thickness)
     model%tolerance = new_tolerances(model%thickness, mesh%x)
     associate (element => model%element)
@@ -231,22 +230,6 @@ contains
       return
     end do
   end subroutine set_mesh
-
-  !> Return whether a node is at the top of an element and at the bottom of another.
-  pure logical function stacked(mesh)
-    type(mesh_t), intent(in) :: mesh
-
-    logical :: bottom(mesh%n_node), top(mesh%n_node)
-    integer :: e
-
-    bottom = .false.
-    top = .false.
-    do e = 1, mesh%n_element
-      bottom(mesh%connectivity(:4, e)) = .true.
-      top(mesh%connectivity(5:, e)) = .true.
-    end do
-    stacked = any(bottom .and. top)
-  end function stacked
 
   !> Return where the sheet is defined.
   function sheet_location(case) result(at)
@@ -266,7 +249,8 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     logical, allocatable :: member(:, :)
-    integer :: t, k, points
+    logical :: pressed(model%n_tool)
+    integer :: t, i, k, points
 
     allocate (member(model%n_tool, model%n_node), source=.false.)
     do t = 1, model%n_tool
@@ -279,10 +263,14 @@ contains
         "elements with eight nodes", "points = 1, or one element through the thickness")
     if (errors%count > 0) return
     call set_contact_points(model, member, points)
+    pressed = .false.
+    do i = 1, size(case%phase)
+      pressed(case%phase(i)%press%tool) = .true.
+    end do
     allocate (model%tool_row(model%n_tool), source=0)
     k = model%n_node
     do t = 1, model%n_tool
-      if (.not. is_pressed(case, t)) cycle
+      if (.not. pressed(t)) cycle
       k = k + 1
       model%tool_row(t) = k
     end do
@@ -303,34 +291,17 @@ contains
     end do
   end function is_one_layer
 
-  !> Whether a tool is pressed in some phase.
-  pure logical function is_pressed(case, tool)
-    type(case_t), intent(in) :: case
-    integer, intent(in) :: tool
-
-    integer :: i
-
-    is_pressed = .false.
-    do i = 1, size(case%phase)
-      is_pressed = is_pressed .or. any(case%phase(i)%press%tool == tool)
-    end do
-  end function is_pressed
-
   !> Set the supports that hold in every phase.
   subroutine set_supports(model, case, mesh)
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    integer, allocatable :: node(:)
-    integer :: b, i
+    integer :: b
 
     allocate (model%fixed(3, model%n_node), source=.false.)
     do b = 1, size(case%boundary)
-      node = mesh%nodes_of(case%boundary(b)%set)
-      do i = 1, 3
-        if (case%boundary(b)%fix(i)) model%fixed(i, node) = .true.
-      end do
+      call mark_directions(model%fixed, mesh%nodes_of(case%boundary(b)%set), case%boundary(b)%fix)
     end do
   end subroutine set_supports
 

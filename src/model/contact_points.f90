@@ -15,10 +15,6 @@ module dd3_model_contact_points
   type :: point_list_t
     integer :: n = 0
     type(contact_point_t), allocatable :: point(:)
-    !> Tools that a point can touch, `(n_tool, n)`.
-    logical, allocatable :: candidate(:, :)
-    !> Element that a point lies on.
-    integer, allocatable :: element(:)
     !> First point of each node as lower end of an edge, and the next one of the same node.
     integer, allocatable :: first(:), next(:)
   end type point_list_t
@@ -47,51 +43,52 @@ contains
     integer, intent(in) :: divisions
 
     type(point_list_t) :: list
-    integer :: i, f, most
+    logical, allocatable :: candidate(:, :)
+    integer :: i, c, f, most
 
     most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
-    allocate (list%point(most), list%element(most), list%next(most))
-    allocate (list%candidate(model%n_tool, most), list%first(model%n_node))
-    list%element = 0
-    list%next = 0
-    list%first = 0
+    allocate (list%point(most))
+    allocate (list%next(most), list%first(model%n_node), source=0)
     allocate (model%candidate_of(model%n_node), source=0)
     call set_opposites(model)
     do i = 1, model%n_node
       if (.not. any(member(:, i))) cycle
-      call add_point(list, node_point(i), member(:, i))
+      call add_point(list, node_point(i))
       model%candidate_of(i) = list%n
     end do
     model%n_contact_node = list%n
     allocate (model%face_point(max((divisions + 1)**2, model%element%n_face_node), &
         size(model%contact_face)))
     do f = 1, size(model%contact_face)
-      call add_face(list, model, member, model%contact_face(f), divisions, model%face_point(:, f))
+      call add_face(list, model, model%contact_face(f), divisions, model%face_point(:, f))
     end do
     model%n_contact = list%n
     model%contact_point = list%point(:list%n)
-    model%candidate = list%candidate(:, :list%n)
     model%contact_node = model%contact_point%node(1)
-    call set_elements(model, list%element(:list%n))
-    call set_stiffness(model, point_areas(model, model%x0), list%element(:list%n))
+    allocate (candidate(model%n_tool, list%n))
+    do c = 1, list%n
+      associate (point => model%contact_point(c))
+        candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
+      end associate
+    end do
+    call move_alloc(candidate, model%candidate)
+    call set_stiffness(model, point_areas(model, model%x0))
+    call set_elements(model)
   end subroutine set_contact_points
 
-  !> Set the element of each point and the places of its nodes in it. A node that belongs to no
-  !> face gets an element at it.
-  subroutine set_elements(model, element)
+  !> Set the places of the nodes of each point in its element. A node that belongs to no face gets
+  !> an element at it.
+  subroutine set_elements(model)
     type(model_t), intent(inout) :: model
-    !> Of the points on faces; 0 for others.
-    integer, intent(in) :: element(:)
 
     integer :: at_node(model%n_node), c, e, i
 
     do e = 1, model%n_element
       at_node(model%connectivity(:, e)) = e
     end do
-    do c = 1, size(element)
+    do c = 1, model%n_contact
       associate (point => model%contact_point(c))
-        point%element = element(c)
-        if (element(c) == 0) point%element = at_node(point%node(1))
+        if (point%element == 0) point%element = at_node(point%node(1))
         do i = 1, point%n_node
           point%local(i) = findloc(model%connectivity(:, point%element), point%node(i), dim=1)
         end do
@@ -100,22 +97,18 @@ contains
   end subroutine set_elements
 
   !> Add a point to the list.
-  pure subroutine add_point(list, point, candidate)
+  pure subroutine add_point(list, point)
     type(point_list_t), intent(inout) :: list
     type(contact_point_t), intent(in) :: point
-    !> `(n_tool)`.
-    logical, intent(in) :: candidate(:)
 
     list%n = list%n + 1
     list%point(list%n) = point
-    list%candidate(:, list%n) = candidate
   end subroutine add_point
 
   !> Add the points of a face that are not in the list yet.
-  subroutine add_face(list, model, member, f, divisions, face_point_number)
+  subroutine add_face(list, model, f, divisions, face_point_number)
     type(point_list_t), intent(inout) :: list
     type(model_t), intent(in) :: model
-    logical, intent(in) :: member(:, :)
     integer, intent(in) :: f, divisions
     !> Numbers of the points.
     integer, intent(out) :: face_point_number(:)
@@ -125,7 +118,7 @@ contains
     associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
       if (size(node) > 4) then
         face_point_number = model%candidate_of(node)
-        call set_missing(list%element, face_point_number, model%face%element(f))
+        call set_missing(list%point%element, face_point_number, model%face%element(f))
         return
       end if
       number(0, 0) = model%candidate_of(corner(1))
@@ -140,13 +133,13 @@ contains
         do j = 1, divisions - 1
           do i = 1, divisions - 1
             call add_point(list, face_point(corner, model%opposite(corner), place_on_edge(i), &
-                place_on_edge(j)), all(member(:, corner), dim=2))
+                place_on_edge(j)))
             number(i, j) = list%n
           end do
         end do
       end if
       face_point_number = reshape(number, [size(number)])
-      call set_missing(list%element, face_point_number, model%face%element(f))
+      call set_missing(list%point%element, face_point_number, model%face%element(f))
     end associate
 
   contains
@@ -178,8 +171,7 @@ contains
         if (p == 0) then
           do i = 1, size(number)
             call add_point(list, edge_point(corner([low, high]), &
-                model%opposite(corner([low, high])), place_on_edge(i)), &
-                all(member(:, corner([low, high])), dim=2))
+                model%opposite(corner([low, high])), place_on_edge(i)))
             if (i == 1) p = list%n
           end do
           list%next(p) = list%first(corner(low))
@@ -204,43 +196,28 @@ contains
     end do
   end subroutine set_missing
 
-  !> Set the nodes opposite to those of the contact faces.
+  !> Set the nodes opposite to those of the contact faces, across their elements.
   subroutine set_opposites(model)
     type(model_t), intent(inout) :: model
 
-    integer :: i
+    real(wp) :: distance(model%element%n_node)
+    integer :: f, i, k
 
     allocate (model%opposite(model%n_node), source=0)
     if (model%element%n_node /= 8) return
-    do i = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(i)))
-        model%opposite(corner) = opposite_nodes(model, model%contact_face(i))
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)), &
+          node => model%connectivity(:, model%face%element(model%contact_face(f))), &
+          place => model%element%node)
+        do i = 1, 4
+          k = findloc(node, corner(i), dim=1)
+          distance = sum(abs(place - spread(place(:, k), 2, 8)), dim=1)
+          model%opposite(corner(i)) = node(minloc(distance, dim=1, &
+              mask=[(all(node(k) /= corner), k=1, 8)]))
+        end do
       end associate
     end do
   end subroutine set_opposites
-
-  !> Return the nodes opposite to the corners of a face across its element.
-  pure function opposite_nodes(model, f) result(opposite)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: f
-    integer :: opposite(4)
-
-    real(wp) :: natural(3, 4), place(3)
-    integer :: i, k, across
-
-    associate (nodes => model%connectivity(:, model%face%element(f)), element => model%element)
-      do i = 1, 4
-        natural(:, i) = element%node(:, findloc(nodes, model%face%corner(i, f), dim=1))
-      end do
-      across = maxloc(abs(sum(natural, dim=2)), dim=1)
-      do i = 1, 4
-        place = natural(:, i)
-        place(across) = -place(across)
-        k = minloc(sum(abs(element%node - spread(place, 2, element%n_node)), dim=1), dim=1)
-        opposite(i) = nodes(k)
-      end do
-    end associate
-  end function opposite_nodes
 
   !> Return the integrals of the hat functions of the parts of a face, mm2, row by row, exact for a
   !> plane face.
@@ -383,20 +360,19 @@ contains
   !> Set the stiffness of the sheet through its thickness under each point, E A/t, with its area A,
   !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets
   !> the mean area, and the modulus of the first element.
-  subroutine set_stiffness(model, area, element)
+  subroutine set_stiffness(model, area)
     type(model_t), intent(inout) :: model
     !> `(n_contact)`; 0 for none.
     real(wp), intent(in) :: area(:)
-    integer, intent(in) :: element(:)
 
     real(wp) :: mean
     integer :: c
 
     mean = model%thickness**2
     if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
-    model%contact_stiffness = [(model%material(model%material_of(max(1, element(c))))%young &
-        *merge(area(c), mean, area(c) > 0.0_wp)/model%thickness_at(model%contact_node(c)), &
-        c=1, model%n_contact)]
+    model%contact_stiffness = [(model%material(model%material_of(max(1, &
+        model%contact_point(c)%element)))%young*merge(area(c), mean, area(c) > 0.0_wp) &
+        /model%thickness_at(model%contact_node(c)), c=1, model%n_contact)]
   end subroutine set_stiffness
 
 end module dd3_model_contact_points

@@ -16,25 +16,22 @@ contains
 
   !> Set the prescribed displacements of a phase: directions freed, then directions displaced, which
   !> may be among those freed.
-  subroutine set_displacements(case, i, mesh, led, phase)
+  subroutine set_displacements(case, i, mesh, fixed, led, phase)
     type(case_t), intent(in) :: case
     !> Number of the phase.
     integer, intent(in) :: i
     type(mesh_t), intent(in) :: mesh
-    !> Directions that *BOUNDARY and earlier phases prescribe, `(3, n_node)`; gets those of this
-    !> phase.
+    !> Directions that *BOUNDARY prescribes, and those that earlier phases prescribe too,
+    !> `(3, n_node)`; gets those of this phase.
+    logical, intent(in) :: fixed(:, :)
     logical, intent(inout) :: led(:, :)
     type(phase_t), intent(inout) :: phase
 
     type(motion_t), allocatable :: motion(:)
-    logical :: fixed(3, mesh%n_node), displaced(3, mesh%n_node)
+    logical :: displaced(3, mesh%n_node)
     integer, allocatable :: node(:)
     integer :: k
 
-    fixed = .false.
-    do k = 1, size(case%boundary)
-      call mark_directions(fixed, mesh%nodes_of(case%boundary(k)%set), case%boundary(k)%fix)
-    end do
     displaced = .false.
     associate (spec => case%phase(i))
       do k = 1, size(spec%free)

@@ -51,11 +51,7 @@ contains
         found(k)%first(m) = rows(i)%first
       end do
     end do
-    allocate (variables(n))
-    do k = 1, n
-      variables(k)%row = found(k)%row
-      variables(k)%first = found(k)%first
-    end do
+    variables = found(:n)
   end subroutine new_variables
 
   !> Return the output components of a variable at a point: those of a tensor in global axes, 11 22

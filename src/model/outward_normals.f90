@@ -2,11 +2,11 @@
 !> are opposite; this tells the side of the tool's surface on which a point belongs.
 module dd3_model_outward_normals
   use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
+  use dd3_model_sheet_faces, only : area_vector, sheet_faces_t
   implicit none
   private
-  public :: outward_normals, nodal_normals
+  public :: outward_normals, nodal_normals, mean_normals
 
 contains
 
@@ -18,24 +18,38 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: normal(:, :)
 
-    real(wp) :: area(3)
+    if (allocated(model%contact_face)) then
+      normal = mean_normals(model%face, model%contact_face, x)
+    else
+      allocate (normal(3, model%n_node), source=0.0_wp)
+    end if
+  end function nodal_normals
+
+  !> Return the means of the outward unit normals of some faces at their nodes, `(3, n_node)`, by
+  !> area; zero for other nodes.
+  pure function mean_normals(face, number, x) result(normal)
+    type(sheet_faces_t), intent(in) :: face
+    !> Numbers of the faces.
+    integer, intent(in) :: number(:)
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: normal(3, size(x, 2))
+
     integer :: f, i
 
-    allocate (normal(3, model%n_node), source=0.0_wp)
-    if (.not. allocated(model%contact_face)) return
-    do f = 1, size(model%contact_face)
-      associate (corner => model%face%corner(:, model%contact_face(f)), &
-          node => model%face%node(:, model%contact_face(f)))
-        area = cross(x(:, corner(3)) - x(:, corner(1)), x(:, corner(4)) - x(:, corner(2)))
+    normal = 0.0_wp
+    do f = 1, size(number)
+      associate (node => face%node(:, number(f)), area => area_vector(x(:, &
+          face%corner(:, number(f)))))
         do i = 1, size(node)
           normal(:, node(i)) = normal(:, node(i)) + area
         end do
       end associate
     end do
-    do i = 1, model%n_node
+    do i = 1, size(x, 2)
       normal(:, i) = unit(normal(:, i))
     end do
-  end function nodal_normals
+  end function mean_normals
 
   !> Return the outward unit normals at the contact points, `(3, n_contact)`: between nodes, the
   !> mean of those of the nodes.

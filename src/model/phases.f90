@@ -1,7 +1,9 @@
 !> Phases of the case with all names resolved. What a phase does not name stays unchanged: tools are
 !> held, forces and loads kept.
 module dd3_model_phases
+  use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
+  use dd3_contact_separation, only : offset_at_gap
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
@@ -23,11 +25,13 @@ module dd3_model_phases
 contains
 
   !> Resolve all phases of the case.
-  subroutine new_phases(model, case, mesh)
+  subroutine new_phases(model, case, mesh, errors)
     !> The model with its tools, candidates and supports.
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
 
     type(phase_t) :: before
     logical :: led(3, model%n_node), unloaded
@@ -43,13 +47,14 @@ contains
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
       call set_tools(case%phase(i), model%phase(i))
-      call set_displacements(case, i, mesh, led, model%phase(i))
+      call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
       call set_supports(model, unloaded, led, model%phase(i))
       call set_drawbeads(model, unloaded, before%bead_active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
+    call set_gaps(model, case, errors)
   end subroutine new_phases
 
   !> Make the phase before the first one: no motion, no load.
@@ -143,21 +148,17 @@ contains
     integer :: i, t
 
     do i = 1, size(spec%hold)
-      t = spec%hold(i)%tool
-      call stop_pressing(phase, t)
-      phase%active(t) = .true.
+      call stop_pressing(phase, spec%hold(i)%tool, .true.)
     end do
     do i = 1, size(spec%move)
       t = spec%move(i)%tool
-      call stop_pressing(phase, t)
-      phase%active(t) = .true.
+      call stop_pressing(phase, t, .true.)
       phase%move(:, t) = spec%move(i)%vector
       if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
     end do
     do i = 1, size(spec%gap)
       t = spec%gap(i)%tool
-      call stop_pressing(phase, t)
-      phase%active(t) = .true.
+      call stop_pressing(phase, t, .true.)
       phase%gap_other(t) = spec%gap(i)%other
       phase%direction(:, t) = [0.0_wp, 0.0_wp, 1.0_wp]
     end do
@@ -165,16 +166,11 @@ contains
       call press(phase, spec%press(i)%tool, spec%press(i)%vector)
     end do
     do i = 1, size(spec%release)
-      t = spec%release(i)%tool
-      phase%active(t) = .false.
-      call stop_pressing(phase, t)
+      call stop_pressing(phase, spec%release(i)%tool, .false.)
     end do
-    if (spec%unload) then
-      phase%active = .false.
-      do t = 1, size(phase%active)
-        call stop_pressing(phase, t)
-      end do
-    end if
+    do t = 1, merge(size(phase%active), 0, spec%unload)
+      call stop_pressing(phase, t, .false.)
+    end do
     if (size(phase%active) > 0 .and. .not. any(phase%active)) &
         phase%newton%tolerance = min(phase%newton%tolerance, release_tolerance)
     phase%trial = spec%trial
@@ -184,11 +180,14 @@ contains
     if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
   end subroutine set_tools
 
-  !> Remove the force from a tool that is held or moved.
-  subroutine stop_pressing(phase, tool)
+  !> Remove the force from a tool that is held, moved or released.
+  subroutine stop_pressing(phase, tool, active)
     type(phase_t), intent(inout) :: phase
     integer, intent(in) :: tool
+    !> Whether it has contact.
+    logical, intent(in) :: active
 
+    phase%active(tool) = active
     phase%pressed(tool) = .false.
     phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
@@ -274,36 +273,27 @@ contains
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    type(pressure_set_t) :: set
+    type(pressure_set_t), allocatable :: set(:)
     logical :: member(mesh%n_node), inside(model%face%n)
-    integer :: i, j, s, f
+    integer :: i, j, n, s, f
 
-    allocate (model%pressure_set(0))
+    allocate (set(sum([(size(case%phase(i)%pressure), i=1, size(case%phase))])))
+    n = 0
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%pressure)
-        set%name = case%phase(i)%pressure(j)%set
-        if (any([(model%pressure_set(s)%name == set%name, s=1, size(model%pressure_set))])) cycle
-        member = .false.
-        member(mesh%nodes_of(set%name)) = .true.
-        inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
-        set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
-        call append(model%pressure_set, set)
+        associate (name => case%phase(i)%pressure(j)%set)
+          if (any([(set(s)%name == name, s=1, n)])) cycle
+          n = n + 1
+          set(n)%name = name
+          member = .false.
+          member(mesh%nodes_of(name)) = .true.
+          inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
+          set(n)%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
+        end associate
       end do
     end do
+    model%pressure_set = set(:n)
   end subroutine new_pressure_sets
-
-  !> Append a set.
-  subroutine append(sets, set)
-    type(pressure_set_t), allocatable, intent(inout) :: sets(:)
-    type(pressure_set_t), intent(in) :: set
-
-    type(pressure_set_t), allocatable :: larger(:)
-
-    allocate (larger(size(sets) + 1))
-    larger(:size(sets)) = sets
-    larger(size(larger)) = set
-    call move_alloc(larger, sets)
-  end subroutine append
 
   !> List the sets that carry a load in some phase, in the order of the phases.
   subroutine new_load_sets(model, case, mesh)
@@ -348,5 +338,52 @@ contains
 
     unit = vector/norm2(vector)
   end function unit
+
+  !> Set the displacements at which tools have the gaps of the input.
+  subroutine set_gaps(model, case, errors)
+    !> With its tools and phases.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: gap, start(3)
+    logical :: found
+    integer :: i, k
+
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%gap)
+        associate (spec => case%phase(i)%gap(k))
+          gap = spec%value
+          if (spec%in_thicknesses) gap = gap*model%thickness
+          associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
+            start = tool%position - other%position
+            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
+            call offset_at_gap(tool%surface, other%surface, start, gap, &
+                model%phase(i)%gap_offset(spec%tool), found)
+            if (.not. found) call errors%push_input(spec%at, "no displacement along z gives "// &
+                "this gap between '"//tool%name//"' and '"//other%name//"'", &
+                "two tools whose surfaces face each other along z")
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine set_gaps
+
+  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
+  pure function aside(model, phase, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: phase
+    integer, intent(in) :: tool
+    real(wp) :: aside(2)
+
+    integer :: i
+
+    aside = 0.0_wp
+    do i = 1, phase
+      aside = aside + model%phase(i)%move(:2, tool)
+    end do
+  end function aside
 
 end module dd3_model_phases

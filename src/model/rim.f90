@@ -2,8 +2,9 @@
 !> symmetry, and the draw-in: displacement of the rim along its initial inward normal.
 module dd3_model_rim
   use dd3_base_kinds, only : wp
-  use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
+  use dd3_model_outward_normals, only : mean_normals
+  use dd3_model_sheet_faces, only : area_vector
   implicit none
   private
   public :: set_rim, draw_in, mean_draw_in
@@ -19,36 +20,19 @@ contains
     !> With faces, columns and supports; gets `rim_normal`.
     type(model_t), intent(inout) :: model
 
-    real(wp), allocatable :: normal(:, :)
-    real(wp) :: area(3)
-    integer :: f, i
+    logical :: on_rim(model%face%n)
+    integer :: f
 
-    allocate (normal(3, model%n_node), source=0.0_wp)
     do f = 1, model%face%n
       associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
-        if (.not. shares_column(model%column(1, corner))) cycle
-        associate (x => model%x0(:, corner))
-          area = cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))
+        associate (bottom => model%column(1, corner))
+          on_rim(f) = any(bottom == cshift(bottom, 1)) .and. .not. &
+              on_symmetry_plane(area_vector(model%x0(:, corner)), model%fixed(:, node))
         end associate
-        if (on_symmetry_plane(area, model%fixed(:, node))) cycle
-        do i = 1, size(node)
-          normal(:, node(i)) = normal(:, node(i)) - area
-        end do
       end associate
     end do
-    do i = 1, model%n_node
-      normal(:, i) = normal(:, i)/max(norm2(normal(:, i)), tiny(1.0_wp))
-    end do
-    call move_alloc(normal, model%rim_normal)
+    model%rim_normal = -mean_normals(model%face, pack([(f, f=1, size(on_rim))], on_rim), model%x0)
   end subroutine set_rim
-
-  !> Whether corners of a face lie over one another.
-  pure logical function shares_column(bottom)
-    !> Bottom nodes of the columns of the corners, in the order of the face.
-    integer, intent(in) :: bottom(4)
-
-    shares_column = any(bottom == cshift(bottom, 1))
-  end function shares_column
 
   !> Whether a face is held in the direction of its normal, which is an axis.
   pure logical function on_symmetry_plane(area, fixed)

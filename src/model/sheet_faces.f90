@@ -6,7 +6,7 @@ module dd3_model_sheet_faces
   use dd3_mesh_hexahedra, only : same_nodes
   implicit none
   private
-  public :: sheet_faces_t, new_sheet_faces, face_area, face_normal, part_of_nine
+  public :: sheet_faces_t, new_sheet_faces, area_vector, face_area, face_normal, part_of_nine
 
   !> Quadrilaterals between neighbouring nodes of a face with 9 nodes, in the order of the table.
   integer, parameter :: part_of_nine(4, 4) = &
@@ -66,12 +66,21 @@ contains
     end do
   end subroutine new_sheet_faces
 
+  !> Return twice the area of a face along its outward normal, mm2.
+  pure function area_vector(x) result(area)
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
+    real(wp) :: area(3)
+
+    area = cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))
+  end function area_vector
+
   !> Return the area of a face from its diagonals, exact for plane faces with straight edges, mm2.
   pure real(wp) function face_area(x)
     !> Corners, mm.
     real(wp), intent(in) :: x(3, 4)
 
-    face_area = 0.5_wp*norm2(cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2)))
+    face_area = 0.5_wp*norm2(area_vector(x))
   end function face_area
 
   !> Return the outward unit normal at the centre of a face; zero if the face has no area.
@@ -80,7 +89,7 @@ contains
     real(wp), intent(in) :: x(3, 4)
     real(wp) :: normal(3)
 
-    normal = cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))
+    normal = area_vector(x)
     normal = normal/max(norm2(normal), tiny(1.0_wp))
   end function face_normal
 

@@ -1,7 +1,7 @@
 !> State of a run: all that changes in it and decides how it continues. Two copies exist, the
 !> committed state (configuration N-1, in equilibrium) and the trial state (configuration N);
 !> acceptance and cut-back are assignments. The walk over the components in state_walk.f90 serves
-!> comparison and restart; a test checks that it names every component declared here.
+!> the restart; a test checks that it names every component declared here.
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
@@ -208,22 +208,17 @@ contains
     type(phase_start_t), intent(out) :: self
     type(state_t), intent(in) :: state
 
-    allocate (self%tool_displacement, mold=state%tool_displacement)
-    allocate (self%tool_load, self%tool_load_end, mold=state%tool_load)
-    allocate (self%layer_offset(size(state%layer_offset)), source=0.0_wp)
+    associate (n_node => size(state%x, 2), n_tool => size(state%layer_offset), &
+        n_load => size(state%load, 2), n_pressure => size(state%pressure))
+      allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), &
+          self%tool_load_end(3, n_tool), self%load(3, n_load), self%load_end(3, n_load), &
+          self%fading(3, n_node), source=0.0_wp)
+      allocate (self%layer_offset(n_tool), self%pressure(n_pressure), &
+          self%pressure_end(n_pressure), source=0.0_wp)
+    end associate
     allocate (self%held_offset(size(state%status)), source=-1.0_wp)
-    allocate (self%load, self%load_end, mold=state%load)
-    allocate (self%pressure(size(state%pressure)), self%pressure_end(size(state%pressure)), &
-        source=0.0_wp)
-    allocate (self%x, source=state%x)
-    allocate (self%fading, mold=state%fading)
     allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)
-    self%tool_displacement = 0.0_wp
-    self%tool_load = 0.0_wp
-    self%tool_load_end = 0.0_wp
-    self%load = 0.0_wp
-    self%load_end = 0.0_wp
-    self%fading = 0.0_wp
+    self%x = state%x
   end subroutine new_phase_start
 
 end module dd3_model_state

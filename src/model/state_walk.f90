@@ -1,13 +1,13 @@
 !> Walk over the components of a state: `visit_state` passes every component with its name to a
-!> visitor. Comparison, restart (output/restart.f90) and their tests are visitors, so that a
-!> component is named in one place only.
+!> visitor. Restart (output/restart.f90) and the tests are visitors, so that a component is named in
+!> one place only.
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
   use dd3_model_state, only : phase_start_t, state_t
   implicit none
   private
-  public :: state_visitor_t, visit_state, first_difference
+  public :: state_visitor_t, visit_state
 
   !> Operation on the components of a state; it can change them.
   type, abstract :: state_visitor_t
@@ -41,17 +41,6 @@ module dd3_model_state_walk
       integer, intent(inout) :: values(n)
     end subroutine visit_integers_interface
   end interface
-
-  !> Visitor that gathers names and values.
-  type, extends(state_visitor_t) :: gatherer_t
-    !> Names of the components, and where the values of each one end.
-    character(len=32), allocatable :: name(:)
-    integer, allocatable :: last(:)
-    real(wp), allocatable :: value(:)
-  contains
-    procedure :: reals => gather_reals
-    procedure :: integers => gather_integers
-  end type gatherer_t
 
 contains
 
@@ -213,71 +202,11 @@ contains
     character(len=*), intent(in) :: name
     logical, intent(inout) :: value
 
-    logical :: values(1)
+    integer :: number
 
-    values = value
-    call self%logicals(name, 1, values)
-    value = values(1)
+    number = merge(1, 0, value)
+    call self%one_integer(name, number)
+    value = number /= 0
   end subroutine one_logical
-
-  !> Return the name of the first component in which two states differ, bit for bit; empty where
-  !> they are equal.
-  function first_difference(a, b) result(name)
-    type(state_t), intent(in) :: a, b
-    character(len=:), allocatable :: name
-
-    type(gatherer_t) :: left, right
-    integer :: i, first
-
-    call gather(a, left)
-    call gather(b, right)
-    name = ""
-    first = 1
-    do i = 1, size(left%last)
-      name = trim(left%name(i))
-      if (left%last(i) /= right%last(i)) return
-      if (any(transfer(left%value(first:left%last(i)), [0]) /= &
-          transfer(right%value(first:right%last(i)), [0]))) return
-      first = left%last(i) + 1
-    end do
-    name = ""
-  end function first_difference
-
-  !> Gather the values of a state.
-  subroutine gather(state, values)
-    type(state_t), intent(in) :: state
-    type(gatherer_t), intent(out) :: values
-
-    type(state_t) :: copy
-
-    allocate (values%name(0), values%last(0), values%value(0))
-    copy = state
-    call visit_state(copy, values)
-  end subroutine gather
-
-  !> Append a component of real numbers.
-  subroutine gather_reals(self, name, n, values)
-    class(gatherer_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: values(n)
-
-    self%value = [self%value, values]
-    self%name = [character(len=len(self%name)) :: self%name, name]
-    self%last = [self%last, size(self%value)]
-  end subroutine gather_reals
-
-  !> Append a component of integers, which are exact as real numbers.
-  subroutine gather_integers(self, name, n, values)
-    class(gatherer_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    integer, intent(inout) :: values(n)
-
-    real(wp) :: number(n)
-
-    number = real(values, wp)
-    call self%reals(name, n, number)
-  end subroutine gather_integers
 
 end module dd3_model_state_walk

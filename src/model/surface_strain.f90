@@ -4,7 +4,6 @@
 !> At a node the strain tensors of the faces that share it are averaged.
 module dd3_model_surface_strain
   use dd3_base_kinds, only : wp
-  use dd3_element_table, only : element_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   implicit none
@@ -32,7 +31,7 @@ contains
     integer, allocatable :: local(:)
     integer :: sharing(model%n_node), e, i
 
-    local = lower_face(model%element)
+    local = pack([(i, i=1, model%element%n_node)], model%element%node(3, :) < -0.5_wp)
     allocate (tensor(3, 3, model%n_node), normal(3, model%n_node), source=0.0_wp)
     allocate (face_tensor(3, 3, size(local)), face_normal(3, size(local)))
     sharing = 0
@@ -67,16 +66,6 @@ contains
     end function between
 
   end subroutine surface_strains
-
-  !> Return the nodes of the lower face of an element.
-  pure function lower_face(element) result(local)
-    type(element_t), intent(in) :: element
-    integer, allocatable :: local(:)
-
-    integer :: a
-
-    local = pack([(a, a=1, element%n_node)], element%node(3, :) < -0.5_wp)
-  end function lower_face
 
   !> Evaluate the strain tensors and the initial unit normals of a face at its nodes.
   pure subroutine strain_of_face(slope, x0, x, tensor, normal)

@@ -6,6 +6,8 @@ module dd3_model_tool_depth
   use dd3_contact_bezier, only : n_sample, normal_at, patch_t, position_at
   use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_curvature, only : smallest_radius
+  use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_normal, part_of_nine
@@ -13,7 +15,7 @@ module dd3_model_tool_depth
   use dd3_model_tolerances, only : wrong_side_depth
   implicit none
   private
-  public :: tool_depth_t, measure_tool_depth
+  public :: tool_depth_t, measure_tool_depth, observe_tools
 
   !> Fractions of the corners at the points of a face: centre and middles of the edges.
   real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp
@@ -55,6 +57,32 @@ module dd3_model_tool_depth
   end type face_t
 
 contains
+
+  !> Record contact and depth of the active tools in the state.
+  subroutine observe_tools(model, state)
+    type(model_t), intent(in) :: model
+    !> The committed state.
+    type(state_t), intent(inout) :: state
+
+    type(tool_depth_t) :: found
+    integer :: tool
+
+    state%tool_depth = 0.0_wp
+    do tool = 1, model%n_tool
+      if (.not. model%phase(state%phase)%active(tool)) cycle
+      state%touched(tool) = state%touched(tool) .or. &
+          any(state%contact_tool == tool .and. state%status /= status_gap)
+      found = measure_tool_depth(model, state, tool)
+      state%tool_depth(tool) = found%depth
+      if (found%depth <= state%largest_depth(tool)) cycle
+      state%largest_depth(tool) = found%depth
+      state%deepest_face(tool) = found%face
+      associate (x => state%x(:, model%face%corner(:, found%face)))
+        state%deepest_radius(tool) = smallest_radius(model%tool(tool)%surface, found%x, &
+            norm2(x(:, 3) - x(:, 1)))
+      end associate
+    end do
+  end subroutine observe_tools
 
   !> Measure the depth of a tool in the faces whose nodes are its candidates. Those with 9 nodes are
   !> curved; they are measured in four quadrilaterals.
@@ -175,7 +203,7 @@ contains
     real(wp) :: x(3)
     integer :: i
 
-    if (is_far(face, hint) .or. is_beside_plane(model, hint, tool)) return
+    if (is_beside_plane(model, hint, tool)) return
     start = hint(maxloc(hint%patch, dim=1))
     do i = 1, size(sample_shape, 2)
       x = matmul(face%x, sample_shape(:, i))
@@ -188,21 +216,6 @@ contains
       call keep_larger(self, -hit%distance, x, face)
     end do
   end subroutine probe_tool
-
-  !> Whether the last searches of the corners show that the tool is farther than the face's size.
-  pure logical function is_far(face, hint)
-    type(face_t), intent(in) :: face
-    type(hint_t), intent(in) :: hint(4)
-
-    integer :: i
-
-    is_far = .false.
-    do i = 1, 4
-      if (hint(i)%due .or. hint(i)%patch > 0) return
-      if (hint(i)%clearance - norm2(face%x(:, i) - hint(i)%anchor) < face%size) return
-    end do
-    is_far = .true.
-  end function is_far
 
   !> Whether the closest points of all corners lie on one plane: no other point is deeper then.
   pure logical function is_beside_plane(model, hint, tool)
@@ -238,13 +251,9 @@ contains
       do j = 0, n_sample
         do i = 0, n_sample
           if (patch%flat .and. mod(i, n_sample) > 0 .and. mod(j, n_sample) > 0) cycle
-          point = stored_point(patch, i, j)
-          depth = face%height - dot_product(face%normal, point)
-          if (depth + patch%grid_error <= self%depth) cycle
-          if (any(point + patch%grid_error < face%lower &
-              .or. point - patch%grid_error > face%upper)) cycle
-          if (patch%grid_error > 0.0_wp) &
-              point = position_at(patch, real(i, wp)/n_sample, real(j, wp)/n_sample)
+          point = grid_point(patch, i, j)
+          if (face%height - dot_product(face%normal, point) <= self%depth) cycle
+          if (any(point < face%lower .or. point > face%upper)) cycle
           call locate(face, point, depth)
           if (depth <= self%depth .or. depth > face%search_depth) cycle
           if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
@@ -257,14 +266,11 @@ contains
     end associate
   end subroutine probe_patch
 
-  !> Return a point of the grid of a patch, mm; interpolated if the stored grid is coarser.
-  pure function stored_point(patch, i, j) result(point)
+  !> Return a point of the grid of a patch, mm: the stored one, if there is one.
+  pure function grid_point(patch, i, j) result(point)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: i, j
     real(wp) :: point(3)
-
-    real(wp) :: a, b
-    integer :: k, l, step
 
     if (patch%flat) then
       point = patch%control(:, 0, 0) &
@@ -273,16 +279,9 @@ contains
     else if (patch%n_interval == n_sample) then
       point = patch%centre + patch%sample(:, i, j)
     else
-      step = n_sample/patch%n_interval
-      k = min(i/step, patch%n_interval - 1)
-      l = min(j/step, patch%n_interval - 1)
-      a = real(i, wp)/real(step, wp) - real(k, wp)
-      b = real(j, wp)/real(step, wp) - real(l, wp)
-      point = patch%centre &
-          + (1.0_wp - b)*((1.0_wp - a)*patch%sample(:, k, l) + a*patch%sample(:, k + 1, l)) &
-          + b*((1.0_wp - a)*patch%sample(:, k, l + 1) + a*patch%sample(:, k + 1, l + 1))
+      point = position_at(patch, real(i, wp)/n_sample, real(j, wp)/n_sample)
     end if
-  end function stored_point
+  end function grid_point
 
   !> Find the depth of a point behind a face along its normal: behind one of the four triangles
   !> between the centre and the edges.

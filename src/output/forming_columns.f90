@@ -2,7 +2,7 @@
 !> largest pressure of each tool, work and energies.
 module dd3_output_forming_columns
   use dd3_base_kinds, only : wp
-  use dd3_model_contact_pressure, only : tool_contact_t, tool_contacts
+  use dd3_model_contact_results, only : tool_contact_t, tool_contacts
   use dd3_model_energy, only : contact_energy, elastic_energy
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t

@@ -3,8 +3,7 @@
 module dd3_output_forming_fields
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_model_contact_gap, only : contact_gaps
-  use dd3_model_contact_pressure, only : contact_pressures
+  use dd3_model_contact_results, only : contact_gaps, contact_pressures
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : draw_in
   use dd3_model_state, only : state_t

@@ -3,14 +3,13 @@ module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_no_progress
+  use dd3_base_verdict, only : verdict_converged, cause_no_progress
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
-  use dd3_process_limit, only : limiter_name
   use dd3_process_remedy, only : first_remedy
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : stepper_t
   implicit none
   private
   public :: status_row, failure_message
@@ -30,7 +29,7 @@ contains
       row%phase = phase%name
       row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
       row%r = attempt%limit%r
-      row%limiter = limiter_name(attempt%limit%limiter)
+      row%limiter = attempt%limit%limiter
       row%limiter_element = attempt%limit%element
       row%limiter_point = attempt%limit%point
       row%limiter_node = attempt%limit%node
@@ -51,7 +50,7 @@ contains
         row%reason = attempt%solver%reason
       else
         row%outcome = "failed"
-        row%reason = verdict_text(model, attempt%verdict)
+        row%reason = cause_text(attempt%verdict, tool_name(model, attempt%verdict%tool))
       end if
     end associate
     call add_corrector(row, stepper)
@@ -89,15 +88,6 @@ contains
     if (tool > 0) name = model%tool(tool)%name
   end function tool_name
 
-  !> Return the cause of a verdict as text.
-  function verdict_text(model, verdict) result(text)
-    type(model_t), intent(in) :: model
-    type(verdict_t), intent(in) :: verdict
-    character(len=:), allocatable :: text
-
-    text = cause_text(verdict, tool_name(model, verdict%tool))
-  end function verdict_text
-
   !> Return the message on a failed increment: its location, the reason and the first remedy to try.
   function failure_message(model, committed, stepper) result(message)
     type(model_t), intent(in) :: model
@@ -123,12 +113,12 @@ contains
           //model%phase(committed%phase)%name//"' (travel "//to_text(committed%travel)//" mm) "
       if (verdict%cause == cause_no_progress) then
         message = message//"makes no progress: r = "//to_text(attempt%limit%r, 3)// &
-            ", limited by "//limiter_name(attempt%limit%limiter)
+            ", limited by "//trim(attempt%limit%limiter)
         return
       end if
       message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
-      message = message//": "//verdict_text(model, verdict)
+      message = message//": "//cause_text(verdict, tool_name(model, verdict%tool))
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
           //" point "//to_text(verdict%point)
       if (verdict%node == 0) return

@@ -17,7 +17,7 @@ module dd3_process_equilibrium
   use dd3_process_balance, only : balance_tools, tool_imbalance
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
-  use dd3_system_enhanced, only : enhanced_response, subtract_condensed
+  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : contact_force_increment, reduce_equilibrium
@@ -123,7 +123,6 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     associate (system => self%system)
-      if (with_stiffness) call system%threads%begin_iteration()
       call system%profile%start()
       call update_material(system, self%model, self%committed, self%trial, with_stiffness, verdict)
       call system%profile%add(section_material)
@@ -230,23 +229,19 @@ contains
     !> Retry if there is no solution, or if it moves a node too far.
     type(verdict_t), intent(out) :: verdict
 
-    logical :: first
-
-    first = self%assembled
     self%status(:, 2:) = self%status(:, :n_kept - 1)
     self%status(:, 1) = self%system%contact%status
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
       call system%profile%start()
-      if (.not. first) call assemble_stiffness(system, model, self%committed, trial)
-      call subtract_condensed(system%enhanced, system%problem%residual)
+      if (.not. self%assembled) call assemble_stiffness(system, model, self%committed, trial)
+      system%problem%residual = system%problem%residual - system%enhanced%force
       call add_load_stiffness(system, model, trial)
       if (system%problem%missed) then
         where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x
       end if
       call system%profile%add(section_assembly)
       call solve_reduced(system, model, phase, self%trial%x, self%solver, verdict)
-      if (first) call system%threads%end_iteration()
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
       call set_step(self)

@@ -13,8 +13,7 @@ module dd3_process_increment
       newton_slow, solve
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
-  use dd3_process_step_control, only : attempt_t, next_r_cap, r_cap_t
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
   use dd3_process_work, only : add_work
   use dd3_system_partition, only : share_state
   use dd3_system_linear_problem, only : linear_problem_t
@@ -62,8 +61,9 @@ contains
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*model%phase(committed%phase)%length
       trial%hint%due = .true.
-      call equilibrium%begin(unknowns_t(r*prediction%displacement, r*prediction%enhanced, &
-          r*prediction%lambda, r*prediction%tool_displacement))
+      associate (step => prediction%step)
+        call equilibrium%begin(unknowns_t(r*step%x, r*step%enhanced, r*step%lambda, r*step%tool))
+      end associate
       call set_loads(model, trial)
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)
@@ -139,16 +139,12 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
-    type(r_cap_t) :: cap
-
     call share_state(stepper%system%partition, trial)
     call add_work(model, stepper%system%contact, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
-    cap = next_r_cap(r_cap_t(committed%r_cap, committed%r_cap_by_iterations), stepper%attempt, &
+    call set_next_r_cap(committed, stepper%attempt, &
         model%phase(trial%phase)%newton%target_iterations)
-    committed%r_cap = cap%r
-    committed%r_cap_by_iterations = cap%by_iterations
     committed%solver_memory = stepper%system%solver%memory
   end subroutine accept_increment
 

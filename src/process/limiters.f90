@@ -1,21 +1,17 @@
 !> Limiters of the factor r, the fraction of the trial increment that is made. Each limiter is a
-!> function that returns a bound with its location, and a row of the table.
+!> function that returns a bound with its location, applied in `limit_increment`.
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
-  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, rank_of_smallest
+  use dd3_base_ranks, only : broadcast_integers, rank_of_smallest
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_limit, only : limit_t, limiter_cutback, limiter_first_contact, limiter_force, &
-      limiter_gap, limiter_iterations, limiter_layer, limiter_none, limiter_output, limiter_phase, &
-      limiter_r_max, limiter_r_min, limiter_rotation, limiter_strain, limiter_stress, &
-      limiter_table, limiter_until
   use dd3_process_phase_end, only : next_output_progress, until_value
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : limit_t, stepper_t
   implicit none
   private
   public :: limit_increment
@@ -34,35 +30,15 @@ module dd3_process_limiters
     end function limiter_interface
   end interface
 
-  !> A row of the table.
-  type :: limiter_t
-    !> One of the `limiter_*` values.
-    integer :: limiter = limiter_none
-    procedure(limiter_interface), pointer, nopass :: evaluate => null()
-    !> The limiter does not lower r below r_min.
-    logical :: above_r_min = .false.
-  end type limiter_t
-
   !> The largest modulus of a principal strain is at least this fraction of the norm of the tensor;
   !> 1/sqrt(3) less a margin for round-off.
   real(wp), parameter :: least_principal = 0.577_wp
 
 contains
 
-  !> Return the limiters in the order of their evaluation; the first of equal bounds wins.
-  function all_limiters() result(table)
-    type(limiter_t), allocatable :: table(:)
-
-    table = [limiter_t(limiter_strain, strain_limit, above_r_min=.true.), &
-        limiter_t(limiter_rotation, rotation_limit, above_r_min=.true.), &
-        limiter_t(limiter_stress, stress_limit, above_r_min=.true.), &
-        limiter_t(limiter_force, force_limit, above_r_min=.true.), &
-        limiter_t(limiter_gap, gap_limit), &
-        limiter_t(limiter_until, until_limit)]
-  end function all_limiters
-
-  !> Set the factor r of an increment, the smallest of all bounds, eq. (18): those that r_min
-  !> overrides, then the bound by earlier increments, the end of the phase and the other limiters.
+  !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the
+  !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase and
+  !> the other limiters.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.
@@ -70,34 +46,51 @@ contains
     !> Gets the limit, and that of the contact forces alone.
     type(stepper_t), intent(inout) :: stepper
 
-    type(limiter_t), allocatable :: table(:)
-
-    allocate (table, source=all_limiters())
-    associate (limit => stepper%attempt%limit, phase => model%phase(state%phase), &
-        limits => model%phase(state%phase)%limits)
-      limit = limit_t(r=limits%r_max%value, limiter=limiter_r_max)
-      call apply(pack(table, table%above_r_min), model, state, stepper)
+    associate (attempt => stepper%attempt, limit => stepper%attempt%limit, &
+        phase => model%phase(state%phase), limits => model%phase(state%phase)%limits)
+      limit = limit_t(r=limits%r_max%value, limiter="r_max")
+      call apply("strain", strain_limit)
+      call apply("rotation", rotation_limit)
+      call apply("stress", stress_limit)
+      call apply("force", force_limit, attempt%force_limit)
       if (limit%r < limits%r_min%value) then
         limit%r = limits%r_min%value
-        limit%limiter = limiter_r_min
+        limit%limiter = "r_min"
       end if
       call keep_smaller(limit, limit_t(r=state%r_cap, &
-          limiter=merge(limiter_iterations, limiter_cutback, state%r_cap_by_iterations)))
-      call end_after(1.0_wp - state%progress, limiter_phase)
-      call end_after(phase%next_kink(state%progress) - state%progress, limiter_table)
-      call apply(pack(table, .not. table%above_r_min), model, state, stepper)
+          limiter=merge("iterations", "cutback   ", state%r_cap_by_iterations)))
+      call end_after("phase", 1.0_wp - state%progress)
+      call end_after("table", phase%next_kink(state%progress) - state%progress)
+      call apply("gap", gap_limit)
+      call apply("until", until_limit)
       if (any(state%start%layer_offset > 0.0_wp)) &
-          call end_after(progress_left(state%progress), limiter_layer)
-      call end_after(next_output_progress(model%output, phase, state) - state%progress, &
-          limiter_output)
+          call end_after("layer", progress_left(state%progress))
+      call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
     end associate
 
   contains
 
+    !> Apply a limiter.
+    subroutine apply(name, evaluate, bound)
+      !> Of the limiter, unless it gives its own.
+      character(len=*), intent(in) :: name
+      procedure(limiter_interface) :: evaluate
+      !> The bound that it sets.
+      type(limit_t), intent(out), optional :: bound
+
+      type(limit_t) :: limit
+
+      limit = evaluate(model, state, stepper)
+      if (limit%limiter == "") limit%limiter = name
+      if (stepper%system%partition%divided) call share_limit(limit)
+      call keep_smaller(stepper%attempt%limit, limit)
+      if (present(bound)) bound = limit
+    end subroutine apply
+
     !> Let the increment end no later than after some progress of the phase.
-    subroutine end_after(left, limiter)
+    subroutine end_after(limiter, left)
+      character(len=*), intent(in) :: limiter
       real(wp), intent(in) :: left
-      integer, intent(in) :: limiter
 
       if (left > 0.0_wp .and. left <= 1.0_wp) call keep_smaller(stepper%attempt%limit, &
           limit_t(r=left/stepper%prediction%progress, limiter=limiter))
@@ -105,39 +98,15 @@ contains
 
   end subroutine limit_increment
 
-  !> Apply limiters.
-  subroutine apply(table, model, state, stepper)
-    type(limiter_t), intent(in) :: table(:)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(stepper_t), intent(inout) :: stepper
-
-    type(limit_t) :: limit
-    integer :: i
-
-    do i = 1, size(table)
-      limit = table(i)%evaluate(model, state, stepper)
-      if (limit%limiter == limiter_none) limit%limiter = table(i)%limiter
-      if (stepper%system%partition%divided) call share_limit(limit)
-      call keep_smaller(stepper%attempt%limit, limit)
-      if (table(i)%limiter == limiter_force) stepper%attempt%force_limit = limit
-    end do
-  end subroutine apply
-
   !> Give all ranks the smallest bound; of equal ones that of the element with the lowest number.
   subroutine share_limit(limit)
     type(limit_t), intent(inout) :: limit
 
-    integer :: rank, numbers(5)
-    real(wp) :: values(2)
+    integer, allocatable :: bits(:)
 
-    rank = rank_of_smallest(limit%r, limit%element)
-    numbers = [limit%element, limit%point, limit%node, limit%tool, limit%limiter]
-    values = [limit%r, limit%force_size]
-    call broadcast_integers(rank, size(numbers), numbers)
-    call broadcast_reals(rank, size(values), values)
-    limit = limit_t(values(1), numbers(5), numbers(1), numbers(2), numbers(3), numbers(4), &
-        values(2))
+    bits = transfer(limit, [0])
+    call broadcast_integers(rank_of_smallest(limit%r, limit%element), size(bits), bits)
+    limit = transfer(bits, limit)
   end subroutine share_limit
 
   !> Keep the smaller of two bounds, the first of equal ones.
@@ -223,20 +192,18 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: inverse_a, inverse_b, bound(model%n_element)
+    real(wp) :: inverse(2), bound(model%n_element)
     integer :: e, point(model%n_element)
 
     associate (limits => model%phase(state%phase)%limits)
       if (.not. (limits%stress_tangential%active .or. limits%stress_normal%active)) return
-      inverse_a = 0.0_wp
-      inverse_b = 0.0_wp
-      if (limits%stress_tangential%active) inverse_a = 1.0_wp/limits%stress_tangential%value
-      if (limits%stress_normal%active) inverse_b = 1.0_wp/limits%stress_normal%value
+      inverse = 0.0_wp
+      if (limits%stress_tangential%active) inverse(1) = 1.0_wp/limits%stress_tangential%value
+      if (limits%stress_normal%active) inverse(2) = 1.0_wp/limits%stress_normal%value
     end associate
     !$omp parallel do num_threads(model%element_threads()) private(e)
     do e = 1, model%n_element
-      call smallest_stress_bound(model, state, stepper, e, [inverse_a, inverse_b], bound(e), &
-          point(e))
+      call smallest_stress_bound(model, state, stepper, e, inverse, bound(e), point(e))
     end do
     !$omp end parallel do
     e = minloc(bound, dim=1)
@@ -297,7 +264,7 @@ contains
       do c = 1, model%n_contact
         if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
         b = max(norm2(state%lambda(:, c)), limits%force_floor%value*mean)
-        ellipsoid = ellipsoid_norm(stepper%prediction%lambda(:, c), contact%normal(:, c), &
+        ellipsoid = ellipsoid_norm(stepper%prediction%step%lambda(:, c), contact%normal(:, c), &
             limits%force%value)
         if (ellipsoid <= 0.0_wp) cycle
         if (b/ellipsoid < limit%r) limit = limit_t(r=b/ellipsoid, node=model%contact_node(c), &
@@ -338,7 +305,7 @@ contains
     integer :: c, node, tool
 
     touching = .false.
-    associate (contact => stepper%system%contact, prediction => stepper%prediction, &
+    associate (contact => stepper%system%contact, step => stepper%prediction%step, &
         allowed => model%phase(state%phase)%limits%depth)
       do c = 1, model%n_contact
         if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
@@ -348,15 +315,15 @@ contains
         if (tool == 0 .or. contact%status(c) /= status_gap) cycle
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
-        approach = dot_product(prediction%tool_displacement(:, tool) &
-            - model%contact_point(c)%change(state%x, prediction%displacement), &
+        approach = dot_product(step%tool(:, tool) &
+            - model%contact_point(c)%change(state%x, step%x), &
             contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
         if (touching(tool) .and. .not. allowed%active) cycle
         depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))
         bound = (max(contact%distance(c), 0.0_wp) + depth)/approach
         if (bound < limit%r) limit = limit_t(r=bound, node=node, tool=tool, &
-            limiter=merge(limiter_gap, limiter_first_contact, touching(tool)))
+            limiter=merge("gap          ", "first contact", touching(tool)))
       end do
     end associate
   end function gap_limit
@@ -377,12 +344,12 @@ contains
       if (tool == 0) return
       line = phase%direction(:, tool)
       if (phase%until%kind == until_displacement) then
-        rate = dot_product(line, stepper%prediction%tool_displacement(:, tool))
+        rate = dot_product(line, stepper%prediction%step%tool(:, tool))
       else
         rate = 0.0_wp
         do c = 1, model%n_contact
           if (state%contact_tool(c) == tool) &
-              rate = rate + dot_product(line, stepper%prediction%lambda(:, c))
+              rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
         end do
       end if
       target = merge(1.0_wp, -1.0_wp, state%start%until_from_below)*phase%until%value

@@ -1,12 +1,14 @@
 !> Notes and warnings at the start and at the end of a phase: nodes that stay held, a pressed tool
-!> without contact, an unsupported sheet, yielding during a release.
+!> without contact, an unsupported sheet, yielding during a release, gaps of the contact layers.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_compliant, only : gap_under_force
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
   use dd3_linalg_tensor, only : identity
+  use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
@@ -17,7 +19,7 @@ module dd3_process_phase_warnings
   use dd3_process_phase_start, only : gap_of_tool
   implicit none
   private
-  public :: kept_note, press_warning, release_warning, support_warning, until_warning
+  public :: gap_note, kept_note, press_warning, release_warning, support_warning, until_warning
 
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
@@ -179,5 +181,39 @@ contains
         to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
         "compare with tools withdrawn by `move`"
   end function release_warning
+
+  !> Return a note on the mean gap between sheet and tools, weighted by the contact forces: what the
+  !> layers keep the sheet off the tools. Empty in the mixed formulation and without contact.
+  function gap_note(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: moment(model%n_tool), total(model%n_tool), force
+    integer :: c, tool
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      if (phase%mixed) return
+      moment = 0.0_wp
+      total = 0.0_wp
+      do c = 1, model%n_contact
+        if (state%status(c) == status_gap) cycle
+        force = norm2(state%lambda(:, c))
+        associate (t => state%contact_tool(c))
+          moment(t) = moment(t) + force*gap_under_force(layer_at(model, phase, c), force)
+          total(t) = total(t) + force
+        end associate
+      end do
+      do tool = 1, model%n_tool
+        if (total(tool) <= 0.0_wp) cycle
+        text = text//", "//to_text(moment(tool)/total(tool), 2)//" mm at '"// &
+            model%tool(tool)%name//"'"
+      end do
+      if (len(text) > 0) text = "phase '"//phase%name// &
+          "': mean gap in the contact layers by force"//text(2:)
+    end associate
+  end function gap_note
 
 end module dd3_process_phase_warnings

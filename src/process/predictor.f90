@@ -18,6 +18,7 @@ module dd3_process_predictor
   use dd3_model_phase, only : phase_t
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
+  use dd3_process_equilibrium, only : unknowns_t
   use dd3_process_external, only : unfaded_forces
   use dd3_system_contact, only : predictor_contact
   use dd3_system_enhanced, only : enhanced_response
@@ -36,14 +37,8 @@ module dd3_process_predictor
   type :: prediction_t
     !> Progress of the phase.
     real(wp) :: progress = 0.0_wp
-    !> Displacement of the nodes, `(3, n_node)`, mm.
-    real(wp), allocatable :: displacement(:, :)
-    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
-    real(wp), allocatable :: enhanced(:, :)
-    !> Increment of the contact forces, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda(:, :)
-    !> Displacement of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_displacement(:, :)
+    !> Increments of the unknowns.
+    type(unknowns_t) :: step
     !> Strain increment, Kelvin, material frame, `(6, n_point, n_element)`.
     real(wp), allocatable :: strain(:, :, :)
     !> Rotation increment, rad, `(n_point, n_element)`.
@@ -65,9 +60,9 @@ contains
     integer :: n_point
 
     n_point = model%element%n_point
-    allocate (self%displacement(3, model%n_node), self%lambda(3, model%n_contact), source=0.0_wp)
-    allocate (self%enhanced(model%element%n_enhanced, model%n_element), source=0.0_wp)
-    allocate (self%tool_displacement(3, model%n_tool), source=0.0_wp)
+    allocate (self%step%x(3, model%n_node), self%step%lambda(3, model%n_contact), &
+        self%step%enhanced(model%element%n_enhanced, model%n_element), &
+        self%step%tool(3, model%n_tool), source=0.0_wp)
     allocate (self%strain(6, n_point, model%n_element), source=0.0_wp)
     allocate (self%rotation(n_point, model%n_element), source=0.0_wp)
     allocate (self%plastic(n_point, model%n_element), source=.false.)
@@ -84,7 +79,7 @@ contains
     !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: switch, switched
+    integer :: switch, switched, tool, row
 
     associate (phase => model%phase(committed%phase), &
         unloading => model%phase(committed%phase)%limits%unloading)
@@ -104,18 +99,22 @@ contains
         call solve_reduced(system, model, phase, committed%x, solver, verdict)
         if (verdict%outcome /= verdict_converged) return
         call system%profile%start()
-        self%displacement(:, :) = reshape(system%problem%solution(:3*model%n_node), &
-            [3, model%n_node])
-        self%enhanced(:, :) = enhanced_response(system%enhanced, model, system%problem%solution)
+        self%step%x(:, :) = reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
+        self%step%enhanced(:, :) = enhanced_response(system%enhanced, model, &
+            system%problem%solution)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, system%partition, switched)
         if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
       end do
       call contact_force_increment(model, phase, system%contact, committed%x, system%stiffness, &
-          system%problem, self%lambda)
-      where (spread(system%contact%status == status_gap, 1, 3)) self%lambda = 0.0_wp
-      call tool_increments(self, model, phase, committed%start%tool_displacement, system)
+          system%problem, self%step%lambda)
+      where (spread(system%contact%status == status_gap, 1, 3)) self%step%lambda = 0.0_wp
+      self%step%tool = system%problem%tool_prescribed
+      do tool = 1, model%n_tool
+        row = 3*model%tool_row(tool)
+        if (phase%pressed(tool)) self%step%tool(:, tool) = system%problem%solution(row - 2:row)
+      end do
     end associate
   end subroutine predict
 
@@ -255,10 +254,10 @@ contains
 
     associate (nodes => model%connectivity(:, e), element => model%element)
       work%x_committed(:, :) = committed%x(:, nodes)
-      work%enhanced(:) = self%enhanced(:, e)
+      work%enhanced(:) = self%step%enhanced(:, e)
       work%x_initial(:, :) = model%x0(:, nodes)
       call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
-      call element%evaluate_rate(element, self%displacement(:, nodes), &
+      call element%evaluate_rate(element, self%step%x(:, nodes), &
           committed%orientation(:, :, :, e), work)
       self%strain(:, :, e) = work%strain_increment
       self%rotation(:, e) = work%rotation_increment
@@ -299,25 +298,5 @@ contains
     call sum_over_ranks(1, total)
     switched = nint(total(1))
   end subroutine switch_unloading
-
-  !> Set the displacement of the tools: the solution for pressed ones, the prescribed motion for the
-  !> others.
-  subroutine tool_increments(self, model, phase, start, system)
-    type(prediction_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    !> Displacements of the tools at the start of the phase, `(3, n_tool)`, mm.
-    real(wp), intent(in) :: start(:, :)
-    type(system_t), intent(in) :: system
-
-    integer :: tool, row
-
-    do tool = 1, model%n_tool
-      self%tool_displacement(:, tool) = self%progress*phase%tool_motion(tool, start)
-      if (.not. phase%pressed(tool)) cycle
-      row = model%tool_row(tool)
-      self%tool_displacement(:, tool) = system%problem%solution(3*row - 2:3*row)
-    end do
-  end subroutine tool_increments
 
 end module dd3_process_predictor

@@ -9,7 +9,6 @@ module dd3_process_residual
   use dd3_system_contact, only : evaluate_contact
   use dd3_system_contact_work, only : contact_work_t
   use dd3_system_drawbead, only : evaluate_beads
-  use dd3_system_enhanced, only : enhanced_square
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -92,7 +91,8 @@ contains
       end do
       found%worst_node = maxloc(contribution, dim=1)
       found%worst = contribution(found%worst_node)
-      sum_of_squares = sum(contribution) + enhanced_square(system%enhanced, model%thickness)
+      sum_of_squares = sum(contribution) &
+          + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
         if (any(contact%tool == tool .and. contact%status /= status_gap)) &

@@ -13,28 +13,25 @@ module dd3_process_run
       cause_beyond_until, cause_no_progress
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
-  use dd3_model_contact_report, only : gap_note
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_tool_depth, only : observe_tools
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_records, only : records_t
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
   use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
-  use dd3_process_limit, only : limiter_name
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
       until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns
-  use dd3_process_phase_warnings, only : kept_note, press_warning, release_warning, &
+  use dd3_process_phase_warnings, only : gap_note, kept_note, press_warning, release_warning, &
       support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
-  use dd3_process_stepper, only : stepper_t
-  use dd3_process_tool_observation, only : observe_tools
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_partition, only : partition_report
-  use dd3_system_system, only : new_system, system_t
+  use dd3_system_system, only : new_system
   implicit none
   private
   public :: run_model, run_start_t, run_summary_t, solver_options
@@ -181,7 +178,10 @@ contains
         next_output = next_output_progress(model%output, phase, committed)
         done = committed%increment
         call run_increment(run, model, error)
-        call note_choices(run%stepper%system, log)
+        associate (news => run%stepper%system%solver%news)
+          if (len_trim(news) > 0) call log%note(trim(news))
+          news = ""
+        end associate
         if (committed%increment > done) then
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
@@ -205,17 +205,6 @@ contains
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
-
-  !> Log what changed in the choices of the linear solver and of the number of threads.
-  subroutine note_choices(system, log)
-    type(system_t), intent(inout) :: system
-    type(log_t), intent(inout) :: log
-
-    if (len_trim(system%solver%news) > 0) call log%note(trim(system%solver%news))
-    if (len_trim(system%threads%news) > 0) call log%note(trim(system%threads%news))
-    system%solver%news = ""
-    system%threads%news = ""
-  end subroutine note_choices
 
   !> Begin a phase, with notes and warnings.
   subroutine start_phase(model, number, committed, log, error)
@@ -337,7 +326,7 @@ contains
       view%travel = state%travel
       view%increment = state%increment
       view%r = attempt%limit%r
-      view%limiter = limiter_name(attempt%limit%limiter)
+      view%limiter = trim(attempt%limit%limiter)
       view%iterations = size(attempt%course%norm)
       if (phase%control > 0) view%force = &
           dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))

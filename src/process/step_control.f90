@@ -3,13 +3,26 @@
 module dd3_process_step_control
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
-  use dd3_process_limit, only : limit_t, limiter_cutback, limiter_until
+  use dd3_model_state, only : state_t
   use dd3_process_newton, only : newton_course_t
+  use dd3_process_predictor, only : prediction_t
   use dd3_process_residual, only : residual_t
   use dd3_system_solve, only : solve_info_t
+  use dd3_system_system, only : system_t
   implicit none
   private
-  public :: attempt_t, r_cap_t, cut_back, return_to_until, next_r_cap, makes_progress
+  public :: attempt_t, limit_t, stepper_t, cut_back, return_to_until, set_next_r_cap, &
+      makes_progress
+
+  !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
+  type :: limit_t
+    real(wp) :: r = huge(1.0_wp)
+    !> Name of the limiter in the records.
+    character(len=16) :: limiter = ""
+    integer :: element = 0, point = 0, node = 0, tool = 0
+    !> Size B of the contact force, eq. (16), of the limiter of contact forces, N.
+    real(wp) :: force_size = 0.0_wp
+  end type limit_t
 
   !> Limit, course and outcome of an attempt at an increment.
   type :: attempt_t
@@ -28,12 +41,12 @@ module dd3_process_step_control
     logical :: touched = .false.
   end type attempt_t
 
-  !> Bound of r by earlier increments.
-  type :: r_cap_t
-    real(wp) :: r = huge(1.0_wp)
-    !> Whether the number of iterations set it, rather than a cut-back.
-    logical :: by_iterations = .false.
-  end type r_cap_t
+  !> Work data of the increments; only the memory of the solver is kept from one to the next.
+  type :: stepper_t
+    type(system_t) :: system
+    type(prediction_t) :: prediction
+    type(attempt_t) :: attempt
+  end type stepper_t
 
   !> Factor on r after a failed attempt, and the smallest r of another one.
   real(wp), parameter :: cutback_factor = 0.5_wp, cutback_min = 1.0e-5_wp
@@ -55,7 +68,7 @@ contains
     logical, intent(out) :: again
 
     again = attempt%limit%r*cutback_factor >= cutback_min
-    if (again) call try_again(attempt, cutback_factor, limiter_cutback)
+    if (again) call try_again(attempt, cutback_factor, "cutback")
   end subroutine cut_back
 
   !> Reduce r for another attempt if a converged one has gone beyond the early end of the phase: the
@@ -67,15 +80,14 @@ contains
     logical, intent(out) :: again
 
     again = fraction < 1.0_wp .and. fraction > 0.0_wp .and. attempt%number < most_returns
-    if (again) call try_again(attempt, fraction, limiter_until)
+    if (again) call try_again(attempt, fraction, "until")
   end subroutine return_to_until
 
   !> Make the next attempt, with a factor on r.
   pure subroutine try_again(attempt, factor, limiter)
     type(attempt_t), intent(inout) :: attempt
     real(wp), intent(in) :: factor
-    !> One of the `limiter_*` values.
-    integer, intent(in) :: limiter
+    character(len=*), intent(in) :: limiter
 
     attempt%limit%r = factor*attempt%limit%r
     attempt%limit%limiter = limiter
@@ -83,12 +95,12 @@ contains
     attempt%number = attempt%number + 1
   end subroutine try_again
 
-  !> Return the bound of r after an accepted increment. A cut-back, or more iterations than the
-  !> target, set one, which every other increment raises; a failed increment leaves none, so that a
-  !> restart repeats its attempts.
-  pure type(r_cap_t) function next_r_cap(cap, attempt, target_iterations) result(next)
-    !> Bound of the increment.
-    type(r_cap_t), intent(in) :: cap
+  !> Set the bound of r after an accepted increment. A cut-back, or more iterations than the target,
+  !> set one, which every other increment raises; a failed increment leaves none, so that a restart
+  !> repeats its attempts.
+  pure subroutine set_next_r_cap(state, attempt, target_iterations)
+    !> With the bound of the increment.
+    type(state_t), intent(inout) :: state
     !> Accepted.
     type(attempt_t), intent(in) :: attempt
     !> 0 for none.
@@ -96,18 +108,19 @@ contains
 
     real(wp) :: factor
 
-    next = cap
     factor = growth
     if (target_iterations > 0 .and. attempt%verdict%iterations > target_iterations) then
       factor = max(smallest_factor, &
           sqrt(real(target_iterations, wp)/real(attempt%verdict%iterations, wp)))
-      next = r_cap_t(attempt%limit%r, .true.)
-    else if (attempt%number > 1 .and. attempt%limit%limiter /= limiter_until) then
-      next = r_cap_t(attempt%limit%r, .false.)
+      state%r_cap = attempt%limit%r
+      state%r_cap_by_iterations = .true.
+    else if (attempt%number > 1 .and. attempt%limit%limiter /= "until") then
+      state%r_cap = attempt%limit%r
+      state%r_cap_by_iterations = .false.
     end if
-    if (next%r < huge(1.0_wp)/growth) next%r = next%r*factor
-    if (next%r > largest_r_cap) next%r = huge(1.0_wp)
-  end function next_r_cap
+    if (state%r_cap < huge(1.0_wp)/growth) state%r_cap = state%r_cap*factor
+    if (state%r_cap > largest_r_cap) state%r_cap = huge(1.0_wp)
+  end subroutine set_next_r_cap
 
   !> Whether an increment with the present r is large enough for the phase to end.
   pure logical function makes_progress(attempt, progress)

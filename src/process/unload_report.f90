@@ -31,8 +31,7 @@ contains
     text = ""
     associate (phase => model%phase(state%phase))
       if (size(phase%support, 2) == 0) return
-      call new_rigid_motion(body, state%x)
-      call body%hold_prescribed(state%x, without_chosen(model, state))
+      call new_body(body, model, state)
       do k = 1, size(phase%support, 2)
         text = text//", "//name_of_support(phase%support(:, k))
       end do
@@ -41,12 +40,13 @@ contains
     end associate
   end function unload_note
 
-  !> Return the prescribed directions of the running phase without the supports chosen.
-  pure function without_chosen(model, state) result(prescribed)
+  !> Make the body of the sheet with its prescribed directions, but for the supports chosen.
+  subroutine new_body(body, model, state)
+    type(rigid_motion_t), intent(out) :: body
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    logical, allocatable :: prescribed(:, :)
 
+    logical :: prescribed(3, model%n_node)
     integer :: k
 
     associate (phase => model%phase(state%phase))
@@ -55,7 +55,9 @@ contains
         prescribed(phase%support(2, k), phase%support(1, k)) = .false.
       end do
     end associate
-  end function without_chosen
+    call new_rigid_motion(body, state%x)
+    call body%hold_prescribed(state%x, prescribed)
+  end subroutine new_body
 
   !> Return a warning if the forces on the sheet at the start of the running phase, or the loads
   !> that stay on it, are not in equilibrium in the motions that the chosen supports stop; empty
@@ -105,8 +107,7 @@ contains
     real(wp) :: projector(6, 6), total(6)
     integer :: n
 
-    call new_rigid_motion(body, state%x)
-    call body%hold_prescribed(state%x, without_chosen(model, state))
+    call new_body(body, model, state)
     call body%free_projector(projector, n)
     total = 0.0_wp
     do n = 1, size(force, 2)

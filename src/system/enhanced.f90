@@ -7,12 +7,12 @@ module dd3_system_enhanced
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: enhanced_t, new_enhanced, store_condensation, enhanced_response, subtract_condensed, &
-      enhanced_square
+  public :: enhanced_t, new_enhanced, store_condensation, enhanced_response
 
   !> Data of the condensation; arrays of size zero for elements without enhanced strains.
   type :: enhanced_t
-    !> Forces conjugate to the parameters, zero in equilibrium, `(n_enhanced, n_element)`, N/mm.
+    !> Forces conjugate to the parameters, zero in equilibrium, `(n_enhanced, n_element)`, N/mm. A
+    !> parameter is the motion of a face, across it or along it, times half the thickness.
     real(wp), allocatable :: residual(:, :)
     !> Increments of the parameters without displacement, mm2, and for unit displacements, mm,
     !> `(n_enhanced, n_element)` and `(n_enhanced, 3, n_element_node, n_element)`; their signs are
@@ -32,7 +32,7 @@ contains
     associate (m => model%element%n_enhanced, n => model%n_element)
       allocate (self%residual(m, n), self%offset(m, n), source=0.0_wp)
       allocate (self%gain(m, 3, model%element%n_node, n), source=0.0_wp)
-      allocate (self%force(3, merge(model%n_node, 0, m > 0)), source=0.0_wp)
+      allocate (self%force(3, model%n_node), source=0.0_wp)
     end associate
   end subroutine new_enhanced
 
@@ -76,25 +76,5 @@ contains
       end do
     end do
   end function enhanced_response
-
-  !> Subtract the forces of the condensation from the residual of the nodes.
-  pure subroutine subtract_condensed(self, residual)
-    type(enhanced_t), intent(in) :: self
-    !> `(3, n_node)`, N.
-    real(wp), intent(inout) :: residual(:, :)
-
-    if (size(self%force) > 0) residual = residual - self%force
-  end subroutine subtract_condensed
-
-  !> Return the sum of squares of the parameters' residuals as forces on the faces of the elements,
-  !> N2. A parameter is the motion of the face, across it or along it, times half the thickness.
-  pure real(wp) function enhanced_square(self, thickness) result(total)
-    type(enhanced_t), intent(in) :: self
-    !> mm.
-    real(wp), intent(in) :: thickness
-
-    total = 0.0_wp
-    if (size(self%residual) > 0) total = sum((self%residual*(0.5_wp*thickness))**2)
-  end function enhanced_square
 
 end module dd3_system_enhanced

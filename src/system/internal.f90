@@ -33,12 +33,49 @@ contains
     !> Retry if an element is inverted or a return mapping fails, with the lowest such element.
     type(verdict_t), intent(out) :: verdict
 
+    trial%internal_force = 0.0_wp
+    call visit_elements(system, model, committed, .true., with_stiffness, verdict, trial)
+    call share_verdict(system%partition, verdict)
+    if (verdict%outcome /= verdict_converged) return
+    call system%partition%share_nodes(trial%internal_force)
+    call system%partition%share_elements(size(system%enhanced%residual), system%enhanced%residual)
+    if (with_stiffness) call system%partition%share_nodes(system%enhanced%force)
+  end subroutine update_material
+
+  !> Assemble the exact stiffness of the trial configuration from the tangents of the last update
+  !> or, without a trial state, that of the committed configuration from the tangents in the system.
+  subroutine assemble_stiffness(system, model, committed, trial)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    !> State after `update_material`; unchanged.
+    type(state_t), intent(inout), optional :: trial
+
+    type(verdict_t) :: verdict
+
+    call visit_elements(system, model, committed, .false., .true., verdict, trial)
+    call system%partition%share_nodes(system%enhanced%force)
+  end subroutine assemble_stiffness
+
+  !> Update all elements, or set their workspaces, and add their stiffness.
+  subroutine visit_elements(system, model, committed, updates, with_stiffness, verdict, trial)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    logical, intent(in) :: updates, with_stiffness
+    !> That of the lowest element that fails in the update.
+    type(verdict_t), intent(out) :: verdict
+    !> Not present for the stiffness of the committed configuration.
+    type(state_t), intent(inout), optional :: trial
+
     type(verdict_t) :: mine
     integer :: colour, k, e, batch, thread
 
     verdict%outcome = verdict_converged
-    trial%internal_force = 0.0_wp
-    if (with_stiffness) call clear_stiffness(system)
+    if (with_stiffness) then
+      call clear(system%stiffness)
+      system%enhanced%force = 0.0_wp
+    end if
     !$omp parallel num_threads(model%element_threads()) default(shared) &
     !$omp& private(mine, colour, k, e, batch, thread)
     thread = 1
@@ -49,27 +86,27 @@ contains
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
           if (.not. system%partition%evaluated(e)) cycle
-          call update_element(model, committed, trial, e, system%element(thread), &
-              system%tangent(:, :, :, e), mine)
-          if (mine%outcome == verdict_converged) then
+          mine%outcome = verdict_converged
+          if (updates) then
+            call update_element(model, committed, trial, e, system%element(thread), &
+                system%tangent(:, :, :, e), mine)
             system%enhanced%residual(:, e) = system%element(thread)%enhanced_force
-            if (with_stiffness) call add_stiffness(system, model, e, system%element(thread))
           else
+            call set_element(model, e, system%element(thread), committed, trial)
+          end if
+          if (mine%outcome /= verdict_converged) then
             !$omp critical (failed_element)
             if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
             !$omp end critical (failed_element)
+          else if (with_stiffness) then
+            call add_stiffness(system, model, e, system%element(thread))
           end if
         end do
       end do
       !$omp end do
     end do
     !$omp end parallel
-    call share_verdict(system%partition, verdict)
-    if (verdict%outcome /= verdict_converged) return
-    call system%partition%share_nodes(trial%internal_force)
-    call system%partition%share_elements(size(system%enhanced%residual), system%enhanced%residual)
-    if (with_stiffness) call system%partition%share_nodes(system%enhanced%force)
-  end subroutine update_material
+  end subroutine visit_elements
 
   !> Update one element.
   subroutine update_element(model, committed, trial, e, work, tangent, verdict)
@@ -114,38 +151,6 @@ contains
     end associate
   end subroutine update_element
 
-  !> Assemble the exact stiffness of the trial configuration from the tangents of the last update
-  !> or, without a trial state, that of the committed configuration from the tangents in the system.
-  subroutine assemble_stiffness(system, model, committed, trial)
-    type(system_t), intent(inout) :: system
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    !> State after `update_material`.
-    type(state_t), intent(in), optional :: trial
-
-    integer :: colour, k, e, batch, thread
-
-    call clear_stiffness(system)
-    !$omp parallel num_threads(model%element_threads()) default(shared) &
-    !$omp& private(colour, k, e, batch, thread)
-    thread = 1
-    !$ thread = omp_get_thread_num() + 1
-    do colour = 1, size(system%batches%colour_start) - 1
-      !$omp do schedule(dynamic)
-      do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
-        batch = system%batches%coloured(k)
-        do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
-          if (.not. system%partition%evaluated(e)) cycle
-          call set_element(model, e, system%element(thread), committed, trial)
-          call add_stiffness(system, model, e, system%element(thread))
-        end do
-      end do
-      !$omp end do
-    end do
-    !$omp end parallel
-    call system%partition%share_nodes(system%enhanced%force)
-  end subroutine assemble_stiffness
-
   !> Set the workspace of an element to its trial configuration, or to the committed one.
   subroutine set_element(model, e, work, committed, trial)
     type(model_t), intent(in) :: model
@@ -188,13 +193,5 @@ contains
         work%stiffness)
     if (model%element%n_enhanced > 0) call store_condensation(system%enhanced, model, e, work)
   end subroutine add_stiffness
-
-  !> Set the stiffness, and what its condensation adds up, to zero.
-  subroutine clear_stiffness(system)
-    type(system_t), intent(inout) :: system
-
-    call clear(system%stiffness)
-    system%enhanced%force = 0.0_wp
-  end subroutine clear_stiffness
 
 end module dd3_system_internal

@@ -1,10 +1,12 @@
-!> Stiffness of the loads that depend on the displacements: pressures, draw-beads, and the springs
-!> of released tools.
+!> Stiffness of the loads that depend on the displacements: pressures, which follow the surface,
+!> draw-beads, and the springs of released tools.
 module dd3_system_load_stiffness
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_matrix, only : position_of
   use dd3_model_model, only : model_t
+  use dd3_model_pressures, only : face_stiffness
   use dd3_model_state, only : state_t
   use dd3_system_drawbead, only : add_bead_stiffness
-  use dd3_system_pressure, only : add_pressure_stiffness
   use dd3_system_release, only : add_release_stiffness
   use dd3_system_system, only : system_t
   implicit none
@@ -24,5 +26,30 @@ contains
     call add_bead_stiffness(system%stiffness, system%bead)
     call add_release_stiffness(system, model, state)
   end subroutine add_load_stiffness
+
+  !> Subtract the derivatives of the pressure forces from the stiffness.
+  subroutine add_pressure_stiffness(system, model, state)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    real(wp), allocatable :: stiffness(:, :, :, :)
+    integer :: s, f, a, b, k
+
+    do s = 1, size(state%pressure)
+      if (.not. abs(state%pressure(s)) > 0.0_wp) cycle
+      do f = 1, size(model%pressure_set(s)%node, 2)
+        associate (node => model%pressure_set(s)%node(:, f), value => system%stiffness%value)
+          stiffness = state%pressure(s)*face_stiffness(model%element, state%x(:, node))
+          do a = 1, size(node)
+            do b = 1, size(node)
+              k = position_of(system%stiffness, node(a), node(b))
+              value(:, :, k) = value(:, :, k) - stiffness(:, :, a, b)
+            end do
+          end do
+        end associate
+      end do
+    end do
+  end subroutine add_pressure_stiffness
 
 end module dd3_system_load_stiffness

@@ -148,26 +148,15 @@ contains
     type(partition_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
-    integer :: rank, numbers(7)
-    real(wp) :: values(1 + size(verdict%value))
+    integer, allocatable :: bits(:)
+    integer :: rank
 
     if (.not. self%divided) return
     rank = rank_of_smallest(merge(1.0_wp, 0.0_wp, verdict%outcome == verdict_converged), &
         verdict%element)
-    numbers = [verdict%outcome, verdict%iterations, verdict%node, verdict%element, &
-        verdict%point, verdict%tool, verdict%cause]
-    values = [verdict%norm, verdict%value]
-    call broadcast_integers(rank, size(numbers), numbers)
-    call broadcast_reals(rank, size(values), values)
-    verdict%outcome = numbers(1)
-    verdict%iterations = numbers(2)
-    verdict%node = numbers(3)
-    verdict%element = numbers(4)
-    verdict%point = numbers(5)
-    verdict%tool = numbers(6)
-    verdict%cause = numbers(7)
-    verdict%norm = values(1)
-    verdict%value = values(2:)
+    bits = transfer(verdict, [0])
+    call broadcast_integers(rank, size(bits), bits)
+    verdict = transfer(bits, verdict)
   end subroutine share_verdict
 
 end module dd3_system_partition

@@ -22,9 +22,6 @@ module dd3_system_point_rows
   private
   public :: add_points, point_force_increment
 
-  !> Size of the matrix of a point.
-  integer, parameter :: most_values = 3*most_point_nodes
-
 contains
 
   !> Add the contributions of all points.
@@ -119,9 +116,8 @@ contains
     integer, intent(in) :: position(:, :, :)
     type(block_matrix_t), intent(inout) :: reduced
 
-    real(wp) :: block(3, 3, most_point_nodes, most_point_nodes)
-    real(wp) :: left(most_values, 3), right(3), value(most_values)
-    integer :: i, j, k, n
+    real(wp) :: block(3, 3, most_point_nodes, most_point_nodes), right(3, 3)
+    integer :: i, j, k
 
     associate (e => point%element, local => point%local)
       if (point%n_node == 1) then
@@ -129,24 +125,13 @@ contains
         reduced%value(:, :, k) = reduced%value(:, :, k) + stiffness
         return
       end if
-      n = point%n_node
-      do i = 1, n
-        left(3*i - 2:3*i, :) = transpose(b(:, :, i))
-      end do
       call point%bending_stiffness(x, force, block)
-      do j = 1, n
-        do k = 1, 3
-          right = matmul(stiffness, b(:, k, j))
-          value(:3*n) = left(:3*n, 1)*right(1) + left(:3*n, 2)*right(2) + left(:3*n, 3)*right(3)
-          do i = 1, n
-            block(:, k, i, j) = block(:, k, i, j) + value(3*i - 2:3*i)
-          end do
-        end do
-      end do
-      do j = 1, n
-        do i = 1, n
+      do j = 1, point%n_node
+        right = matmul(stiffness, b(:, :, j))
+        do i = 1, point%n_node
           k = position(local(i), local(j), e)
-          reduced%value(:, :, k) = reduced%value(:, :, k) + block(:, :, i, j)
+          reduced%value(:, :, k) = reduced%value(:, :, k) &
+              + (block(:, :, i, j) + matmul(transpose(b(:, :, i)), right))
         end do
       end do
     end associate

@@ -131,9 +131,10 @@ contains
         do while (reduced%column(at) < reduced%column(k))
           at = at + 1
         end do
-        call add_weighted_rows(weight, reduced%value(:, :, k), row, reduced%value(:, :, at))
+        reduced%value(row, :, at) = reduced%value(row, :, at) &
+            + matmul(weight, reduced%value(:, :, k))
       end if
-      call multiply_left(remaining, reduced%value(:, :, k))
+      reduced%value(:, :, k) = matmul(remaining, reduced%value(:, :, k))
     end do
     k = reduced%diagonal(node)
     reduced%value(:, :, k) = reduced%value(:, :, k) + d
@@ -174,39 +175,6 @@ contains
           + dot_product(phase%direction(:, tool), residual - remaining)
     end do
   end subroutine reduce_equilibrium
-
-  !> Multiply a block by a factor from the left.
-  pure subroutine multiply_left(factor, block)
-    real(wp), intent(in) :: factor(3, 3)
-    real(wp), intent(inout) :: block(3, 3)
-
-    real(wp) :: a, b, c
-    integer :: j
-
-    do j = 1, 3
-      a = block(1, j)
-      b = block(2, j)
-      c = block(3, j)
-      block(:, j) = factor(:, 1)*a + factor(:, 2)*b + factor(:, 3)*c
-    end do
-  end subroutine multiply_left
-
-  !> Add a weighted sum of the rows of a node's block to a row of a tool's block.
-  pure subroutine add_weighted_rows(weight, block, row, sum)
-    real(wp), intent(in) :: weight(3)
-    !> Block of the node.
-    real(wp), intent(in) :: block(3, 3)
-    integer, intent(in) :: row
-    !> Block of the tool.
-    real(wp), intent(inout) :: sum(3, 3)
-
-    integer :: j
-
-    do j = 1, 3
-      sum(row, j) = sum(row, j) &
-          + (weight(1)*block(1, j) + weight(2)*block(2, j) + weight(3)*block(3, j))
-    end do
-  end subroutine add_weighted_rows
 
   !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
   !> equilibrium holds the unknown reaction, the contact force follows the contact law instead.
@@ -274,9 +242,7 @@ contains
       do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
         if (stiffness%column(k) > model%n_node) exit
         first = 3*stiffness%column(k) - 2
-        change = change + (stiffness%value(:, 1, k)*problem%solution(first) &
-            + stiffness%value(:, 2, k)*problem%solution(first + 1) &
-            + stiffness%value(:, 3, k)*problem%solution(first + 2))
+        change = change + matmul(stiffness%value(:, :, k), problem%solution(first:first + 2))
       end do
       where (phase%prescribed(:, node)) change = 0.0_wp
       increment(:, c) = -node_residual(phase, problem, node, c) - change

@@ -11,15 +11,27 @@ module dd3_system_system
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_model_bead_points, only : bead_point_t
   use dd3_model_model, only : model_t
-  use dd3_system_batches, only : batches_t, new_batches
   use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_partition, only : new_partition, partition_t
   use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
-  use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
   public :: system_t, new_system, new_stiffness_pattern
+
+  !> Elements in a batch.
+  integer, parameter :: batch_size = 8
+
+  !> Batches of consecutive elements for the threads, coloured such that batches of one colour share
+  !> no node.
+  type :: batches_t
+    !> First element of each batch, and the end of the last one, `(n_batch + 1)`.
+    integer, allocatable :: start(:)
+    !> Batches sorted by colour, `(n_batch)`.
+    integer, allocatable :: coloured(:)
+    !> Position of the first batch of each colour, and the end of the last one, `(n_colour + 1)`.
+    integer, allocatable :: colour_start(:)
+  end type batches_t
 
   !> Data of assembly and solution.
   type :: system_t
@@ -35,8 +47,6 @@ module dd3_system_system
     real(wp), allocatable :: tangent(:, :, :, :)
     !> Workspaces of the element kernels, one per thread.
     type(element_work_t), allocatable :: element(:)
-    type(thread_choice_t) :: threads
-    !> Batches of elements for the threads.
     type(batches_t) :: batches
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
@@ -71,9 +81,8 @@ contains
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
     allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
-    call new_thread_choice(self%threads, most_threads())
     call new_batches(self%batches, model)
-    allocate (self%element(self%threads%all))
+    allocate (self%element(most_threads()))
     do i = 1, size(self%element)
       associate (element => model%element)
         call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
@@ -89,6 +98,36 @@ contains
     call new_linear_solver(self%solver, options, error)
     if (.not. allocated(error)) call self%solver%setup(self%reduced)
   end subroutine new_system
+
+  !> Colour the batches greedily in their order: two colours for a mesh numbered section by section.
+  subroutine new_batches(self, model)
+    type(batches_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+
+    logical, allocatable :: left(:), taken(:)
+    integer :: i, n, n_batch
+
+    n_batch = (model%n_element + batch_size - 1)/batch_size
+    self%start = [(min(1 + i*batch_size, model%n_element + 1), i=0, n_batch)]
+    allocate (self%coloured(n_batch), left(n_batch), taken(model%n_node))
+    left = .true.
+    self%colour_start = [1]
+    n = 0
+    do while (any(left))
+      taken = .false.
+      do i = 1, n_batch
+        if (.not. left(i)) cycle
+        associate (nodes => model%connectivity(:, self%start(i):self%start(i + 1) - 1))
+          if (any(taken(reshape(nodes, [size(nodes)])))) cycle
+          taken(reshape(nodes, [size(nodes)])) = .true.
+        end associate
+        left(i) = .false.
+        n = n + 1
+        self%coloured(n) = i
+      end do
+      self%colour_start = [self%colour_start, n + 1]
+    end do
+  end subroutine new_batches
 
   !> Build the pattern of the stiffness, with the rows of the pressed tools.
   subroutine new_stiffness_pattern(stiffness, model)

@@ -17,7 +17,7 @@ module run_samples
   use dd3_process_phase_end, only : phase_is_over
   use dd3_process_phase_start, only : begin_phase
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : stepper_t
   use dd3_system_system, only : new_system
   implicit none
   private

@@ -1,6 +1,8 @@
-!> Contact pressure: normal force over area.
-module dd3_model_contact_pressure
+!> Results of the contact in a committed state: pressure, which is normal force over area, and gap
+!> between the candidates and the nearest tool.
+module dd3_model_contact_results
   use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_model_contact_points, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
@@ -8,7 +10,7 @@ module dd3_model_contact_pressure
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: contact_pressures, tool_contact_t, tool_contacts
+  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts
 
   !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
@@ -58,4 +60,34 @@ contains
     end do
   end function tool_contacts
 
-end module dd3_model_contact_pressure
+  !> Return the gaps, `(n_contact_node)`, mm; at most the search distance of the phase, which is
+  !> also the value where no active tool is that near.
+  function contact_gaps(model, state) result(gap)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: gap(:)
+
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    real(wp) :: outward(3, model%n_contact)
+    integer :: c, t
+
+    associate (phase => model%phase(state%phase))
+      allocate (gap(model%n_contact_node), source=phase%search_distance)
+      if (.not. allocated(model%contact_face)) return
+      outward = outward_normals(model, state%x)
+      do c = 1, model%n_contact_node
+        do t = 1, model%n_tool
+          if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
+          hint = state%hint(t, c)
+          call find_contact(model%tool(t)%surface, &
+              model%point_position(c, state%x) - state%tool_displacement(:, t), hint, &
+              phase%search_distance, model%tolerance%committed_depth &
+              + state%layer_offset(t), hit, outward(:, c))
+          if (hit%found) gap(c) = min(gap(c), hit%distance)
+        end do
+      end do
+    end associate
+  end function contact_gaps
+
+end module dd3_model_contact_results
