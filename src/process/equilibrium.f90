@@ -123,6 +123,7 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     associate (system => self%system)
+      if (with_stiffness) call system%threads%begin_iteration()
       call system%profile%start()
       call update_material(system, self%model, self%committed, self%trial, with_stiffness, verdict)
       call system%profile%add(section_material)
@@ -229,12 +230,15 @@ contains
     !> Retry if there is no solution, or if it moves a node too far.
     type(verdict_t), intent(out) :: verdict
 
+    logical :: first
+
+    first = self%assembled
     self%status(:, 2:) = self%status(:, :n_kept - 1)
     self%status(:, 1) = self%system%contact%status
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
       call system%profile%start()
-      if (.not. self%assembled) call assemble_stiffness(system, model, self%committed, trial)
+      if (.not. first) call assemble_stiffness(system, model, self%committed, trial)
       system%problem%residual = system%problem%residual - system%enhanced%force
       call add_load_stiffness(system, model, trial)
       if (system%problem%missed) then
@@ -242,6 +246,7 @@ contains
       end if
       call system%profile%add(section_assembly)
       call solve_reduced(system, model, phase, self%trial%x, self%solver, verdict)
+      if (first) call system%threads%end_iteration()
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
       call set_step(self)

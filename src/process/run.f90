@@ -31,7 +31,7 @@ module dd3_process_run
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_partition, only : partition_report
-  use dd3_system_system, only : new_system
+  use dd3_system_system, only : new_system, system_t
   implicit none
   private
   public :: run_model, run_start_t, run_summary_t, solver_options
@@ -178,10 +178,7 @@ contains
         next_output = next_output_progress(model%output, phase, committed)
         done = committed%increment
         call run_increment(run, model, error)
-        associate (news => run%stepper%system%solver%news)
-          if (len_trim(news) > 0) call log%note(trim(news))
-          news = ""
-        end associate
+        call note_choices(run%stepper%system, log)
         if (committed%increment > done) then
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
@@ -205,6 +202,17 @@ contains
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
+
+  !> Log what changed in the choices of the linear solver and of the number of threads.
+  subroutine note_choices(system, log)
+    type(system_t), intent(inout) :: system
+    type(log_t), intent(inout) :: log
+
+    if (len_trim(system%solver%news) > 0) call log%note(trim(system%solver%news))
+    if (len_trim(system%threads%news) > 0) call log%note(trim(system%threads%news))
+    system%solver%news = ""
+    system%threads%news = ""
+  end subroutine note_choices
 
   !> Begin a phase, with notes and warnings.
   subroutine start_phase(model, number, committed, log, error)

@@ -15,6 +15,7 @@ module dd3_system_system
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
   use dd3_system_partition, only : new_partition, partition_t
   use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
+  use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
   public :: system_t, new_system, new_stiffness_pattern
@@ -47,6 +48,7 @@ module dd3_system_system
     real(wp), allocatable :: tangent(:, :, :, :)
     !> Workspaces of the element kernels, one per thread.
     type(element_work_t), allocatable :: element(:)
+    type(thread_choice_t) :: threads
     type(batches_t) :: batches
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
@@ -81,8 +83,9 @@ contains
     self%stiffness%value(:, :, :) = 0.0_wp
     self%reduced = self%stiffness
     allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
+    call new_thread_choice(self%threads, most_threads())
     call new_batches(self%batches, model)
-    allocate (self%element(most_threads()))
+    allocate (self%element(self%threads%all))
     do i = 1, size(self%element)
       associate (element => model%element)
         call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
