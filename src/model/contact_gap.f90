@@ -2,6 +2,7 @@
 module dd3_model_contact_gap
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_model_contact_layer, only : border_at
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
@@ -34,7 +35,7 @@ contains
           call find_contact(model%tool(t)%surface, &
               model%point_position(c, state%x) - state%tool_displacement(:, t), hint, &
               phase%search_distance, model%tolerance%committed_depth &
-              + state%layer_offset(t), hit, outward(:, c))
+              + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)
         end do
       end do

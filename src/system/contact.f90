@@ -7,7 +7,7 @@ module dd3_system_contact
   use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       round_off, status_gap, status_slip, status_stick
-  use dd3_model_contact_layer, only : layer_at
+  use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_penalty, only : contact_penalty
@@ -322,7 +322,7 @@ contains
         moved = x - self%committed_x(:, c) + committed%tool_displacement(:, t)
         call find_contact(model%tool(t)%surface, x, hint(t), self%search_distance, &
             model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
-            self%outward(:, c))
+            self%outward(:, c), border_at(model, phase, c))
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis
