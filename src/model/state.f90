@@ -107,6 +107,11 @@ module dd3_model_state
     integer, allocatable :: deepest_face(:)
     !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
     real(wp), allocatable :: deepest_radius(:)
+    !> Patch, edge and node where a point under pressure first left each tool over an open edge in
+    !> the running phase, `(3, n_tool)`, 0 for none, and the displacement of the tool in the phase
+    !> until then, `(n_tool)`, mm.
+    integer, allocatable :: open_edge(:, :)
+    real(wp), allocatable :: open_edge_displacement(:)
     !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
     real(wp), allocatable :: slip_path(:)
     !> Restraining force per length of each interval of the draw-beads, N/mm, and its slip path, mm,
@@ -150,7 +155,8 @@ contains
       allocate (self%tool_force(3, n_tool), self%layer_offset(n_tool), source=0.0_wp)
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
-      allocate (self%deepest_face(n_tool), source=0)
+      allocate (self%deepest_face(n_tool), self%open_edge(3, n_tool), source=0)
+      allocate (self%open_edge_displacement(n_tool), source=0.0_wp)
       allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     call new_beads(self, model)

@@ -5,6 +5,7 @@ module dd3_process_step_control
   use dd3_base_verdict, only : verdict_t
   use dd3_process_limit, only : limit_t, limiter_cutback, limiter_until
   use dd3_process_newton, only : newton_course_t
+  use dd3_process_open_edges, only : passage_t
   use dd3_process_residual, only : residual_t
   use dd3_system_solve, only : solve_info_t
   implicit none
@@ -26,6 +27,8 @@ module dd3_process_step_control
     type(verdict_t) :: verdict
     !> Whether a tool touched the node of the verdict in the last iterations.
     logical :: touched = .false.
+    !> Where the prediction of a failed attempt leads a point in contact over an open edge.
+    type(passage_t) :: passage
   end type attempt_t
 
   !> Bound of r by earlier increments.

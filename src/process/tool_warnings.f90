@@ -1,11 +1,12 @@
 !> Warnings about the tools at the end of a phase, or of a run that stops within one: without
-!> contact, entered between the nodes of the sheet, crossed.
+!> contact, entered between the nodes of the sheet, left over an open edge, crossed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_process_open_edges, only : edge_name
   use dd3_process_tool_crossing, only : crossing_t, find_crossing
   implicit none
   private
@@ -36,6 +37,7 @@ contains
         if (.not. active(a)) cycle
         if (ended) call add(warnings, model, state, contact_warning(model, state, a))
         call add(warnings, model, state, depth_warning(model, state, a))
+        call add(warnings, model, state, edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (active(b)) call add(warnings, model, state, crossing_warning(model, state, a, b))
         end do
@@ -169,6 +171,28 @@ contains
     text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
         to_text(radius, 3)//" mm"
   end function suitable_mesh
+
+  !> Return a warning if the sheet has left a tool under pressure where its surface ends.
+  function edge_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    text = ""
+    associate (place => state%open_edge(:, tool), moved => state%open_edge_displacement(tool))
+      if (place(1) == 0) return
+      text = "the sheet left tool '"//model%tool(tool)%name//"' under pressure over the open "// &
+          edge_name(place(1), place(2))//", first at node "//to_text(place(3))
+      if (moved > 0.0_wp) text = text//" after "//to_text(moved, 4)//" mm of the tool"
+    end associate
+    if (model%phase(state%phase)%mixed) then
+      text = text//"; there is no contact beyond it"
+    else
+      text = text//"; it is rounded by half the thickness of the sheet"
+    end if
+    text = text//": if the tool goes on, continue its surface"
+  end function edge_warning
 
   !> Return a warning if two tools have crossed in the phase.
   function crossing_warning(model, state, a, b) result(text)
