@@ -56,7 +56,7 @@ contains
     type(hit_t), intent(out) :: hit
     !> Outward normal of the sheet at the node: the tool's must be opposite.
     real(wp), intent(in), optional :: outward(3)
-    !> Contact beside the free border; none by default.
+    !> Contact beside the border; none by default.
     type(border_t), intent(in), optional :: border
 
     type(query_t) :: query

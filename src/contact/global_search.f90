@@ -28,7 +28,7 @@ module dd3_contact_global_search
     real(wp) :: x(3)
     !> Largest distances of a contact outside and inside the tool, mm.
     real(wp) :: search_distance, depth
-    !> Contact beside the free border.
+    !> Contact beside the border.
     type(border_t) :: border
     !> Outward normal of the sheet; zero if unknown.
     real(wp) :: outward(3) = 0.0_wp
@@ -60,7 +60,7 @@ module dd3_contact_global_search
 contains
 
   !> Return the distance within which patches are searched, mm. A node that has gone a quarter turn
-  !> around the free border is found.
+  !> around the border is found.
   pure real(wp) function search_radius(query)
     type(query_t), intent(in) :: query
 

@@ -5,7 +5,7 @@
 !> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
 !> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
-!> At the free border the surface is rounded: with the unit normal m of the patch at the closest point
+!> At the border the surface is rounded: with the unit normal m of the patch at the closest point
 !> y of the border and the radius R,
 !>     c = y - R m,    d = |x - c| - R,    n = (x - c)/|x - c|,
 !>     dn/dx = (I - n n^T - (1 + R m.y_,tt/t.t) t t^T / (t.t - r.y_,tt)) / |x - c|.
@@ -34,7 +34,7 @@ module dd3_contact_hit
   !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
   real(wp), parameter :: smallest_determinant = 1.0e-8_wp
 
-  !> Contact beside the free border of a surface.
+  !> Contact beside the border of a surface.
   type :: border_t
     !> Radius of the border, mm.
     real(wp) :: radius = 0.0_wp
@@ -46,7 +46,7 @@ module dd3_contact_hit
   type :: hit_t
     !> True if the node can touch the surface there.
     logical :: found = .false.
-    !> True if the node is beside the surface, its closest point on the free border.
+    !> True if the node is beside the surface, its closest point on the border.
     logical :: border = .false.
     !> Patch of the closest point, or 0.
     integer :: patch = 0
@@ -74,7 +74,7 @@ contains
     !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
     type(projection_t), intent(in) :: projection
-    !> Radius of the free border, mm.
+    !> Radius of the border, mm.
     real(wp), intent(in) :: radius
 
     real(wp) :: normal(3), first(3, 2), second(3, 3)
@@ -216,7 +216,7 @@ contains
     call set_normal_gradient(hit, projection, hit%distance, [0.0_wp, 0.0_wp, 0.0_wp])
   end subroutine set_edge_hit
 
-  !> Set gap, normal and its gradient beside the free border.
+  !> Set gap, normal and its gradient beside the border.
   pure subroutine set_border_hit(hit, patch, projection, radius)
     type(hit_t), intent(inout) :: hit
     type(patch_t), intent(in) :: patch

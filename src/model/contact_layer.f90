@@ -15,7 +15,7 @@ module dd3_model_contact_layer
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
-  !> Radius of the free border of a tool over the thickness of the sheet.
+  !> Radius of the border of a tool over the thickness of the sheet.
   real(wp), parameter :: border_radius = 0.5_wp
   !> Progress below which a rest is round-off.
   real(wp), parameter :: no_progress = 1.0e-9_wp
@@ -32,7 +32,7 @@ contains
         model%contact_stiffness(c))
   end function layer_at
 
-  !> Return the contact of a candidate beside the free border of a tool: within the layer. In the
+  !> Return the contact of a candidate beside the border of a tool: within the layer. In the
   !> mixed formulation there is none.
   pure type(border_t) function border_at(model, phase, c) result(border)
     type(model_t), intent(in) :: model
