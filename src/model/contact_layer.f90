@@ -3,9 +3,10 @@
 !> place by what is missing, and advances to it over the first part of the phase.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
-  use dd3_contact_closest, only : border_t, find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
@@ -89,8 +90,8 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       layer = layer_at(model, phase, c)
       hint = hint_t()
-      call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
-          - state%tool_displacement(:, tool), hint, layer%height, &
+      call find_on_tool(model%tool(tool), state%placement(tool), &
+          model%point_position(c, state%x), hint, layer%height, &
           model%tolerance%committed_depth + state%layer_offset(tool), hit, &
           border=border_at(model, phase, c))
       if (.not. hit%found) cycle
@@ -130,8 +131,8 @@ contains
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = hint_t()
-          call find_contact(model%tool(t)%surface, model%point_position(c, state%x) &
-              - state%tool_displacement(:, t), hint, layer%height, &
+          call find_on_tool(model%tool(t), state%placement(t), &
+              model%point_position(c, state%x), hint, layer%height, &
               model%tolerance%committed_depth + state%layer_offset(t), hit, &
               border=border_at(model, phase, c))
           if (.not. hit%found) cycle

@@ -5,6 +5,7 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -132,9 +133,19 @@ module dd3_model_state
     real(wp) :: bead_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
+  contains
+    procedure :: placement
   end type state_t
 
 contains
+
+  !> Return the placement of a tool.
+  pure type(placement_t) function placement(self, tool)
+    class(state_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    placement%translation = self%tool_displacement(:, tool)
+  end function placement
 
   !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
   subroutine new_state(self, model)

@@ -3,9 +3,11 @@
 module dd3_process_open_edges
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_placement, only : placement_t
   use dd3_contact_surface, only : edge_parameters, surface_t
+  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   implicit none
@@ -35,7 +37,7 @@ contains
 
     do tool = 1, model%n_tool
       if (trial%open_edge(1, tool) > 0) cycle
-      passage = passage_over(model, committed, trial%x, trial%tool_displacement(:, tool), tool)
+      passage = passage_over(model, committed, trial%x, trial%placement(tool), tool)
       if (passage%tool == 0) cycle
       trial%open_edge(:, tool) = [passage%patch, passage%edge, passage%node]
       trial%open_edge_displacement(tool) = norm2(trial%tool_displacement(:, tool) &
@@ -51,22 +53,25 @@ contains
     real(wp), intent(in) :: displacement(:, :), tool_displacement(:, :)
     type(passage_t) :: passage
 
+    type(placement_t) :: placement
     integer :: tool
 
     do tool = 1, model%n_tool
-      passage = passage_over(model, state, state%x + displacement, &
-          state%tool_displacement(:, tool) + tool_displacement(:, tool), tool)
+      placement = state%placement(tool)
+      placement%translation = placement%translation + tool_displacement(:, tool)
+      passage = passage_over(model, state, state%x + displacement, placement, tool)
       if (passage%tool > 0) return
     end do
   end function find_passage
 
   !> Return the first point in contact with a tool in a state that lies beside its surface in
   !> another one.
-  function passage_over(model, state, x, tool_displacement, tool) result(passage)
+  function passage_over(model, state, x, placement, tool) result(passage)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    !> Positions of the nodes, `(3, n_node)`, and displacement of the tool in the other state, mm.
-    real(wp), intent(in) :: x(:, :), tool_displacement(3)
+    !> Positions of the nodes, `(3, n_node)`, mm, and placement of the tool in the other state.
+    real(wp), intent(in) :: x(:, :)
+    type(placement_t), intent(in) :: placement
     integer, intent(in) :: tool
     type(passage_t) :: passage
 
@@ -79,14 +84,15 @@ contains
     where (state%contact_tool == tool .and. state%status /= status_gap) &
         force = norm2(state%lambda, dim=1)
     least = notable_force*sum(force)/max(1, count(force > 0.0_wp))
-    associate (surface => model%tool(tool)%surface, distance => model%tolerance%tool_search)
+    associate (distance => model%tolerance%tool_search)
       do c = 1, model%n_contact
         if (force(c) <= least) cycle
         hint = hint_t()
-        call find_contact(surface, model%point_position(c, x) - tool_displacement, hint, distance, &
+        call find_on_tool(model%tool(tool), placement, model%point_position(c, x), hint, distance, &
             distance, hit)
         if (.not. hit%border) cycle
-        passage = passage_t(tool, hit%patch, open_edge_at(surface, hit), model%contact_node(c))
+        passage = passage_t(tool, hit%patch, open_edge_at(model%tool(tool)%surface, hit), &
+            model%contact_node(c))
         return
       end do
     end associate

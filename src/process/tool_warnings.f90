@@ -3,7 +3,8 @@
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
+  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name
@@ -114,8 +115,8 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       associate (distance => model%tolerance%tool_search, n => model%contact_node(c))
-        call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
-            - state%tool_displacement(:, tool), hint, distance, distance, hit)
+        call find_on_tool(model%tool(tool), state%placement(tool), &
+            model%point_position(c, state%x), hint, distance, distance, hit)
         if (.not. hit%found .or. abs(hit%distance) >= abs(gap)) cycle
         gap = hit%distance
         node = n
