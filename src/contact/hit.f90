@@ -5,8 +5,8 @@
 !> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
 !> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
-!> At the border the surface is rounded: with the unit normal m of the patch at the closest point
-!> y of the border and the radius R,
+!> At the border the surface is rounded: with the unit normal m of the patch at the closest point y
+!> of the border and the radius R,
 !>     c = y - R m,    d = |x - c| - R,    n = (x - c)/|x - c|,
 !>     dn/dx = (I - n n^T - (1 + R m.y_,tt/t.t) t t^T / (t.t - r.y_,tt)) / |x - c|.
 !> Gap and normal are those of the patch where the node passes the border, and the derivatives are
@@ -229,6 +229,8 @@ contains
     call normal_at(patch, projection%uv(1), projection%uv(2), normal, hit%found)
     hit%normal = radius*normal - projection%offset
     distance = norm2(hit%normal)
+    hit%found = hit%found .and. distance > smallest_determinant*radius
+    if (.not. hit%found) return
     hit%normal = hit%normal/distance
     hit%distance = distance - radius
     call set_normal_gradient(hit, projection, distance, radius*normal)

@@ -12,7 +12,8 @@ module dd3_model_contact_layer
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: layer_at, border_at, starting_offset, held_offsets, offset_factor, offset_rate, progress_left
+  public :: layer_at, border_at, starting_offset, held_offsets
+  public :: offset_factor, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
@@ -33,8 +34,8 @@ contains
         model%contact_stiffness(c))
   end function layer_at
 
-  !> Return the contact of a candidate beside the border of a tool: within the layer. In the
-  !> mixed formulation there is none.
+  !> Return the contact of a candidate beside the border of a tool: within the layer. In the mixed
+  !> formulation there is none.
   pure type(border_t) function border_at(model, phase, c) result(border)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase

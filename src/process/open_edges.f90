@@ -83,7 +83,7 @@ contains
     force = 0.0_wp
     where (state%contact_tool == tool .and. state%status /= status_gap) &
         force = norm2(state%lambda, dim=1)
-    least = notable_force*sum(force)/max(1, count(force > 0.0_wp))
+    least = notable_force*sum(force)/real(max(1, count(force > 0.0_wp)), wp)
     associate (distance => model%tolerance%tool_search)
       do c = 1, model%n_contact
         if (force(c) <= least) cycle
