@@ -241,8 +241,8 @@ contains
     !> Has its normal.
     type(hit_t), intent(inout) :: hit
     type(projection_t), intent(in) :: projection
-    !> Distance of the node from the centre of the rounded edge, negative inside the tool, and vector
-    !> from the centre to the edge, mm.
+    !> Distance of the node from the centre of the rounded edge, negative inside the tool, and
+    !> vector from the centre to the edge, mm.
     real(wp), intent(in) :: distance, radius(3)
 
     real(wp) :: tangent(3), square, stretch, along

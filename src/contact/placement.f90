@@ -68,8 +68,8 @@ contains
     displacement = to%translation - from%translation + by_rotation(from, to, x)
   end function point_displacement
 
-  !> Return the displacement of a point of the sheet less that of the tool's material point under it,
-  !> mm.
+  !> Return the displacement of a point of the sheet less that of the tool's material point under
+  !> it, mm.
   pure function relative_displacement(from, to, before, after) result(displacement)
     !> Placements of the tool before and after.
     type(placement_t), intent(in) :: from, to
