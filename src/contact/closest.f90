@@ -12,15 +12,15 @@
 !> (2008) 113-162.
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
-  use dd3_contact_hit, only : hit_t, new_hit, projection_location, on_border
+  use dd3_contact_hit, only : border_t, hit_t, new_hit, projection_location, on_border
   use dd3_contact_global_search, only : apply_limits, edge_margin, query_t, search_all, &
-      search_tree
+      search_radius, search_tree
   use dd3_contact_project, only : project
   use dd3_contact_projection, only : projection_t
   use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
   implicit none
   private
-  public :: hint_t, hit_t, find_contact
+  public :: border_t, hint_t, hit_t, find_contact
 
   !> Largest number of patches visited in a local search.
   integer, parameter :: most_patches = 4
@@ -44,7 +44,7 @@ module dd3_contact_closest
 contains
 
   !> Find the closest point of a surface to a node.
-  pure subroutine find_contact(surface, x, hint, search_distance, depth, hit, outward)
+  pure subroutine find_contact(surface, x, hint, search_distance, depth, hit, outward, border)
     type(surface_t), intent(in) :: surface
     !> Position of the node in the surface's frame, mm.
     real(wp), intent(in) :: x(3)
@@ -56,16 +56,19 @@ contains
     type(hit_t), intent(out) :: hit
     !> Outward normal of the sheet at the node: the tool's must be opposite.
     real(wp), intent(in), optional :: outward(3)
+    !> Contact beside the border; none by default.
+    type(border_t), intent(in), optional :: border
 
     type(query_t) :: query
     real(wp) :: moved
 
-    query = query_t(x, search_distance, depth)
+    query = query_t(x, search_distance, depth, border_t())
+    if (present(border)) query%border = border
     if (present(outward)) query%outward = outward
     if (.not. hint%due) then
       moved = sum((x - hint%anchor)**2)
       if (hint%patch == 0) then
-        if (sqrt(moved) + max(search_distance, depth) < hint%clearance) return
+        if (sqrt(moved) + search_radius(query) < hint%clearance) return
       else if (moved <= (0.5_wp*surface%patch(hint%patch)%shorter_side)**2) then
         call search_locally(surface, query, hint, hit)
         if (hit%found) return
@@ -90,7 +93,7 @@ contains
     projection%uv = [hint%u, hint%v]
     call project_across_edges(surface, query%x, k, projection, ok)
     if (.not. ok) return
-    call new_hit(hit, surface, k, query%x, projection)
+    call new_hit(hit, surface, k, query%x, projection, query%border%radius)
     call apply_limits(hit, query)
     if (hit%found) call keep_point(hint, hit)
   end subroutine search_locally
@@ -201,7 +204,7 @@ contains
     call project(surface%patch(hint%patch), query%x, lower, upper, projection)
     if (any(projection%active /= 0)) return
     if (projection%distance > best + equal_distance*surface%size) return
-    call new_hit(candidate, surface, hint%patch, query%x, projection)
+    call new_hit(candidate, surface, hint%patch, query%x, projection, query%border%radius)
     call apply_limits(candidate, query)
     if (candidate%found) hit = candidate
   end subroutine prefer_last_patch

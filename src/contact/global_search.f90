@@ -4,14 +4,14 @@ module dd3_contact_global_search
   use dd3_base_kinds, only : wp
   use dd3_contact_box_tree, only : box_distance, box_walk_t, leaf_size, nearest_beyond, next_leaf, &
       start_walk
-  use dd3_contact_hit, only : hit_t, new_hit
+  use dd3_contact_hit, only : border_t, hit_t, new_hit
   use dd3_contact_oriented_box, only : oriented_distance
   use dd3_contact_project, only : project_globally
   use dd3_contact_projection, only : projection_t
   use dd3_contact_surface, only : surface_t
   implicit none
   private
-  public :: query_t, apply_limits, search_tree, search_all, edge_margin
+  public :: query_t, apply_limits, search_radius, search_tree, search_all, edge_margin
 
   !> Distance, relative to the surface's size, by which a point on an edge must be nearer than
   !> another one to be preferred.
@@ -28,6 +28,8 @@ module dd3_contact_global_search
     real(wp) :: x(3)
     !> Largest distances of a contact outside and inside the tool, mm.
     real(wp) :: search_distance, depth
+    !> Contact beside the border.
+    type(border_t) :: border
     !> Outward normal of the sheet; zero if unknown.
     real(wp) :: outward(3) = 0.0_wp
   end type query_t
@@ -57,11 +59,21 @@ module dd3_contact_global_search
 
 contains
 
+  !> Return the distance within which patches are searched, mm. A node that has gone a quarter turn
+  !> around the border is found.
+  pure real(wp) function search_radius(query)
+    type(query_t), intent(in) :: query
+
+    search_radius = max(query%search_distance, query%depth, &
+        sqrt(2.0_wp)*query%border%radius + query%border%reach)
+  end function search_radius
+
   !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
   pure subroutine apply_limits(hit, query)
     type(hit_t), intent(inout) :: hit
     type(query_t), intent(in) :: query
 
+    if (hit%border) hit%found = hit%found .and. hit%distance < query%border%reach
     hit%found = hit%found .and. hit%distance <= query%search_distance &
         .and. hit%distance > -query%depth .and. dot_product(hit%normal, query%outward) <= 0.0_wp
   end subroutine apply_limits
@@ -84,7 +96,7 @@ contains
     real(wp) :: radius, margin, near(leaf_size)
     integer :: i, first, last
 
-    radius = max(query%search_distance, query%depth)
+    radius = search_radius(query)
     margin = tie_margin*(surface%size + maxval(abs(query%x)))
     best = huge(1.0_wp)
     clearance = huge(1.0_wp)
@@ -162,10 +174,10 @@ contains
     candidate%accepted = projection%distance <= limit
     if (.not. candidate%accepted) return
     associate (hit => candidate%hit)
-      call new_hit(hit, surface, k, query%x, projection)
+      call new_hit(hit, surface, k, query%x, projection, query%border%radius)
       if (.not. hit%found) return
       call apply_limits(hit, query)
-      candidate%accepted = hit%found
+      candidate%accepted = hit%found .or. hit%border
     end associate
   end subroutine examine
 
@@ -237,7 +249,7 @@ contains
     real(wp) :: radius, near
     integer :: k
 
-    radius = max(query%search_distance, query%depth)
+    radius = search_radius(query)
     best = huge(1.0_wp)
     clearance = huge(1.0_wp)
     do k = 1, size(surface%patch)

@@ -5,7 +5,13 @@
 !> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
 !> n = +- r/|r| and
 !>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
-!> A node beside the outer border of the surface has no contact.
+!> At the border the surface is rounded: with the unit normal m of the patch at the closest point y
+!> of the border and the radius R,
+!>     c = y - R m,    d = |x - c| - R,    n = (x - c)/|x - c|,
+!>     dn/dx = (I - n n^T - (1 + R m.y_,tt/t.t) t t^T / (t.t - r.y_,tt)) / |x - c|.
+!> Gap and normal are those of the patch where the node passes the border, and the derivatives are
+!> exact where m does not turn about the border. A node beside the border farther than a given gap
+!> has no contact.
 !> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov and
 !> Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges Baerentzen and Aanaes, IEEE
 !> Trans. Vis. Comput. Graph. 11 (2005) 243-253.
@@ -16,7 +22,7 @@ module dd3_contact_hit
   use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
   implicit none
   private
-  public :: hit_t, new_hit, on_border, projection_location
+  public :: border_t, hit_t, new_hit, on_border, projection_location
 
   !> Location of a closest point: inside its patch or at a smooth edge; on a sharp inner edge or the
   !> outer border, with the node beside the patch.
@@ -28,12 +34,19 @@ module dd3_contact_hit
   !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
   real(wp), parameter :: smallest_determinant = 1.0e-8_wp
 
+  !> Contact beside the border of a surface.
+  type :: border_t
+    !> Radius of the border, mm.
+    real(wp) :: radius = 0.0_wp
+    !> Gap below which there is contact, mm; none by default.
+    real(wp) :: reach = 0.0_wp
+  end type border_t
+
   !> Closest point of a surface to a node.
   type :: hit_t
     !> True if the node can touch the surface there.
     logical :: found = .false.
-    !> True if the node is beside the surface, its closest point on the outer border; `found` is
-    !> false then.
+    !> True if the node is beside the surface, its closest point on the border.
     logical :: border = .false.
     !> Patch of the closest point, or 0.
     integer :: patch = 0
@@ -52,7 +65,7 @@ module dd3_contact_hit
 contains
 
   !> Make a hit from a projection.
-  pure subroutine new_hit(hit, surface, k, x, projection)
+  pure subroutine new_hit(hit, surface, k, x, projection, radius)
     !> `found` whatever its distance.
     type(hit_t), intent(inout) :: hit
     type(surface_t), intent(in) :: surface
@@ -61,6 +74,8 @@ contains
     !> Position of the node, mm.
     real(wp), intent(in) :: x(3)
     type(projection_t), intent(in) :: projection
+    !> Radius of the border, mm.
+    real(wp), intent(in) :: radius
 
     real(wp) :: normal(3), first(3, 2), second(3, 3)
     integer :: location
@@ -73,12 +88,10 @@ contains
     hit%v = projection%uv(2)
     hit%point = x + projection%offset
     hit%border = location == on_border
-    hit%found = .not. hit%border
+    hit%found = .true.
     select case (location)
     case (on_border)
-      hit%distance = projection%distance
-      hit%normal = -projection%offset/projection%distance
-      hit%dnormal = 0.0_wp
+      call set_border_hit(hit, surface%patch(k), projection, radius)
     case (on_sharp_edge)
       call set_edge_hit(hit, surface, k, projection)
     case default
@@ -195,28 +208,63 @@ contains
     integer, intent(in) :: k
     type(projection_t), intent(in) :: projection
 
-    real(wp) :: mean(3), tangent(3), stretch
-    integer :: a, i
+    real(wp) :: mean(3)
 
     mean = mean_normal(surface, k, projection)
     hit%distance = sign(projection%distance, -dot_product(projection%offset, mean))
     hit%normal = -projection%offset/hit%distance
+    call set_normal_gradient(hit, projection, hit%distance, [0.0_wp, 0.0_wp, 0.0_wp])
+  end subroutine set_edge_hit
+
+  !> Set gap, normal and its gradient beside the border.
+  pure subroutine set_border_hit(hit, patch, projection, radius)
+    type(hit_t), intent(inout) :: hit
+    type(patch_t), intent(in) :: patch
+    type(projection_t), intent(in) :: projection
+    !> Radius of the border, mm.
+    real(wp), intent(in) :: radius
+
+    real(wp) :: normal(3), distance
+
+    call normal_at(patch, projection%uv(1), projection%uv(2), normal, hit%found)
+    hit%normal = radius*normal - projection%offset
+    distance = norm2(hit%normal)
+    hit%found = hit%found .and. distance > smallest_determinant*radius
+    if (.not. hit%found) return
+    hit%normal = hit%normal/distance
+    hit%distance = distance - radius
+    call set_normal_gradient(hit, projection, distance, radius*normal)
+  end subroutine set_border_hit
+
+  !> Set the gradient of the normal at an edge or corner.
+  pure subroutine set_normal_gradient(hit, projection, distance, radius)
+    !> Has its normal.
+    type(hit_t), intent(inout) :: hit
+    type(projection_t), intent(in) :: projection
+    !> Distance of the node from the centre of the rounded edge, negative inside the tool, and
+    !> vector from the centre to the edge, mm.
+    real(wp), intent(in) :: distance, radius(3)
+
+    real(wp) :: tangent(3), square, stretch, along
+    integer :: a, i
+
     hit%dnormal = 0.0_wp
     do i = 1, 3
-      hit%dnormal(i, i) = 1.0_wp/hit%distance
-      hit%dnormal(:, i) = hit%dnormal(:, i) - hit%normal*hit%normal(i)/hit%distance
+      hit%dnormal(i, i) = 1.0_wp/distance
+      hit%dnormal(:, i) = hit%dnormal(:, i) - hit%normal*hit%normal(i)/distance
     end do
     do a = 1, 2
       if (projection%active(a) /= 0) cycle
       tangent = projection%first(:, a)
-      stretch = dot_product(tangent, tangent)
-      stretch = max(stretch + dot_product(projection%offset, projection%second(:, a)), &
-          smallest_determinant*stretch)
+      square = dot_product(tangent, tangent)
+      stretch = max(square + dot_product(projection%offset, projection%second(:, a)), &
+          smallest_determinant*square)
+      along = max(0.0_wp, 1.0_wp + dot_product(radius, projection%second(:, a))/square)
       do i = 1, 3
-        hit%dnormal(:, i) = hit%dnormal(:, i) - tangent*tangent(i)/(stretch*hit%distance)
+        hit%dnormal(:, i) = hit%dnormal(:, i) - along*tangent*tangent(i)/(stretch*distance)
       end do
     end do
-  end subroutine set_edge_hit
+  end subroutine set_normal_gradient
 
   !> Return the sum of the normals of a patch and of its neighbours across the active bounds.
   pure function mean_normal(surface, k, projection) result(mean)

@@ -1,10 +1,13 @@
-!> A rigid tool: its surface, friction and initial position.
+!> A rigid tool: its surface, friction and initial position, and the closest point to a point of the
+!> sheet where it is placed.
 module dd3_contact_tool
   use dd3_base_kinds, only : wp
+  use dd3_contact_closest, only : border_t, find_contact, hint_t, hit_t
+  use dd3_contact_placement, only : placement_t
   use dd3_contact_surface, only : surface_t
   implicit none
   private
-  public :: tool_t
+  public :: tool_t, find_on_tool
 
   !> A rigid tool; it moves by translation.
   type :: tool_t
@@ -17,5 +20,34 @@ module dd3_contact_tool
     !> Initial offset of the surface's frame from the global one, mm.
     real(wp) :: position(3) = 0.0_wp
   end type tool_t
+
+contains
+
+  !> Find the closest point of a tool in its place, as `find_contact` does on its surface.
+  pure subroutine find_on_tool(tool, placement, x, hint, search_distance, depth, hit, outward, &
+      border)
+    type(tool_t), intent(in) :: tool
+    type(placement_t), intent(in) :: placement
+    !> Position of the node, mm.
+    real(wp), intent(in) :: x(3)
+    type(hint_t), intent(inout) :: hint
+    !> Largest distance of a contact outside the tool, and depth inside it, mm.
+    real(wp), intent(in) :: search_distance, depth
+    !> Vectors in the global frame, the point in that of the tool.
+    type(hit_t), intent(out) :: hit
+    !> Outward normal of the sheet at the node.
+    real(wp), intent(in), optional :: outward(3)
+    !> Contact beside the border.
+    type(border_t), intent(in), optional :: border
+
+    real(wp) :: facing(3)
+
+    facing = 0.0_wp
+    if (present(outward)) facing = placement%vector_to_tool(outward)
+    call find_contact(tool%surface, placement%to_tool(x), hint, search_distance, depth, hit, &
+        facing, border)
+    hit%normal = placement%vector_to_global(hit%normal)
+    hit%dnormal = placement%tensor_to_global(hit%dnormal)
+  end subroutine find_on_tool
 
 end module dd3_contact_tool

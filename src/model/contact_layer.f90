@@ -3,18 +3,22 @@
 !> place by what is missing, and advances to it over the first part of the phase.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: layer_at, starting_offset, held_offsets, offset_factor, offset_rate, progress_left
+  public :: layer_at, border_at, starting_offset, held_offsets
+  public :: offset_factor, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
+  !> Radius of the border of a tool over the thickness of the sheet.
+  real(wp), parameter :: border_radius = 0.5_wp
   !> Progress below which a rest is round-off.
   real(wp), parameter :: no_progress = 1.0e-9_wp
 
@@ -29,6 +33,19 @@ contains
     layer = new_layer(phase%layer, model%thickness_at(model%contact_node(c)), &
         model%contact_stiffness(c))
   end function layer_at
+
+  !> Return the contact of a candidate beside the border of a tool: within the layer. In the mixed
+  !> formulation there is none.
+  pure type(border_t) function border_at(model, phase, c) result(border)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: c
+
+    if (phase%mixed) return
+    associate (thickness => model%thickness_at(model%contact_node(c)))
+      border = border_t(border_radius*thickness, phase%layer*thickness)
+    end associate
+  end function border_at
 
   !> Return the part of a layer's offset that is left at a progress of the phase.
   pure real(wp) function offset_factor(progress)
@@ -74,9 +91,10 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       layer = layer_at(model, phase, c)
       hint = hint_t()
-      call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
-          - state%tool_displacement(:, tool), hint, layer%height, &
-          model%tolerance%committed_depth + state%layer_offset(tool), hit)
+      call find_on_tool(model%tool(tool), state%placement(tool), &
+          model%point_position(c, state%x), hint, layer%height, &
+          model%tolerance%committed_depth + state%layer_offset(tool), hit, &
+          border=border_at(model, phase, c))
       if (.not. hit%found) cycle
       force = 0.0_wp
       if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
@@ -114,9 +132,10 @@ contains
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = hint_t()
-          call find_contact(model%tool(t)%surface, model%point_position(c, state%x) &
-              - state%tool_displacement(:, t), hint, layer%height, &
-              model%tolerance%committed_depth + state%layer_offset(t), hit)
+          call find_on_tool(model%tool(t), state%placement(t), &
+              model%point_position(c, state%x), hint, layer%height, &
+              model%tolerance%committed_depth + state%layer_offset(t), hit, &
+              border=border_at(model, phase, c))
           if (.not. hit%found) cycle
           if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
               i=1, point%n_surface)])) cycle

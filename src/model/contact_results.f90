@@ -2,8 +2,10 @@
 !> between the candidates and the nearest tool.
 module dd3_model_contact_results
   use dd3_base_kinds, only : wp
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
+  use dd3_model_contact_layer, only : border_at
   use dd3_model_contact_points, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals, outward_normals
@@ -80,10 +82,10 @@ contains
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = state%hint(t, c)
-          call find_contact(model%tool(t)%surface, &
-              model%point_position(c, state%x) - state%tool_displacement(:, t), hint, &
+          call find_on_tool(model%tool(t), state%placement(t), &
+              model%point_position(c, state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
-              + state%layer_offset(t), hit, outward(:, c))
+              + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)
         end do
       end do

@@ -1,12 +1,13 @@
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
   use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
-  use dd3_model_contact_layer, only : layer_at
+  use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   implicit none
@@ -70,9 +71,10 @@ contains
     associate (tool => state%contact_tool(c))
       offset = max(state%layer_offset(tool), state%start%held_offset(c))
       hint = state%hint(tool, c)
-      call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
-          - state%tool_displacement(:, tool), hint, layer%height, &
-          model%tolerance%committed_depth + offset, hit)
+      call find_on_tool(model%tool(tool), state%placement(tool), &
+          model%point_position(c, state%x), hint, layer%height, &
+          model%tolerance%committed_depth + offset, hit, &
+          border=border_at(model, model%phase(state%phase), c))
     end associate
     normal_force = -dot_product(hit%normal, state%lambda(:, c))
   end function normal_force

@@ -5,6 +5,7 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -102,6 +103,11 @@ module dd3_model_state
     integer, allocatable :: deepest_face(:)
     !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
     real(wp), allocatable :: deepest_radius(:)
+    !> Patch, edge and node where a point under pressure first left each tool over an open edge in
+    !> the running phase, `(3, n_tool)`, 0 for none, and the displacement of the tool in the phase
+    !> until then, `(n_tool)`, mm.
+    integer, allocatable :: open_edge(:, :)
+    real(wp), allocatable :: open_edge_displacement(:)
     !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
     real(wp), allocatable :: slip_path(:)
     !> Restraining force per length of each interval of the draw-beads, N/mm, and its slip path, mm,
@@ -122,9 +128,19 @@ module dd3_model_state
     real(wp) :: bead_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
+  contains
+    procedure :: placement
   end type state_t
 
 contains
+
+  !> Return the placement of a tool.
+  pure type(placement_t) function placement(self, tool)
+    class(state_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    placement%translation = self%tool_displacement(:, tool)
+  end function placement
 
   !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
   subroutine new_state(self, model)
@@ -145,7 +161,8 @@ contains
       allocate (self%tool_force(3, n_tool), self%layer_offset(n_tool), source=0.0_wp)
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
-      allocate (self%deepest_face(n_tool), source=0)
+      allocate (self%deepest_face(n_tool), self%open_edge(3, n_tool), source=0)
+      allocate (self%open_edge_displacement(n_tool), source=0.0_wp)
       allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     call new_beads(self, model)

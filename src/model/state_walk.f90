@@ -84,6 +84,9 @@ contains
     call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
     call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
+    call visitor%integers("open_edge", size(state%open_edge), state%open_edge)
+    call visitor%reals("open_edge_displacement", size(state%open_edge_displacement), &
+        state%open_edge_displacement)
     call visitor%reals("slip_path", size(state%slip_path), state%slip_path)
     call visitor%reals("bead_force", size(state%bead_force), state%bead_force)
     call visitor%reals("bead_path", size(state%bead_path), state%bead_path)

@@ -8,6 +8,7 @@ module dd3_model_tool_depth
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_curvature, only : smallest_radius
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_normal, part_of_nine
@@ -136,8 +137,14 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool, f, node(4)
 
+    type(placement_t) :: placement
+    integer :: i
+
     self%number = f
-    self%x = state%x(:, node) - spread(state%tool_displacement(:, tool), 2, 4)
+    placement = state%placement(tool)
+    do i = 1, 4
+      self%x(:, i) = placement%to_tool(state%x(:, node(i)))
+    end do
     self%normal = face_normal(self%x)
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
     self%thickness = model%thickness_at(node(1))

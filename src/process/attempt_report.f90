@@ -8,8 +8,9 @@ module dd3_process_attempt_report
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
+  use dd3_process_open_edges, only : edge_name
   use dd3_process_remedy, only : first_remedy
-  use dd3_process_step_control, only : stepper_t
+  use dd3_process_step_control, only : attempt_t, stepper_t
   implicit none
   private
   public :: status_row, failure_message
@@ -50,7 +51,7 @@ contains
         row%reason = attempt%solver%reason
       else
         row%outcome = "failed"
-        row%reason = cause_text(attempt%verdict, tool_name(model, attempt%verdict%tool))
+        row%reason = reason(model, attempt)
       end if
     end associate
     call add_corrector(row, stepper)
@@ -88,6 +89,19 @@ contains
     if (tool > 0) name = model%tool(tool)%name
   end function tool_name
 
+  !> Return the reason why an attempt failed.
+  function reason(model, attempt) result(text)
+    type(model_t), intent(in) :: model
+    type(attempt_t), intent(in) :: attempt
+    character(len=:), allocatable :: text
+
+    text = cause_text(attempt%verdict, tool_name(model, attempt%verdict%tool))
+    associate (passage => attempt%passage)
+      if (passage%tool > 0) text = text//"; node "//to_text(passage%node)//" leaves tool "// &
+          tool_name(model, passage%tool)//" over the open "//edge_name(passage%patch, passage%edge)
+    end associate
+  end function reason
+
   !> Return the message on a failed increment: its location, the reason and the first remedy to try.
   function failure_message(model, committed, stepper) result(message)
     type(model_t), intent(in) :: model
@@ -118,7 +132,7 @@ contains
       end if
       message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
-      message = message//": "//cause_text(verdict, tool_name(model, verdict%tool))
+      message = message//": "//reason(model, attempt)
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
           //" point "//to_text(verdict%point)
       if (verdict%node == 0) return

@@ -11,6 +11,7 @@ module dd3_process_increment
   use dd3_process_limiters, only : limit_increment
   use dd3_process_newton, only : newton_converged, newton_diverging, newton_interrupted, &
       newton_slow, solve
+  use dd3_process_open_edges, only : find_passage, observe_passages
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
   use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
@@ -69,6 +70,8 @@ contains
       call set_target(model, trial, stepper%system%problem)
       call solve(equilibrium, newton%tolerance, newton%iterations, newton%damping, attempt%course)
       call conclude(equilibrium, attempt)
+      if (attempt%verdict%outcome /= verdict_converged) attempt%passage = &
+          find_passage(model, committed, prediction%step%x, prediction%step%tool)
     end associate
   end subroutine try_increment
 
@@ -134,13 +137,14 @@ contains
   !> Commit the trial state.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
-    !> Gets work and slip of the increment.
+    !> Gets work, slip and passages over open edges of the increment.
     type(state_t), intent(inout) :: trial
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
     call share_state(stepper%system%partition, trial)
     call add_work(model, stepper%system%contact, committed, trial)
+    call observe_passages(model, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)

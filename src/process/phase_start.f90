@@ -4,8 +4,9 @@ module dd3_process_phase_start
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
   use dd3_input_case, only : until_force
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
@@ -57,6 +58,8 @@ contains
     state%largest_depth = 0.0_wp
     state%deepest_face = 0
     state%deepest_radius = huge(1.0_wp)
+    state%open_edge = 0
+    state%open_edge_displacement = 0.0_wp
     associate (phase => model%phase(number), start => state%start)
       start%load = state%load
       start%load_end = phase%load_end
@@ -159,8 +162,8 @@ contains
     do c = 1, model%n_contact
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
-      call find_contact(model%tool(tool)%surface, &
-          model%point_position(c, state%x) - state%tool_displacement(:, tool), hint, &
+      call find_on_tool(model%tool(tool), state%placement(tool), &
+          model%point_position(c, state%x), hint, &
           model%tolerance%start_search, wrong_side_depth*model%largest_thickness(), hit)
       if (.not. hit%found .or. -hit%distance <= depth) cycle
       depth = -hit%distance
@@ -298,8 +301,8 @@ contains
     do c = 1, model%n_contact
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
-      call find_contact(model%tool(tool)%surface, &
-          model%point_position(c, state%x) - state%tool_displacement(:, tool), hint, &
+      call find_on_tool(model%tool(tool), state%placement(tool), &
+          model%point_position(c, state%x), hint, &
           model%tolerance%tool_search, model%tolerance%committed_depth, hit, &
           outward(:, c))
       if (.not. hit%found) cycle

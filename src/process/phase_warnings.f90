@@ -3,9 +3,10 @@
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_tool, only : find_on_tool
   use dd3_input_case, only : until_force
   use dd3_linalg_tensor, only : identity
   use dd3_model_contact_layer, only : layer_at
@@ -146,7 +147,7 @@ contains
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
       associate (x => model%point_position(c, state%x), phase => model%phase(state%phase))
         hint = hint_t()
-        call find_contact(model%tool(tool)%surface, x - state%tool_displacement(:, tool), hint, &
+        call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
             model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
             model%tolerance%committed_depth + state%layer_offset(tool), hit)
         if (.not. hit%found) cycle

@@ -19,6 +19,8 @@ module dd3_process_remedy
       "force, a support of the sheet"
   character(len=*), parameter :: motion_remedy = "a prescribed motion that leads no "// &
       "node into a tool"
+  character(len=*), parameter :: surface_remedy = "a surface of the tool that continues beyond "// &
+      "this edge"
   character(len=*), parameter :: memory_remedy = "method = cgs in *SOLVER"
   character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
       "stop rigid motion"
@@ -45,6 +47,7 @@ contains
     character(len=:), allocatable :: remedy
 
     remedy = remedy_of_input(committed, attempt)
+    if (len(remedy) == 0 .and. attempt%passage%tool > 0) remedy = surface_remedy
     if (len(remedy) > 0) return
     associate (phase => model%phase(committed%phase), verdict => attempt%verdict)
       if (.not. phase%newton%cutback) then

@@ -5,6 +5,7 @@ module dd3_process_step_control
   use dd3_base_verdict, only : verdict_t
   use dd3_model_state, only : state_t
   use dd3_process_newton, only : newton_course_t
+  use dd3_process_open_edges, only : passage_t
   use dd3_process_predictor, only : prediction_t
   use dd3_process_residual, only : residual_t
   use dd3_system_solve, only : solve_info_t
@@ -40,6 +41,8 @@ module dd3_process_step_control
     type(verdict_t) :: verdict
     !> Whether a tool touched the node of the verdict in the last iterations.
     logical :: touched = .false.
+    !> Where the prediction of a failed attempt leads a point in contact over an open edge.
+    type(passage_t) :: passage
   end type attempt_t
 
   !> Work data of the increments; only the memory of the solver is kept from one to the next.

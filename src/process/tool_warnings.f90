@@ -1,8 +1,8 @@
 !> Warnings about the tools at the end of a phase, or of a run that stops within one: without
-!> contact, entered between the nodes of the sheet, ironing with contact points between nodes,
-!> crossed: points of one tool that a phase moved from the front of another tool's surface to behind
-!> it. Points are samples of the patches, and only those not far behind are found, so that slight
-!> overlaps may be missed.
+!> contact, entered between the nodes of the sheet, left over an open edge, ironing with contact
+!> points between nodes, crossed: points of one tool that a phase moved from the front of another
+!> tool's surface to behind it. Points are samples of the patches, and only those not far behind are
+!> found, so that slight overlaps may be missed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t, to_text
@@ -10,8 +10,10 @@ module dd3_process_tool_warnings
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_surface, only : surface_t
+  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_process_open_edges, only : edge_name
   implicit none
   private
   public :: tool_warnings, crossing_t, find_crossing
@@ -56,6 +58,7 @@ contains
         if (.not. active(a)) cycle
         if (ended) call add(warnings, model, state, contact_warning(model, state, a))
         call add(warnings, model, state, depth_warning(model, state, a))
+        call add(warnings, model, state, edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (.not. active(b)) cycle
           call add(warnings, model, state, crossing_warning(model, state, a, b))
@@ -129,8 +132,8 @@ contains
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       associate (distance => model%tolerance%tool_search, n => model%contact_node(c))
-        call find_contact(model%tool(tool)%surface, model%point_position(c, state%x) &
-            - state%tool_displacement(:, tool), hint, distance, distance, hit)
+        call find_on_tool(model%tool(tool), state%placement(tool), &
+            model%point_position(c, state%x), hint, distance, distance, hit)
         if (.not. hit%found .or. abs(hit%distance) >= abs(gap)) cycle
         gap = hit%distance
         node = n
@@ -186,6 +189,28 @@ contains
     text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
         to_text(radius, 3)//" mm"
   end function suitable_mesh
+
+  !> Return a warning if the sheet has left a tool under pressure where its surface ends.
+  function edge_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    text = ""
+    associate (place => state%open_edge(:, tool), moved => state%open_edge_displacement(tool))
+      if (place(1) == 0) return
+      text = "the sheet left tool '"//model%tool(tool)%name//"' under pressure over the open "// &
+          edge_name(place(1), place(2))//", first at node "//to_text(place(3))
+      if (moved > 0.0_wp) text = text//" after "//to_text(moved, 4)//" mm of the tool"
+    end associate
+    if (model%phase(state%phase)%mixed) then
+      text = text//"; there is no contact beyond it"
+    else
+      text = text//"; it is rounded by half the thickness of the sheet"
+    end if
+    text = text//": if the tool goes on, continue its surface"
+  end function edge_warning
 
   !> Return a warning if two tools have crossed in the phase.
   function crossing_warning(model, state, a, b) result(text)

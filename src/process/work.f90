@@ -3,6 +3,7 @@
 module dd3_process_work
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap, status_slip
+  use dd3_contact_placement, only : point_displacement
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -93,7 +94,8 @@ contains
       tool = contact%tool(c)
       if (tool == 0) cycle
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
-      tool_motion = new%tool_displacement(:, tool) - old%tool_displacement(:, tool)
+      tool_motion = point_displacement(old%placement(tool), new%placement(tool), &
+          model%point_position(c, new%x))
       slip = model%point_position(c, new%x) - model%point_position(c, old%x) - tool_motion
       normal = contact%normal(:, c)
       if (contact%committed_tool(c) == tool) normal = &

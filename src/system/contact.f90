@@ -3,11 +3,13 @@
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_nodes, threads_for
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       round_off, status_gap, status_slip, status_stick
-  use dd3_model_contact_layer, only : layer_at
+  use dd3_contact_placement, only : placement_t, relative_displacement
+  use dd3_contact_tool, only : find_on_tool
+  use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_penalty, only : contact_penalty
@@ -73,8 +75,8 @@ contains
     if (tool == 0) then
       call open_candidate(self, c)
     else
-      slip = x - self%committed_x(:, c) - trial%tool_displacement(:, tool) &
-          + committed%tool_displacement(:, tool)
+      slip = relative_displacement(committed%placement(tool), trial%placement(tool), &
+          self%committed_x(:, c), x)
       self%normal(:, c) = hit%normal
       associate (phase => model%phase(trial%phase))
         if (.not. phase%mixed) then
@@ -310,7 +312,8 @@ contains
     type(hit_t), intent(out) :: nearest
 
     type(hit_t) :: hit
-    real(wp) :: best, distance, x(3), moved(3)
+    type(placement_t) :: placement
+    real(wp) :: best, distance, moved(3)
     integer :: t
 
     self%tool(c) = 0
@@ -318,11 +321,12 @@ contains
     associate (phase => model%phase(trial%phase))
       do t = 1, model%n_tool
         if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
-        x = position - trial%tool_displacement(:, t)
-        moved = x - self%committed_x(:, c) + committed%tool_displacement(:, t)
-        call find_contact(model%tool(t)%surface, x, hint(t), self%search_distance, &
+        placement = trial%placement(t)
+        moved = relative_displacement(committed%placement(t), placement, &
+            self%committed_x(:, c), position)
+        call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
             model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
-            self%outward(:, c))
+            self%outward(:, c), border_at(model, phase, c))
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis

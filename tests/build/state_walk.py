@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 def components(path, type_name):
     """Return the names of the components that a derived type declares."""
     text = path.read_text()
-    body = re.search(rf"^  type :: {type_name}\n(.*?)^  end type {type_name}", text, re.M | re.S).group(1)
+    body = re.search(rf"^  type :: {type_name}\n(.*?)^  (?:contains|end type {type_name})", text, re.M | re.S).group(1)
     names = []
     for line in body.splitlines():
         if "::" in line and not line.lstrip().startswith("!"):
