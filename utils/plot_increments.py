@@ -27,7 +27,7 @@ from scripts import Problem  # noqa: E402
 
 # Colour of each limiter; those that only end an increment at a place have one.
 COLOURS = {"rotation": "#1f5f99", "force": "#d1491b", "r_min": "#e8a33d", "strain": "#3a8f4d", "stress": "#7b4fa3",
-           "r_max": "0.15", "gap": "#17a2a8", "first contact": "#b8508f", "cutback": "#8c564b"}
+           "r_max": "0.15", "gap": "#17a2a8", "first contact": "#b8508f", "cutback": "#8c564b", "iterations": "#9a9a2e"}
 ENDS = ("output", "phase", "table", "until")
 END_LABEL, END_COLOUR = "output or end", "0.55"
 
