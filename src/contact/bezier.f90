@@ -37,9 +37,6 @@ module dd3_contact_bezier
     real(wp) :: centre(3) = 0.0_wp
     !> Diagonal of the bounding box, mm.
     real(wp) :: size = 0.0_wp
-    !> Bound of the distance of a point interpolated in a grid coarser than `n_sample` from that of
-    !> equal parameters, mm; 0 otherwise.
-    real(wp) :: grid_error = 0.0_wp
     !> Control points relative to `centre`, multiplied by their weights, and the weights,
     !> `(4, 0:degree(1), 0:degree(2))`.
     real(wp), allocatable :: homogeneous(:, :, :)
@@ -117,7 +114,6 @@ contains
       distance = largest_coarse_distance*self%shorter_side/real(self%n_interval/2, wp)
       if (coarse_distance(point, self%n_interval/2) > distance) exit
       self%n_interval = self%n_interval/2
-      self%grid_error = 2.0_wp*distance
     end do
     allocate (self%sample(3, 0:self%n_interval, 0:self%n_interval))
     step = n_sample/self%n_interval
