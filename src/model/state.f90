@@ -87,7 +87,7 @@ module dd3_model_state
     type(hint_t), allocatable :: hint(:, :)
     !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
-    !> Tool that released each node last, `(n_node)`; 0 for none.
+    !> Tool that released each node, while the force fades, `(n_node)`; 0 for none.
     integer, allocatable :: fading_tool(:)
     !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_displacement(:, :)

@@ -10,7 +10,8 @@ module dd3_process_attempt_report
   use dd3_output_status, only : status_row_t
   use dd3_process_open_edges, only : edge_name
   use dd3_process_remedy, only : first_remedy
-  use dd3_process_step_control, only : attempt_t, stepper_t
+  use dd3_process_step_control, only : attempt_t
+  use dd3_process_stepper, only : stepper_t
   implicit none
   private
   public :: status_row, failure_message

@@ -87,7 +87,7 @@ contains
     associate (distance => model%tolerance%tool_search)
       do c = 1, model%n_contact
         if (force(c) <= least) cycle
-        hint = hint_t()
+        hint = state%hint(tool, c)
         call find_on_tool(model%tool(tool), placement, model%point_position(c, x), hint, distance, &
             distance, hit)
         if (.not. hit%border) cycle

@@ -212,6 +212,7 @@ contains
     reaction = state%internal_force - state%external_force
     reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
     where (.not. freed) reaction = 0.0_wp
+    where (all(abs(state%fading) <= 0.0_wp, dim=1)) state%fading_tool = 0
     state%fading = state%fading - reaction
     if (any(freed)) state%plastic = .false.
   end subroutine free_directions

@@ -184,7 +184,8 @@ contains
   end function release_warning
 
   !> Return a note on the mean gap between sheet and tools, weighted by the contact forces: what the
-  !> layers keep the sheet off the tools. Empty in the mixed formulation and without contact.
+  !> layers keep the sheet off the tools. Friction counts in the forces, about 1 % of them. Empty in
+  !> the mixed formulation and without contact.
   function gap_note(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.

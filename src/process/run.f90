@@ -27,7 +27,8 @@ module dd3_process_run
   use dd3_process_phase_warnings, only : gap_note, kept_note, press_warning, release_warning, &
       support_warning, until_warning
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
+  use dd3_process_stepper, only : stepper_t
   use dd3_process_tool_warnings, only : tool_warnings
   use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
   use dd3_system_partition, only : partition_report
