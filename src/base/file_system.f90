@@ -2,12 +2,12 @@
 module dd3_base_file_system
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
   use dd3_base_error, only : error_t, fatal_error
-  use dd3_base_file, only : file_t
+  use dd3_base_file, only : file_t, remove_file
   use dd3_base_kinds, only : i8
   use dd3_base_system_error, only : errno, system_message
   implicit none
   private
-  public :: read_file, replace_file, keep_file, sync_file, part_of
+  public :: read_file, replace_file, keep_file, sync_file, write_file, part_of
 
   interface
     !> rename(2).
@@ -75,6 +75,31 @@ contains
           system_message(cause), error)
     end if
   end subroutine replace_file
+
+  !> Write a file as a whole: aside, synced and renamed. A program that is killed leaves the old
+  !> one.
+  subroutine write_file(path, text, error)
+    character(len=*), intent(in) :: path
+    !> Content with the line ends.
+    character(len=*), intent(in) :: text
+    !> Set if the file cannot be written; an older one is left as it is.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(file_t) :: part
+    type(error_t), allocatable :: ignored
+    logical :: removed
+
+    call part%create(part_of(path), error)
+    if (allocated(error)) return
+    call part%put(text, error)
+    if (.not. allocated(error)) call part%flush(error)
+    if (.not. allocated(error)) then
+      call sync_file(part)
+      call replace_file(path, part, error)
+    end if
+    call part%close(ignored)
+    if (allocated(error)) call remove_file(part_of(path), removed)
+  end subroutine write_file
 
   !> Keep a file that is about to be replaced under its name with a suffix; no-op if there is none.
   subroutine keep_file(path, suffix)

@@ -1,10 +1,10 @@
 !> Threads (OpenMP) of the loops whose passes do not depend on one another. Every such loop asks
 !> here how many threads to take; its results must be the same bits for any number.
 module dd3_base_threads
-  !$ use omp_lib, only : omp_get_max_threads, omp_set_num_threads
+  !$ use omp_lib, only : omp_get_max_threads, omp_get_num_procs, omp_set_num_threads
   implicit none
   private
-  public :: set_threads, most_threads, threads_for
+  public :: set_threads, most_threads, processors, threads_for
   public :: least_points, least_nodes, least_values
 
   !> Integration points of a loop over elements, passes of one over nodes, candidates or rows, and of
@@ -26,6 +26,12 @@ contains
     most_threads = 1
     !$ most_threads = omp_get_max_threads()
   end function most_threads
+
+  !> Return the number of processors that the program may use.
+  integer function processors()
+    processors = 1
+    !$ processors = omp_get_num_procs()
+  end function processors
 
   !> Return the number of threads of a loop.
   integer function threads_for(n_pass, least) result(threads)
