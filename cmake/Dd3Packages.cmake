@@ -45,6 +45,12 @@ elseif(DD3_MUMPS)
   endif()
 endif()
 
+# Names and versions of the libraries, for run.json.
+set(libraries LAPACK none SuiteSparse "${SuiteSparse_VERSION}" HDF5 "${HDF5_VERSION}")
+if(mumps_packages)
+  list(APPEND libraries MUMPS none)
+endif()
+
 message(STATUS "LAPACK ${LAPACK_LIBRARIES}")
 message(STATUS "SuiteSparse ${SuiteSparse_VERSION}")
 message(STATUS "HDF5 ${HDF5_VERSION}")

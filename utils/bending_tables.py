@@ -52,9 +52,9 @@ def jobs():
 
 
 def run(program, work, name, deck, parameters, reuse):
-    """Run one job; run.json holds its exit code, seconds and memory."""
+    """Run one job; done.json holds its exit code, seconds and memory."""
     folder = work / name
-    note = folder / "run.json"
+    note = folder / "done.json"
     if reuse and note.exists():
         return
     folder.mkdir(parents=True, exist_ok=True)
@@ -67,10 +67,10 @@ def run(program, work, name, deck, parameters, reuse):
 
 
 class Run:
-    """Results of a finished run; code, seconds and memory come from run.json."""
+    """Results of a finished run; code, seconds and memory come from done.json."""
 
     def __init__(self, folder):
-        self.__dict__.update(json.loads((folder / "run.json").read_text(encoding="utf-8")))
+        self.__dict__.update(json.loads((folder / "done.json").read_text(encoding="utf-8")))
         self.history = [row for row in read_table(folder / "history.csv") if row["phase"] == "draw"]
         self.status = read_table(folder / "status.csv")
         self.travel = [float(row["travel"]) for row in self.history]

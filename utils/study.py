@@ -8,7 +8,7 @@
 
 A case is a row of input_files/bending_study/cases.csv. Its columns other than `case` and `set` are parameters of
 study.dat in the same folder; an empty cell keeps the default of study.dat. A case is done when its folder has a
-run.json: exit code 0 means that the run reached its end, 3 that it stopped before. Both are results.
+done.json: exit code 0 means that the run reached its end, 3 that it stopped before. Both are results.
 """
 
 import argparse
@@ -81,12 +81,12 @@ def is_done(note, words, deck):
 
 
 def run_case(options):
-    """Run a case unless it is done. run.json is written last, and renamed, so that it marks a finished run."""
+    """Run a case unless it is done. done.json is written last, and renamed, so that it marks a finished run."""
     cases = read_cases(options.cases)
     row = row_of(cases, options)
     results.find_program(options.program)
     folder = options.work / options.case
-    note = folder / "run.json"
+    note = folder / "done.json"
     words, deck = command(row, options, folder), digest(*deck_files(options))
     if is_done(note, words, deck):
         print(f"{options.case}: done before")
@@ -96,7 +96,7 @@ def run_case(options):
     done = results.launch(command(row, options, folder, "--quiet"))
     if done.code not in (0, 3):
         raise Problem(f"{shlex.join(words)}: exit code {done.code}\n{done.errors}")
-    aside = folder / "run.json.new"
+    aside = folder / "done.json.new"
     aside.write_text(json.dumps({"code": done.code, "seconds": done.cpu, "wall": done.wall,
                                  "program": digest(options.program), "deck": deck, "command": shlex.join(words)}),
                      encoding="utf-8")
@@ -108,7 +108,7 @@ def report_progress(options, cases, folder, done):
     """Print one line on the case that has ended and on how many are done."""
     last = read_table(folder / "history.csv")[-1]
     shown = [name for name, row in cases.items() if not options.sets or row["set"] in options.sets]
-    finished = sum((options.work / name / "run.json").exists() for name in shown)
+    finished = sum((options.work / name / "done.json").exists() for name in shown)
     print(f"[{finished}/{len(shown)}] {options.case}: {float(last['travel']):.2f} mm, "
           f"{last['increment']} increments, {done.cpu:.1f} s{'' if done.code == 0 else ', stopped'}",
           file=sys.stderr)
@@ -141,7 +141,7 @@ def force_columns(status, skew):
 
 def summary(folder, skew):
     """Return the columns of results.csv for a finished case."""
-    done = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    done = json.loads((folder / "done.json").read_text(encoding="utf-8"))
     history = read_table(folder / "history.csv")
     status = read_table(folder / "status.csv", "force_node", "force_tool", "force_size")
     total, drawn = results.totals(status), results.limiters(status, "draw")
@@ -159,7 +159,7 @@ def summary(folder, skew):
 def gather(options):
     """Write results.csv: a row for each case that is done."""
     cases = read_cases(options.cases)
-    names = [name for name in (options.only or cases) if (options.work / name / "run.json").exists()]
+    names = [name for name in (options.only or cases) if (options.work / name / "done.json").exists()]
     unknown = [name for name in names if name not in cases]
     if unknown:
         raise Problem(f"{options.cases}: no case '{unknown[0]}'")

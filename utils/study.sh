@@ -66,7 +66,7 @@ mkdir -p "$work"
 # Unlike snakemake's lock this one is released when the process is killed.
 exec 9>"$work/.lock"
 flock --nonblock 9 || { echo "error: another study.sh is running in $work" >&2; exit 1; }
-found=("$work"/*/run.json)
+found=("$work"/*/done.json)
 [ -e "${found[0]}" ] || found=()
 echo "== ${#found[@]} cases are done in $work; running the others"
 exec "$python" -m snakemake --snakefile utils/study.smk --directory "$work" --cores "$cores" --keep-going --nolock \

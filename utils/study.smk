@@ -30,7 +30,7 @@ localrules:
 
 rule all:
     input:
-        expand("{case}/run.json", case=CASES),
+        expand("{case}/done.json", case=CASES),
         "results.csv",
         ["figures.txt"] if FIGURES else [],
 
@@ -42,7 +42,7 @@ rule case:
         tools=sorted((TABLE.parent.parent / "bending").glob("*.bez")),
         program=ancient(PROGRAM),
     output:
-        "{case}/run.json",
+        "{case}/done.json",
     params:
         row=lambda wildcards: CASES[wildcards.case],
     threads: 1
@@ -58,7 +58,7 @@ rule case:
 
 rule table:
     input:
-        expand("{case}/run.json", case=CASES),
+        expand("{case}/done.json", case=CASES),
     output:
         "results.csv",
     params:

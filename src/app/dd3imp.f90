@@ -4,7 +4,8 @@ program dd3imp
   use, intrinsic :: iso_fortran_env, only : error_unit
   use dd3_app_command_line, only : options_t, read_command_line, usage_text
   use dd3_app_help, only : show_help, show_version
-  use dd3_app_job, only : run_job, exit_end, exit_usage
+  use dd3_app_exit_codes, only : exit_end, exit_usage
+  use dd3_app_job, only : run_job
   use dd3_app_memory, only : end_program, watch_memory
   use dd3_app_one_blas_thread, only : use_one_blas_thread_if_limited
   use dd3_base_error, only : error_t

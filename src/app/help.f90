@@ -2,7 +2,7 @@
 module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
-  use dd3_app_job, only : exit_end, exit_usage
+  use dd3_app_exit_codes, only : exit_end, exit_usage
   use dd3_app_registry_help, only : help_elements, help_registry
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version

@@ -1,5 +1,5 @@
 !> Ends of the program that no caller can handle, above all for lack of memory: a sentence on the
-!> error stream and in job.log, and exit code 3.
+!> error stream and in job.log, a run.json that was composed before, and exit code 3.
 !>
 !> gfortran checks the memory of each `allocate` without `stat`, of each automatic array and, by
 !> -fcheck=mem, of each temporary. If there is none, it calls `_gfortran_os_error_at`, which would
@@ -11,7 +11,7 @@ module dd3_app_memory
   use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_null_char, c_size_t
   implicit none
   private
-  public :: watch_memory, watch_log, end_program
+  public :: watch_memory, watch_log, watch_run_file, end_program, ended_message
 
   !> Descriptor of the error stream.
   integer(c_int), parameter :: error_stream = 2
@@ -23,6 +23,13 @@ module dd3_app_memory
   character(len=*), parameter :: remedy = "; a mesh with fewer elements needs less, or raise "// &
       "the limit (ulimit -v, the memory asked of a batch queue)"
 
+  !> Message in run.json on such an end.
+  character(len=*), parameter :: ended_message = "the program was ended, most often for lack "// &
+      "of memory; see job.log"
+
+  !> Path of run.json, its temporary name, both with a null character, and its content then; not
+  !> allocated if there is none.
+  character(len=:), allocatable, save :: run_path, run_part, run_text
   !> Descriptor of job.log; negative if there is none.
   integer(c_int), save :: log_descriptor = -1
   !> Whether the program ends as it should; whether a message is being written.
@@ -51,6 +58,17 @@ module dd3_app_memory
       character(kind=c_char), intent(in) :: buffer(*)
       integer(c_size_t), value :: count
     end function posix_write
+    !> creat(2).
+    integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+    end function posix_creat
+    !> rename(2).
+    integer(c_int) function posix_rename(from, to) bind(c, name="rename")
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: from(*), to(*)
+    end function posix_rename
   end interface
 
 contains
@@ -70,6 +88,20 @@ contains
 
     log_descriptor = descriptor
   end subroutine watch_log
+
+  !> Write run.json too on such an end.
+  subroutine watch_run_file(path, part, text)
+    !> Its path, and its temporary name; empty if there is none any more.
+    character(len=*), intent(in) :: path, part
+    !> Its content then.
+    character(len=*), intent(in) :: text
+
+    if (allocated(run_text)) deallocate (run_text)
+    if (path == "") return
+    run_path = path//c_null_char
+    run_part = part//c_null_char
+    run_text = text
+  end subroutine watch_run_file
 
   !> End the program.
   subroutine end_program(code)
@@ -106,6 +138,7 @@ contains
       call put(place(i))
     end do
     call put(")"//remedy//new_line("a"))
+    call write_run_file()
     call posix_exit(code_stopped)
   end subroutine end_without_memory
 
@@ -115,6 +148,7 @@ contains
     ending = .true.
     call put("stopped: a library ended the program, most often for lack of memory; its own "// &
         "message is on the error stream"//remedy//new_line("a"))
+    call write_run_file()
     call posix_exit(code_stopped)
   end subroutine end_in_library
 
@@ -128,6 +162,18 @@ contains
     ignored = posix_write(error_stream, text, len(text, c_size_t))
     if (log_descriptor >= 0) ignored = posix_write(log_descriptor, text, len(text, c_size_t))
   end subroutine put
+
+  !> Write run.json under its temporary name and rename it.
+  subroutine write_run_file()
+    integer(c_int), parameter :: mode = int(o'666', c_int)
+    integer(c_int) :: file, ignored
+
+    if (.not. allocated(run_text)) return
+    file = posix_creat(run_part, mode)
+    if (file < 0) return
+    if (posix_write(file, run_text, len(run_text, c_size_t)) == len(run_text, c_size_t)) &
+        ignored = posix_rename(run_part, run_path)
+  end subroutine write_run_file
 
   !> Write a number.
   subroutine put_integer(number)

@@ -7,13 +7,14 @@ module dd3_app_overwrite
   use dd3_input_case, only : case_t, law_spec_t
   use dd3_input_text_file, only : resolve_path
   use dd3_output_restart, only : restart_name
+  use dd3_run_file_writer, only : run_file_name
   implicit none
   private
   public :: check_overwrite, result_file
 
   !> Files that a run writes beside job.log.
-  character(len=14), parameter :: result_file(4) = [character(len=14) :: "history.csv", &
-      "status.csv", "fields.vtkhdf", restart_name]
+  character(len=14), parameter :: result_file(5) = [character(len=14) :: "history.csv", &
+      "status.csv", "fields.vtkhdf", restart_name, run_file_name]
 
 contains
 

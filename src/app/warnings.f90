@@ -4,7 +4,8 @@
 module dd3_app_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
-  use dd3_base_text, only : text_t, to_text
+  use dd3_base_message, only : message_list_t
+  use dd3_base_text, only : to_text
   use dd3_input_case, only : case_t
   use dd3_model_settings_report, only : initial_bead_lengths
   use dd3_model_element_length, only : element_length_t, excess_moment, &
@@ -39,17 +40,16 @@ contains
     type(case_t), intent(in) :: case
     !> Model of the case.
     type(model_t), intent(in) :: model
-    !> One line each.
-    type(text_t), allocatable, intent(out) :: warnings(:)
+    type(message_list_t), intent(out) :: warnings
 
     integer :: i
 
-    allocate (warnings(0))
     do i = 1, size(case%material)
       associate (material => case%material(i))
         if (outside(material%young, least_young, largest_young)) then
-          call add(warnings, material%source%at("young"), "young = "//to_text(material%young)// &
-              " MPa of material '"//material%source%called()//"'", unusual_unit)
+          call add(warnings, "W001", material%source%at("young"), "young = "// &
+              to_text(material%young)//" MPa of material '"//material%source%called()//"'", &
+              unusual_unit)
         end if
         call check_criterion(case, model, i, warnings)
         call check_flow_stress(case, model, i, warnings)
@@ -58,8 +58,9 @@ contains
     call check_thickness(case, model, warnings)
     do i = 1, size(case%tool)
       associate (tool => case%tool(i))
-        if (tool%friction > largest_friction) call add(warnings, tool%source%at("friction"), &
-            "friction = "//to_text(tool%friction)//" of tool '"//tool%source%called()//"'", &
+        if (tool%friction > largest_friction) call add(warnings, "W005", &
+            tool%source%at("friction"), "friction = "//to_text(tool%friction)//" of tool '"// &
+            tool%source%called()//"'", &
             "unusual; Coulomb's coefficient is below 1 in sheet metal forming")
       end associate
     end do
@@ -74,14 +75,14 @@ contains
   subroutine check_thickness(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     integer :: i
 
     do i = 1, size(case%blank)
       associate (blank => case%blank(i))
         if (.not. outside(blank%size(3), least_thickness, largest_thickness)) cycle
-        call add(warnings, blank%source%at(trim(merge("thickness", "size     ", &
+        call add(warnings, "W004", blank%source%at(trim(merge("thickness", "size     ", &
             blank%radius > 0.0_wp))), "thickness = "//to_text(blank%size(3))// &
             " mm of blank '"//blank%source%called()//"'", unusual_unit)
       end associate
@@ -89,8 +90,8 @@ contains
     do i = 1, size(case%mesh)
       associate (mesh => case%mesh(i))
         if (.not. outside(model%thickness, least_thickness, largest_thickness)) cycle
-        call add(warnings, mesh%source%at("file"), "thickness = "//to_text(model%thickness, 4)// &
-            " mm of mesh '"//mesh%source%called()//"'", unusual_unit)
+        call add(warnings, "W004", mesh%source%at("file"), "thickness = "// &
+            to_text(model%thickness, 4)//" mm of mesh '"//mesh%source%called()//"'", unusual_unit)
       end associate
     end do
   end subroutine check_thickness
@@ -99,7 +100,7 @@ contains
   subroutine check_settings(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     integer :: i
 
@@ -108,12 +109,12 @@ contains
         select case (block%keyword)
         case ("newton", "contact", "phase")
           if (block%keyword /= "contact" .and. block%number("tolerance") > largest_tolerance) then
-            call add(warnings, block%at("tolerance"), "tolerance = "// &
+            call add(warnings, "W006", block%at("tolerance"), "tolerance = "// &
                 to_text(block%number("tolerance")), "forces may be inaccurate above 0.02")
           end if
           if (.not. block%has("search_distance")) cycle
           if (block%number("search_distance") >= least_search*model%thickness) cycle
-          call add(warnings, block%at("search_distance"), "search_distance = "// &
+          call add(warnings, "W007", block%at("search_distance"), "search_distance = "// &
               to_text(block%number("search_distance")), &
               "small for the thickness; nodes may pass a tool before it is found")
         end select
@@ -125,7 +126,7 @@ contains
   subroutine check_drawbeads(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     real(wp), allocatable :: length(:)
     integer :: b
@@ -133,8 +134,8 @@ contains
     length = initial_bead_lengths(model)
     do b = 1, size(length)
       if (length(b) > 0.0_wp) cycle
-      call add(warnings, case%drawbead(b)%source%opened, "draw-bead '"//model%drawbead(b)%name// &
-          "'", "no part of its line lies on the sheet, seen along z")
+      call add(warnings, "W012", case%drawbead(b)%source%opened, "draw-bead '"// &
+          model%drawbead(b)%name//"'", "no part of its line lies on the sheet, seen along z")
     end do
   end subroutine check_drawbeads
 
@@ -142,7 +143,7 @@ contains
   subroutine check_held_loads(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     type(held_load_t), allocatable :: found(:)
     integer :: i
@@ -150,8 +151,8 @@ contains
     call find_held_loads(model, case, found)
     do i = 1, size(found)
       associate (load => case%phase(found(i)%phase)%load(found(i)%load))
-        call add(warnings, load%at, "load along "//axis_name(found(i)%axis)//" on '"//load%set// &
-            "'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
+        call add(warnings, "W008", load%at, "load along "//axis_name(found(i)%axis)//" on '"// &
+            load%set//"'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
             " nodes are held in this direction, and their supports carry their part of it")
       end associate
     end do
@@ -161,7 +162,7 @@ contains
   subroutine check_element_length(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     type(element_length_t) :: length
     type(location_t) :: at
@@ -172,7 +173,7 @@ contains
     if (length%n_long == 0) return
     if (size(case%blank) > 0) at = case%blank(1)%source%at("divisions")
     if (size(case%mesh) > 0) at = case%mesh(1)%source%at("file")
-    call add(warnings, at, "the elements under the tools are "// &
+    call add(warnings, "W009", at, "the elements under the tools are "// &
         span(to_text(length%shortest, 2), to_text(length%longest, 2))//" thicknesses long", &
         "where the sheet bends, its moment is "//span(excess(length%shortest), &
         excess(length%longest))//" % too high; expected at most half a thickness there, 3 %")
@@ -202,17 +203,17 @@ contains
     type(model_t), intent(in) :: model
     !> Number of the material.
     integer, intent(in) :: i
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     real(wp), parameter :: tension(6) = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
     real(wp) :: equivalent
 
     equivalent = model%material(i)%laws%criterion%value(tension)
     if (.not. outside(equivalent, least_tension, largest_tension)) return
-    call add(warnings, case%material(i)%yield%at, "material '"//case%material(i)%source%called()// &
-        "' yields in the rolling direction at "//to_text(1/equivalent, 3)//" times the flow "// &
-        "stress of its hardening law", "unusual; are these the parameters of "// &
-        case%material(i)%yield%name//"?")
+    call add(warnings, "W002", case%material(i)%yield%at, "material '"// &
+        case%material(i)%source%called()//"' yields in the rolling direction at "// &
+        to_text(1/equivalent, 3)//" times the flow stress of its hardening law", &
+        "unusual; are these the parameters of "//case%material(i)%yield%name//"?")
   end subroutine check_criterion
 
   !> Warn if the initial flow stress is unusually large or small compared with Young's modulus.
@@ -221,7 +222,7 @@ contains
     type(model_t), intent(in) :: model
     !> Number of the material.
     integer, intent(in) :: i
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     real(wp) :: start(model%material(i)%n_internal), stress
 
@@ -229,7 +230,7 @@ contains
     stress = model%material(i)%flow_stress(start)
     if (.not. outside(stress, least_strain*case%material(i)%young, &
         largest_strain*case%material(i)%young)) return
-    call add(warnings, case%material(i)%hardening%at, "initial flow stress = "// &
+    call add(warnings, "W003", case%material(i)%hardening%at, "initial flow stress = "// &
         to_text(stress, 4)//" MPa of material '"//case%material(i)%source%called()// &
         "', young = "//to_text(case%material(i)%young)//" MPa", unusual_unit)
   end subroutine check_flow_stress
@@ -242,20 +243,16 @@ contains
   end function outside
 
   !> Add a warning.
-  subroutine add(warnings, at, what, remark)
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+  subroutine add(warnings, code, at, what, remark)
+    type(message_list_t), intent(inout) :: warnings
+    character(len=*), intent(in) :: code
     !> Location of the value.
     type(location_t), intent(in) :: at
     !> The value with its unit and owner.
     character(len=*), intent(in) :: what
     character(len=*), intent(in) :: remark
 
-    type(text_t) :: warning
-
-    warning%s = ""
-    if (allocated(at%file)) warning%s = at%file//":"//to_text(at%line)//": "
-    warning%s = warning%s//"warning: "//what//": "//remark
-    warnings = [warnings, warning]
+    call warnings%add_new(code, what//": "//remark, at)
   end subroutine add
 
 end module dd3_app_warnings

@@ -30,6 +30,11 @@ module dd3_base_error
   type :: error_t
     !> May contain several lines.
     character(len=:), allocatable :: message
+    !> Code of the message, see docs/messages.md; blank if it has none.
+    character(len=4) :: code = ""
+    !> Message on the input without place and severity, and its place; otherwise not allocated.
+    character(len=:), allocatable :: text
+    type(location_t) :: at
     !> Position in the whole input: line (see `location_t`) and column.
     integer :: order = huge(0), column = 0
   end type error_t
@@ -51,12 +56,14 @@ module dd3_base_error
 contains
 
   !> Create an error with a plain message.
-  subroutine fatal_error(error, message)
+  subroutine fatal_error(error, message, code)
     type(error_t), allocatable, intent(out) :: error
     character(len=*), intent(in) :: message
+    character(len=*), intent(in), optional :: code
 
     allocate (error)
     error%message = message
+    if (present(code)) error%code = code
   end subroutine fatal_error
 
   !> Give all ranks the error of the lowest rank that has one.
@@ -64,6 +71,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     character(len=:), allocatable :: text
+    character(len=4) :: code
     integer :: length(1), rank
 
     if (n_ranks() == 1) return
@@ -74,9 +82,14 @@ contains
     if (length(1) < 0) return
     allocate (character(len=length(1)) :: text)
     text(:) = ""
-    if (this_rank() == rank) text = error%message
+    code = ""
+    if (this_rank() == rank) then
+      text = error%message
+      code = error%code
+    end if
     call broadcast_text(rank, text)
-    call fatal_error(error, text)
+    call broadcast_text(rank, code)
+    call fatal_error(error, text, code)
   end subroutine share_error
 
   !> Return a name with the upper and lower case of the input; unchanged if the input has another
@@ -115,6 +128,9 @@ contains
     width = int(max(1, location%width), i8)
     error%order = location%order
     error%column = location%column
+    error%at = location
+    error%text = shortened(message)
+    if (present(expected)) error%text = error%text//"; expected: "//shortened(expected)
     error%message = "error: "//shortened(message)
     if (allocated(location%file)) then
       write (number, '(i0)') location%line

@@ -8,7 +8,10 @@ module dd3_base_interrupt
   use dd3_base_ranks, only : largest_over_ranks
   implicit none
   private
-  public :: watch_interrupts, interrupted, interruption
+  public :: watch_interrupts, interrupted, interruption, interruption_code
+
+  !> Code of the message on an interruption.
+  character(len=*), parameter :: interruption_code = "E201"
 
   !> Numbers of the signals: end of the session, keyboard, broken pipe, system, file size limit
   !> exceeded.

@@ -4,6 +4,7 @@ module dd3_base_log
   use, intrinsic :: iso_c_binding, only : c_int
   use dd3_base_error, only : error_t, keep_first
   use dd3_base_file, only : file_t, standard_output
+  use dd3_base_message, only : message_list_t, message_t, new_message
   use dd3_base_ranks, only : this_rank
   use dd3_base_text, only : newline
   implicit none
@@ -19,6 +20,11 @@ module dd3_base_log
     logical :: quiet = .false.
     !> Whether the screen is a terminal that can rewrite a line.
     logical :: terminal = .false.
+    !> Warnings and notes so far.
+    type(message_list_t) :: told
+    !> Running phase, not allocated before the first, and accepted increments.
+    character(len=:), allocatable :: phase
+    integer :: increment = 0
     !> Length of the status line on the screen.
     integer, private :: live_length = 0
     !> Screen and job.log.
@@ -31,6 +37,8 @@ module dd3_base_log
     procedure :: start => log_start
     procedure :: open => log_open
     procedure :: say => log_say
+    procedure :: tell => log_tell
+    procedure :: report => log_report
     procedure :: note => log_note
     procedure :: live => log_live
     procedure :: check => log_check
@@ -105,6 +113,28 @@ contains
     end if
     call self%note(text)
   end subroutine log_say
+
+  !> Write a warning or a note, and keep it with the phase and the increment.
+  subroutine log_tell(self, message)
+    class(log_t), intent(inout) :: self
+    type(message_t), intent(in) :: message
+
+    type(message_t) :: told
+
+    told = message
+    if (allocated(self%phase)) told%phase = self%phase
+    told%increment = self%increment
+    call self%told%add(told)
+    call self%say(message%line())
+  end subroutine log_tell
+
+  !> Tell a text under a code; no-op if it is empty.
+  subroutine log_report(self, code, text)
+    class(log_t), intent(inout) :: self
+    character(len=*), intent(in) :: code, text
+
+    if (len(text) > 0) call self%tell(new_message(code, text))
+  end subroutine log_report
 
   !> Write one or several lines to job.log only, at once: they are there if the program is killed.
   subroutine log_note(self, text)

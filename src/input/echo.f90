@@ -7,7 +7,7 @@ module dd3_input_echo
   use dd3_input_table, only : block_row_t, block_table, find_block, find_key
   implicit none
   private
-  public :: echo_case
+  public :: echo_case, entry_words
 
   !> Column of the remarks (unit, default).
   integer, parameter :: remark_column = 52
@@ -45,7 +45,7 @@ contains
       if (k > 0) then
         call buffer%add(echo_entry(block%entry(i), trim(row%key(k)%unit)))
       else
-        call buffer%add("  "//words(block%entry(i))//newline)
+        call buffer%add("  "//entry_words(block%entry(i))//newline)
       end if
     end do
     text = buffer%text()
@@ -60,7 +60,7 @@ contains
     character(len=:), allocatable :: remark
     integer(i8) :: gap
 
-    text = "  "//entry%key//" = "//words(entry)
+    text = "  "//entry%key//" = "//entry_words(entry)
     remark = ""
     if (unit /= "") remark = unit
     if (entry%defaulted .and. remark /= "") remark = remark//", default"
@@ -73,7 +73,7 @@ contains
   end function echo_entry
 
   !> Return a value as it would be written.
-  function words(entry) result(text)
+  function entry_words(entry) result(text)
     type(entry_t), intent(in) :: entry
     character(len=:), allocatable :: text
 
@@ -99,6 +99,6 @@ contains
       end associate
     end do
     text = buffer%text()
-  end function words
+  end function entry_words
 
 end module dd3_input_echo

@@ -211,6 +211,11 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    allocate (model%set(size(mesh%set)))
+    do i = 1, size(mesh%set)
+      model%set(i)%name = mesh%set(i)%name
+      model%set(i)%n_node = size(mesh%set(i)%node)
+    end do
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     call set_columns(model)

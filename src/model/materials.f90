@@ -14,7 +14,7 @@ module dd3_model_materials
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: new_materials, law_sources
+  public :: new_materials, law_sources, choose_law
 
   !> Names of the kinds of laws in messages.
   character(len=15), parameter :: kind_name(3) = [character(len=15) :: "yield criterion", &
@@ -59,11 +59,12 @@ contains
     integer :: found, i
 
     found = errors%count
-    if (spec%source%has("yield")) call choose(law_yield, spec%yield, yield, errors)
-    if (spec%source%has("hardening")) call choose(law_hardening, spec%hardening, hardening, errors)
+    if (spec%source%has("yield")) call choose_checked(law_yield, spec%yield, yield, errors)
+    if (spec%source%has("hardening")) call choose_checked(law_hardening, spec%hardening, &
+        hardening, errors)
     allocate (backstress(size(spec%backstress)))
     do i = 1, size(backstress)
-      call choose(law_backstress, spec%backstress(i), backstress(i), errors)
+      call choose_checked(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
@@ -91,8 +92,8 @@ contains
     end do
   end subroutine add_law
 
-  !> Check a law as written and set its values.
-  subroutine choose(kind, spec, choice, errors)
+  !> Check a law as written, also the relations between its values, and set its values.
+  subroutine choose_checked(kind, spec, choice, errors)
     !> One of the `law_*` values.
     integer, intent(in) :: kind
     type(law_spec_t), intent(in) :: spec
@@ -101,13 +102,37 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    character(len=24), allocatable :: names(:)
-    type(parameter_t), allocatable :: rows(:)
     type(problem_t), allocatable :: problems(:)
     integer, allocatable :: origin(:)
-    integer :: position, found, i
+    integer :: found, i
 
     found = errors%count
+    call choose_law(kind, spec, choice, errors, origin)
+    if (choice%name == "" .or. choice%name == no_law) return
+    call check_together(kind, choice%name, choice%values, problems, errors%count > found)
+    do i = 1, size(problems)
+      call errors%push_input(problem_place(spec, origin, problems(i)%index), &
+          trim(problems(i)%message), trim(problems(i)%expected))
+    end do
+  end subroutine choose_checked
+
+  !> Check the name and each parameter of a law as written, and set its values.
+  subroutine choose_law(kind, spec, choice, errors, origin)
+    !> One of the `law_*` values.
+    integer, intent(in) :: kind
+    type(law_spec_t), intent(in) :: spec
+    !> The law with its values; without a name if the name is unknown.
+    type(law_choice_t), intent(out) :: choice
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+    !> Position of each value among the parameters as written; 0 for a default. Not allocated if the
+    !> name is unknown.
+    integer, allocatable, intent(out) :: origin(:)
+
+    character(len=24), allocatable :: names(:)
+    type(parameter_t), allocatable :: rows(:)
+    integer :: position
+
     call known_laws(kind, names)
     if (kind == law_backstress) names = [names, no_law]
     call check_law_name(spec, trim(kind_name(kind)), names, position, errors)
@@ -115,13 +140,7 @@ contains
     choice%name = names(position)
     call law_rows(kind, names(position), rows)
     call check_law_values(spec, rows, choice%values, errors, origin)
-    if (choice%name == no_law) return
-    call check_together(kind, choice%name, choice%values, problems, errors%count > found)
-    do i = 1, size(problems)
-      call errors%push_input(problem_place(spec, origin, problems(i)%index), &
-          trim(problems(i)%message), trim(problems(i)%expected))
-    end do
-  end subroutine choose
+  end subroutine choose_law
 
   !> Return the location of the value that a problem concerns; if it concerns the whole law or a
   !> default, that of the law's name.

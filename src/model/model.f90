@@ -16,7 +16,13 @@ module dd3_model_model
   use dd3_model_tolerances, only : tolerances_t
   implicit none
   private
-  public :: model_t, history_set_t, output_t
+  public :: model_t, history_set_t, node_set_t, output_t
+
+  !> Node set by its name.
+  type :: node_set_t
+    character(len=:), allocatable :: name
+    integer :: n_node = 0
+  end type node_set_t
 
   !> Node set with quantities in history.csv.
   type :: history_set_t
@@ -52,6 +58,8 @@ module dd3_model_model
     real(wp), allocatable :: x0(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
+    !> Node sets of the blank or the mesh file, then those of the input.
+    type(node_set_t), allocatable :: set(:)
     !> Element type of the sheet.
     type(element_t) :: element
     !> Faces on the boundary of the sheet.

@@ -3,7 +3,8 @@
 module dd3_model_tool_report
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
-  use dd3_base_text, only : text_t, newline, to_text
+  use dd3_base_message, only : message_list_t
+  use dd3_base_text, only : newline, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_joints, only : near_miss_t, new_surface_report, surface_report_t
   use dd3_input_case, only : case_t
@@ -12,7 +13,7 @@ module dd3_model_tool_report
   use dd3_model_tolerances, only : start_depth
   implicit none
   private
-  public :: tool_report, tool_warnings
+  public :: tool_report, tool_warnings, near_gap
 
   !> Largest gap of edges that count as near, in thicknesses.
   real(wp), parameter :: near_gap = 2.0_wp
@@ -83,7 +84,7 @@ contains
     !> Without errors.
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(text_t), allocatable, intent(inout) :: warnings(:)
+    type(message_list_t), intent(inout) :: warnings
 
     type(surface_report_t) :: report
     integer :: i, k
@@ -91,42 +92,35 @@ contains
     do i = 1, model%n_tool
       call new_surface_report(report, model%tool(i)%surface, near_gap*model%thickness)
       do k = 1, min(size(report%near_miss), most_named)
-        call add(warnings, gap_warning(case, model, i, report%near_miss(k)))
+        call add_gap_warning(case, model, i, report%near_miss(k), warnings)
       end do
-      if (k <= size(report%near_miss)) call add(warnings, "warning: "// &
+      if (k <= size(report%near_miss)) call warnings%add_new("W010", &
           to_text(size(report%near_miss) - most_named)//" more pairs of edges of tool '"// &
           model%tool(i)%name//"' nearly coincide without being joined")
-      call add(warnings, face_warning(case, model, i))
+      call warnings%add_new("W011", face_warning(case, model, i), &
+          case%tool(i)%source%at("contact"))
     end do
   end subroutine tool_warnings
 
-  !> Add a warning that is not empty.
-  subroutine add(warnings, line)
-    type(text_t), allocatable, intent(inout) :: warnings(:)
-    character(len=*), intent(in) :: line
-
-    type(text_t) :: warning
-
-    if (len(line) == 0) return
-    warning%s = line
-    warnings = [warnings, warning]
-  end subroutine add
-
-  !> Return the warning of two edges that nearly coincide.
-  function gap_warning(case, model, tool, near_miss) result(text)
+  !> Add the warning of two edges that nearly coincide.
+  subroutine add_gap_warning(case, model, tool, near_miss, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool
     type(near_miss_t), intent(in) :: near_miss
-    character(len=:), allocatable :: text
+    type(message_list_t), intent(inout) :: warnings
+
+    type(location_t) :: at
 
     associate (line => model%tool(tool)%surface%patch(near_miss%patch)%line)
-      text = case%tool(tool)%patches//":"//to_text(line(2))//": warning: the "//lines(line)// &
+      at%file = case%tool(tool)%patches
+      at%line = line(2)
+      call warnings%add_new("W010", "the "//lines(line)// &
           " are not joined, although their edges run beside each other at up to "// &
           to_text(near_miss%gap, 3)//" mm: a node between them does not meet tool '"// &
-          model%tool(tool)%name//"'; expected edges with the same control points and weights"
+          model%tool(tool)%name//"'; expected edges with the same control points and weights", at)
     end associate
-  end function gap_warning
+  end subroutine add_gap_warning
 
   !> Return a warning if most faces before a tool whose nodes are its candidates are turned away
   !> from it; empty otherwise.
@@ -136,16 +130,13 @@ contains
     integer, intent(in) :: tool
     character(len=:), allocatable :: text
 
-    type(location_t) :: at
     real(wp) :: up
     integer :: n_facing, n_averted
 
     text = ""
     call count_faces(model, tool, n_facing, n_averted, up)
     if (n_averted <= n_facing) return
-    at = case%tool(tool)%source%at("contact")
-    if (allocated(at%file)) text = at%file//":"//to_text(at%line)//": "
-    text = text//"warning: the nodes of set '"//case%tool(tool)%contact//"' before tool '"// &
+    text = "the nodes of set '"//case%tool(tool)%contact//"' before tool '"// &
         model%tool(tool)%name//"' lie on the face of the sheet that is turned away from it ("// &
         to_text(n_averted)//" of "//to_text(n_averted + n_facing)//" element faces); expected "// &
         "the nodes of the face that it meets"

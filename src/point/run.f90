@@ -4,7 +4,7 @@
 module dd3_point_run
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t, fatal_error, keep_first
-  use dd3_base_interrupt, only : interrupted, interruption
+  use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
@@ -100,7 +100,8 @@ contains
     end do
     if (.not. allocated(error)) &
         call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
-    if (strain > notable_strain) call log%say("warning: point "//path%name// &
+    log%increment = run%increment
+    if (strain > notable_strain) call log%report("W113", "point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
     if (run%waiting) call write_row(run, model, path, record, late)
     call keep_first(error, late)
@@ -142,7 +143,7 @@ contains
       if (allocated(error)) return
       if (interrupted()) then
         call fatal_error(error, interruption()//" in point "//path%name//", step "// &
-            to_text(run%increment))
+            to_text(run%increment), interruption_code)
         return
       end if
     end do

@@ -141,7 +141,7 @@ contains
 
     text = ""
     if (.not. is_too_large(self)) return
-    text = "warning: the job needs about "//to_text(nint(self%total/megabyte))//" MB of memory, "// &
+    text = "the job needs about "//to_text(nint(self%total/megabyte))//" MB of memory, "// &
         "the machine has "//to_text(nint(available_memory()/megabyte))//" MB left: it would be "// &
         "slow or be ended by the system; a mesh with fewer elements needs less"
   end function memory_warning

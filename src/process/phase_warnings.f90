@@ -65,7 +65,7 @@ contains
       quantity = "force"
       unit = " N"
     end if
-    text = "warning: phase '"//phase%name//"' ended "//fault//" its `until`: the "//quantity// &
+    text = "phase '"//phase%name//"' ended "//fault//" its `until`: the "//quantity// &
         " is "//to_text(abs(until_value(phase, state)), 4)//unit//", not "// &
         to_text(phase%until%value)//unit
   end function until_warning
@@ -88,10 +88,10 @@ contains
         if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
         call gap_of_tool(model, tool, state, gap, facing)
         if (facing > tangential .and. gap <= model%tolerance%touch) cycle
-        text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
+        text = "in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
             "' does not meet the sheet along its force"
         if (gap <= model%tolerance%tool_search .and. facing < -tangential) text = &
-            "warning: in phase '"//phase%name//"' the force on tool '"//model%tool(tool)%name// &
+            "in phase '"//phase%name//"' the force on tool '"//model%tool(tool)%name// &
             "' points away from the sheet; is its sign wrong?"
         return
       end do
@@ -120,7 +120,7 @@ contains
         end do
         text = body%free_motion()
         if (len(text) == 0) cycle
-        text = "warning: at the start of phase '"//phase%name//"' nothing holds "// &
+        text = "at the start of phase '"//phase%name//"' nothing holds "// &
             part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool in "// &
             "contact from the start"
         return
@@ -177,7 +177,7 @@ contains
     if (all(abs(state%start%fading) <= 0.0_wp)) return
     increase = state%internal_variables(1, :, :) - state%start%plastic_strain
     place = maxloc(increase)
-    if (increase(place(1), place(2)) > notable_strain) text = "warning: in phase '"// &
+    if (increase(place(1), place(2)) > notable_strain) text = "in phase '"// &
         phase%name//"' the plastic strain of element "//to_text(place(2))//" increased by "// &
         to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
         "compare with tools withdrawn by `move`"

@@ -2,12 +2,13 @@
 module dd3_process_run
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_text
-  use dd3_base_clock, only : profile_t, section_output, wall_time
+  use dd3_base_clock, only : section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
-  use dd3_base_interrupt, only : interrupted, interruption
+  use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
+  use dd3_base_message, only : message_list_t
   use dd3_base_ranks, only : n_ranks
-  use dd3_base_text, only : text_t, to_text
+  use dd3_base_text, only : to_text
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
@@ -18,6 +19,7 @@ module dd3_process_run
   use dd3_model_tool_depth, only : observe_tools
   use dd3_output_progress, only : progress_t, progress_view_t
   use dd3_output_records, only : records_t
+  use dd3_output_run_summary, only : run_summary_t
   use dd3_output_status, only : status_row_t
   use dd3_process_attempt_report, only : failure_message, status_row
   use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
@@ -30,19 +32,19 @@ module dd3_process_run
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
   use dd3_process_stepper, only : stepper_t
   use dd3_process_tool_warnings, only : tool_warnings
-  use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
+  use dd3_process_unload_report, only : imbalance_warning, report_reactions, unload_note
   use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system, system_t
   implicit none
   private
-  public :: run_model, run_start_t, run_summary_t, solver_options
+  public :: run_model, run_start_t, solver_options
 
   !> Initial data of a run.
   type :: run_start_t
     !> Initial state, or that of a restart.
     type(state_t) :: state
-    !> Folder of the records to be continued; not allocated if a new run starts.
-    character(len=:), allocatable :: source
+    !> Restart file, and folder of the records to be continued; not allocated if a new run starts.
+    character(len=:), allocatable :: restart, source
     !> Settings of the linear solver.
     type(solver_spec_t) :: solver
     integer :: threads = 1
@@ -51,15 +53,6 @@ module dd3_process_run
     !> Folder of the results; it exists.
     character(len=:), allocatable :: directory
   end type run_start_t
-
-  !> Totals of a run.
-  type :: run_summary_t
-    !> Accepted increments, iterations of the corrector and of the linear solver, cut-backs.
-    integer :: increments = 0, iterations = 0, solver_iterations = 0, retries = 0
-    !> Wall-clock time, s.
-    real(wp) :: seconds = 0.0_wp
-    type(profile_t) :: profile
-  end type run_summary_t
 
   !> Data of a run.
   type :: run_t
@@ -91,6 +84,8 @@ contains
     began = wall_time()
     call set_threads(start%threads)
     run%committed = start%state
+    call summary%start(size(model%phase), start%state)
+    run%summary = summary
     call new_system(run%stepper%system, model, solver_options(start), error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
@@ -101,7 +96,10 @@ contains
     if (.not. allocated(error)) then
       call run%progress%start(model)
       do number = run%committed%phase, size(model%phase)
+        log%phase = model%phase(number)%name
+        run%summary%phase(number)%state = "running"
         call run_phase(run, model, number, log, error)
+        call run%summary%phase(number)%finish(run%committed, error)
         if (allocated(error)) exit
       end do
       call run%progress%finish(log)
@@ -143,9 +141,10 @@ contains
       if (size(start%state%solver_memory) == size(run%stepper%system%solver%memory)) &
           run%stepper%system%solver%memory = start%state%solver_memory
       call run%records%resume(model, start%source, start%directory, run%committed, lost, error)
+      log%increment = run%committed%increment
       call log%say("restart after increment "//to_text(run%committed%increment)//" of phase '"// &
           model%phase(run%committed%phase)%name//"'")
-      if (len(lost) > 0) call log%say("warning: these records begin at the restart, as those "// &
+      if (len(lost) > 0) call log%report("W101", "these records begin at the restart, as those "// &
           "of the earlier run are missing or have other columns:"//lost// &
           "; earlier files in the folder are kept as *.until_<increment>")
     else
@@ -165,7 +164,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(error_t), allocatable :: late
-    type(text_t), allocatable :: warnings(:)
+    type(message_list_t) :: warnings
     real(wp) :: next_output
     logical :: ended
     integer :: done, i
@@ -191,14 +190,14 @@ contains
       end do
       ended = .not. allocated(error)
       if (ended) then
-        call say_if_any(log, until_warning(phase, committed))
-        call say_if_any(log, release_warning(phase, committed))
-        call say_if_any(log, reaction_note(model, committed))
-        call say_if_any(log, gap_note(model, committed))
+        call log%report("W105", until_warning(phase, committed))
+        call log%report("W106", release_warning(phase, committed))
+        call report_reactions(model, committed, log)
+        call log%report("N104", gap_note(model, committed))
       end if
       call tool_warnings(model, committed, ended, warnings)
-      do i = 1, size(warnings)
-        call log%say(warnings(i)%s)
+      do i = 1, warnings%count
+        call log%tell(warnings%item(i))
       end do
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
@@ -229,23 +228,15 @@ contains
     if (allocated(error)) return
     call begin_phase(model, number, committed)
     associate (phase => model%phase(number))
-      call say_if_any(log, kept_note(phase))
-      call say_if_any(log, press_warning(model, committed))
-      call say_if_any(log, support_warning(model, committed))
-      call say_if_any(log, unload_note(model, committed))
-      call say_if_any(log, imbalance_warning(model, committed))
-      if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
+      call log%report("N101", kept_note(phase))
+      call log%report("W102", press_warning(model, committed))
+      call log%report("W103", support_warning(model, committed))
+      call log%report("N102", unload_note(model, committed))
+      call log%report("W104", imbalance_warning(model, committed))
+      if (phase_is_over(model, committed)) call log%report("N105", "phase '"//phase%name &
           //"' has no increment: the condition of its early end holds at its start")
     end associate
   end subroutine start_phase
-
-  !> Log a text that is not empty.
-  subroutine say_if_any(log, text)
-    type(log_t), intent(inout) :: log
-    character(len=*), intent(in) :: text
-
-    if (len(text) > 0) call log%say(text)
-  end subroutine say_if_any
 
   !> Make one increment in as many attempts as allowed. A converged one is accepted even if its row
   !> of status.csv cannot be written.
@@ -260,7 +251,7 @@ contains
     logical :: predicted, again
 
     associate (stepper => run%stepper, attempt => run%stepper%attempt, &
-        phase => model%phase(run%committed%phase))
+        phase => model%phase(run%committed%phase), totals => run%summary%phase(run%committed%phase))
       began = wall_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
@@ -288,11 +279,9 @@ contains
         if (again) again = makes_progress(attempt, stepper%prediction%progress)
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
-        run%summary%iterations = run%summary%iterations + row%iterations
-        run%summary%solver_iterations = run%summary%solver_iterations + row%solver_iterations
+        call totals%add(row)
         if (allocated(error) .or. .not. again) exit
-        if (attempt%verdict%outcome /= verdict_converged) &
-            run%summary%retries = run%summary%retries + 1
+        if (attempt%verdict%outcome /= verdict_converged) totals%retries = totals%retries + 1
       end do
       if (attempt%verdict%outcome == verdict_converged) then
         call accept_increment(model, run%trial, stepper, run%committed)
@@ -308,7 +297,8 @@ contains
     type(state_t), intent(in) :: committed
     type(error_t), allocatable, intent(out) :: error
 
-    call fatal_error(error, interruption()//" after increment "//to_text(committed%increment))
+    call fatal_error(error, interruption()//" after increment "//to_text(committed%increment), &
+        interruption_code)
   end subroutine set_interruption
 
   !> Write an accepted increment to the records and show it.
@@ -325,6 +315,7 @@ contains
 
     call run%stepper%system%profile%start()
     call observe_tools(model, run%committed)
+    log%increment = run%committed%increment
     associate (state => run%committed, phase => model%phase(run%committed%phase), &
         attempt => run%stepper%attempt)
       call run%records%write_increment(model, state, &

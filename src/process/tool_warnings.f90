@@ -3,7 +3,8 @@
 !> points between nodes, crossed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : text_t, to_text
+  use dd3_base_message, only : message_list_t
+  use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_tool, only : find_on_tool
@@ -23,46 +24,42 @@ module dd3_process_tool_warnings
 
 contains
 
-  !> Return the warnings, one line each.
+  !> Return the warnings.
   subroutine tool_warnings(model, state, ended, warnings)
     type(model_t), intent(in) :: model
     !> Last state of the phase.
     type(state_t), intent(in) :: state
     !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
     logical, intent(in) :: ended
-    type(text_t), allocatable, intent(out) :: warnings(:)
+    type(message_list_t), intent(out) :: warnings
 
     integer :: a, b
 
-    allocate (warnings(0))
     associate (active => model%phase(state%phase)%active)
       do a = 1, model%n_tool
         if (.not. active(a)) cycle
-        if (ended) call add(warnings, model, state, contact_warning(model, state, a))
-        call add(warnings, model, state, depth_warning(model, state, a))
-        call add(warnings, model, state, edge_warning(model, state, a))
+        if (ended) call add("W108", contact_warning(model, state, a))
+        call add("W109", depth_warning(model, state, a))
+        call add("W110", edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (.not. active(b)) cycle
-          call add(warnings, model, state, crossing_warning(model, state, a, b))
-          call add(warnings, model, state, ironing_warning(model, state, a, b))
+          call add("W111", crossing_warning(model, state, a, b))
+          call add("W112", ironing_warning(model, state, a, b))
         end do
       end do
     end associate
+
+  contains
+
+    !> Add a warning that is not empty.
+    subroutine add(code, text)
+      character(len=*), intent(in) :: code, text
+
+      if (len(text) > 0) call warnings%add_new(code, "in phase '"// &
+          model%phase(state%phase)%name//"' "//text)
+    end subroutine add
+
   end subroutine tool_warnings
-
-  !> Add a warning that is not empty.
-  subroutine add(warnings, model, state, message)
-    type(text_t), allocatable, intent(inout) :: warnings(:)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    character(len=*), intent(in) :: message
-
-    type(text_t) :: warning
-
-    if (len(message) == 0) return
-    warning%s = "warning: in phase '"//model%phase(state%phase)%name//"' "//message
-    warnings = [warnings, warning]
-  end subroutine add
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
   function contact_warning(model, state, tool) result(text)

@@ -2,6 +2,7 @@
 !> the forces on the sheet are in equilibrium without them, and their reactions.
 module dd3_process_unload_report
   use dd3_base_kinds, only : wp
+  use dd3_base_log, only : log_t
   use dd3_base_text, only : to_text
   use dd3_model_loads, only : nodal_forces
   use dd3_model_pressures, only : add_pressure_forces
@@ -11,7 +12,7 @@ module dd3_process_unload_report
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: imbalance_warning, reaction_note, unload_note
+  public :: imbalance_warning, report_reactions, unload_note
 
   !> Resultants below this fraction of the forces on the sheet, and reactions at the end below this
   !> fraction of the largest force that faded, are those that the tolerance of the corrector leaves.
@@ -79,7 +80,7 @@ contains
           model%pressure_set, start%pressure_end, state%x, force)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
-        text = "warning: the loads on the sheet are not in equilibrium in phase '"//phase%name// &
+        text = "the loads on the sheet are not in equilibrium in phase '"//phase%name// &
             "': the chosen supports carry "//to_text(resultant, 3)//" N of them"
         return
       end if
@@ -88,7 +89,7 @@ contains
           start%pressure, state%x, force)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
-          "warning: the forces that fade in phase '"//phase%name// &
+          "the forces that fade in phase '"//phase%name// &
           "' are not in equilibrium: the chosen supports carry "//to_text(resultant, 3)// &
           " N of them at its start"
     end associate
@@ -116,19 +117,18 @@ contains
     resultant = norm2(matmul(projector, total))
   end function free_resultant
 
-  !> Return a note on the largest reaction of the supports chosen for the running phase, a warning
-  !> if it is not small; empty without chosen supports.
-  function reaction_note(model, state) result(text)
+  !> Tell the largest reaction of the supports chosen for the running phase, as a warning if it is
+  !> not small; no-op without chosen supports.
+  subroutine report_reactions(model, state, log)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.
     type(state_t), intent(in) :: state
-    character(len=:), allocatable :: text
+    type(log_t), intent(inout) :: log
 
     real(wp), allocatable :: reaction(:)
     real(wp) :: scale
     integer :: k
 
-    text = ""
     associate (support => model%phase(state%phase)%support, start => state%start)
       if (size(support, 2) == 0) return
       allocate (reaction(size(support, 2)))
@@ -140,11 +140,11 @@ contains
       k = maxloc(abs(reaction), dim=1)
       scale = max(0.0_wp, maxval(norm2(start%fading, dim=1)), &
           maxval(norm2(start%load, dim=1)), maxval(norm2(start%load_end, dim=1)))
-      if (abs(reaction(k)) > notable_reaction*scale) text = "warning: "
-      text = text//"phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
+      call log%report(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
+          "phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &
-          name_of_support(support(:, k))//")"
+          name_of_support(support(:, k))//")")
     end associate
-  end function reaction_note
+  end subroutine report_reactions
 
 end module dd3_process_unload_report

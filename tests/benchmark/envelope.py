@@ -312,7 +312,7 @@ def make(options, job, folder, blocks):
     text = job.deck(folder)
     for keyword, lines in blocks.items():
         text = merged(text, keyword.upper(), lines_of(lines))
-    deck, record = folder / "deck.dat", folder / "run.json"
+    deck, record = folder / "deck.dat", folder / "done.json"
     if record.is_file() and not options.again:
         if deck.read_text(encoding="utf-8") != text:
             raise Problem(f"{folder}: has a run with other settings; --again repeats it, --label gives another folder")
@@ -350,9 +350,9 @@ class Measured:
 
 def measure(folder, job):
     """Return what a table shows of a run, None if it is not there."""
-    if not (folder / "run.json").is_file():
+    if not (folder / "done.json").is_file():
         return None
-    record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    record = json.loads((folder / "done.json").read_text(encoding="utf-8"))
     found = Results(folder / "results")
     total, depth, end = totals(found.status), None, "no increment"
     if found.history:

@@ -49,9 +49,9 @@ def by_steps(program, work):
     tail = ["--cases", CASES, "--program", program, "--work", work]
     for name in NAMES:
         call(sys.executable, ROOT / "utils" / "study.py", "case", name, *tail)
-    stamp = (work / "b-1e3" / "run.json").stat().st_mtime_ns
+    stamp = (work / "b-1e3" / "done.json").stat().st_mtime_ns
     assert "done before" in call(sys.executable, ROOT / "utils" / "study.py", "case", "b-1e3", *tail)
-    assert (work / "b-1e3" / "run.json").stat().st_mtime_ns == stamp
+    assert (work / "b-1e3" / "done.json").stat().st_mtime_ns == stamp
     call(sys.executable, ROOT / "utils" / "study.py", "case", "none", *tail, expect=2)
     call(sys.executable, ROOT / "utils" / "study.py", "table", *tail)
     check_table(work / "results.csv")
@@ -62,12 +62,12 @@ def by_workflow(program, work):
     def run():
         call("bash", ROOT / "utils" / "study.sh", "--quick", "--cores", 2, "--program", program, "--work", work,
              env={**os.environ, "PYTHON": sys.executable})
-        return {name: (work / name / "run.json").stat().st_mtime_ns for name in NAMES}
+        return {name: (work / name / "done.json").stat().st_mtime_ns for name in NAMES}
 
     first = run()
     check_table(work / "results.csv")
     assert run() == first
-    (work / "a-1e3" / "run.json").unlink()
+    (work / "a-1e3" / "done.json").unlink()
     again = run()
     assert [name for name in NAMES if again[name] != first[name]] == ["a-1e3"]
     check_table(work / "results.csv")

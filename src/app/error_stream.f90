@@ -1,0 +1,27 @@
+!> Lines on the error stream, which may be closed.
+module dd3_app_error_stream
+  use, intrinsic :: iso_fortran_env, only : error_unit
+  use dd3_base_ranks, only : this_rank
+  implicit none
+  private
+  public :: put_line, write_line
+
+contains
+
+  !> Write a line that all ranks know on the error stream.
+  subroutine write_line(text)
+    character(len=*), intent(in) :: text
+
+    if (this_rank() == 0) call put_line(text)
+  end subroutine write_line
+
+  !> Write a line on the error stream.
+  subroutine put_line(text)
+    character(len=*), intent(in) :: text
+
+    integer :: ignored
+
+    write (error_unit, '(a)', iostat=ignored) text
+  end subroutine put_line
+
+end module dd3_app_error_stream
