@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Run one case of tests/cases/ and compare its history with the reference.
+"""Run one case of tests/cases/, compare its history with the reference and validate its run.json.
 
     run_case.py --program build/release/dd3imp --work build/cases tests/cases/tension
 
@@ -18,7 +18,7 @@ A case is a folder with a case.json:
     equal       lists [column, column, tolerance] of columns that agree in every row of history.csv
     status      per column of status.csv [lowest, highest]: bounds of every row
     contains    texts that the program's output must contain, a list
-    files       files that the results must contain, default ["history.csv", "status.csv", "job.log"]
+    files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"]
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
                 `arguments` and keys that replace those of the case, such as a reference of their own
     labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` adds it to the debug build
@@ -32,6 +32,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "utils"))
 from results import command, find_program, launch, number, read_table  # noqa: E402
+from run_description import check_description  # noqa: E402
 from scripts import Problem  # noqa: E402
 
 SELECTS = ("phase", "point")
@@ -146,6 +147,8 @@ def check_output(case, done, results):
     for name in case.get("files", ["history.csv", "status.csv", "job.log"]):
         if not (results / name).exists():
             raise Mismatch(f"{name} was not written")
+    if expected in (0, 3):
+        check_description(results, expected)
 
 
 def run(case, folder, program, results, arguments):

@@ -16,8 +16,9 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
+sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
 from results import command, find_program, interpolate, launch, number, read_table  # noqa: E402
+from run_description import check_description  # noqa: E402
 
 THICKNESS, YOUNG, POISSON = 0.78, 2.1e5, 0.3
 K, E0, N = 565.0, 0.007117, 0.259
@@ -124,6 +125,7 @@ def moments(program, work, length, layers, elements, force, hardening):
     done = launch(command(program, deck, out), timeout=120)
     if done.code not in (0, 3):  # it may stop beyond the radius
         sys.exit(f"{deck}: exit code {done.code}:\n{done.output}")
+    check_description(out, done.code)
     curvatures, values = [], []
     for row in read_table(out / "history.csv"):
         at = {name: number(row, name, out) for name in row if name.endswith(("_x", "_z", "progress"))}

@@ -1,4 +1,4 @@
-"""Tests of tests/run_case.py with a stand-in for the program."""
+"""Tests of tests/run_case.py and tests/run_description.py with a stand-in for the program."""
 import json
 import pathlib
 import subprocess
@@ -6,7 +6,13 @@ import sys
 import tempfile
 import unittest
 
-RUNNER = pathlib.Path(__file__).resolve().parent.parent / "run_case.py"
+TESTS = pathlib.Path(__file__).resolve().parent.parent
+RUNNER = TESTS / "run_case.py"
+SCHEMA = json.loads((TESTS.parent / "docs" / "run.schema.json").read_text(encoding="utf-8"))
+sys.path.insert(0, str(TESTS))
+from run_description import check_description, jsonschema  # noqa: E402
+from scripts import Problem  # noqa: E402
+
 PROGRAM = """#!{python}
 import pathlib, sys
 folder = pathlib.Path(sys.argv[sys.argv.index("--output") + 1])
@@ -17,10 +23,62 @@ rows = ["clamp,0,5", "clamp,0,10", "draw,1,20", "draw,2,40"]
     "%s,%s,%g\\n" % (r.split(",")[0], r.split(",")[1], factor * float(r.split(",")[2])) for r in rows))
 (folder / "status.csv").write_text("increment,iterations\\n1,2\\n2,3\\n")
 (folder / "job.log").write_text("")
+code = 3 if "--stop" in sys.argv else 0
+(folder / "run.json").write_text(pathlib.Path("{scratch}", "run_%d.json" % code).read_text())
 print("the run is over")
-sys.exit(3 if "--stop" in sys.argv else 0)
+sys.exit(code)
 """
 REFERENCE = "# from a hand calculation\nphase,travel,force\nclamp,0,10\ndraw,1.5,30\ndraw,2,40\n"
+
+
+def smallest(schema):
+    """Return the smallest value that obeys a schema of docs/run.schema.json."""
+    if "$ref" in schema:
+        return smallest(SCHEMA["$defs"][schema["$ref"].removeprefix("#/$defs/")])
+    if "anyOf" in schema:
+        return None if {"type": "null"} in schema["anyOf"] else smallest(schema["anyOf"][0])
+    if "const" in schema or "enum" in schema:
+        return schema.get("const", schema.get("enum", [None])[0])
+    kind = schema["type"]
+    if isinstance(kind, list):
+        return None
+    if kind == "object":
+        return {name: smallest(schema["properties"][name]) for name in schema.get("required", [])}
+    if kind == "array":
+        return [smallest(schema["items"])] * schema.get("minItems", 0)
+    time = "2026-01-31T12:00:00+01:00" if "pattern" in schema else ""
+    return {"string": time, "boolean": False}.get(kind, schema.get("minimum", 0))
+
+
+def description(code):
+    """Return the run.json of a run with an exit code."""
+    message = {"code": None, "text": "", "at": None, "phase": None, "increment": None}
+    return {**smallest(SCHEMA), "errors": [message] * (code > 0),
+            "outcome": {"state": "stopped" if code else "reached", "exit_code": code, "code": None, "message": None}}
+
+
+class RunDescription(unittest.TestCase):
+    """Tests with a run.json each."""
+
+    def refuse(self, text, found):
+        """Check that a run.json is refused as that of a run that reached its end."""
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "run.json").write_text(found if isinstance(found, str) else json.dumps(found))
+            with self.assertRaises(Problem) as caught:
+                check_description(folder, 0)
+        self.assertIn(text, str(caught.exception))
+
+    def test_what_is_refused(self):
+        self.refuse("line 1 column 2", "{")
+        self.refuse("exit code 0", description(3))
+        self.refuse("1 errors", {**description(0), "errors": description(3)["errors"]})
+
+    @unittest.skipIf(jsonschema is None, "jsonschema is not installed")
+    def test_schema(self):
+        self.refuse("'title' is a required property", {key: value for key, value in description(0).items()
+                                                       if key != "title"})
+        self.refuse("machine/threads", {**description(0), "machine": {**description(0)["machine"], "threads": 0}})
+        self.refuse("unknown", {**description(0), "unknown": 1})
 
 
 class RunCase(unittest.TestCase):
@@ -31,7 +89,9 @@ class RunCase(unittest.TestCase):
         self.folder = pathlib.Path(self.scratch.name) / "case"
         self.folder.mkdir()
         self.program = pathlib.Path(self.scratch.name) / "program"
-        self.program.write_text(PROGRAM.format(python=sys.executable))
+        self.program.write_text(PROGRAM.format(python=sys.executable, scratch=self.scratch.name))
+        for code in (0, 3):
+            (pathlib.Path(self.scratch.name) / f"run_{code}.json").write_text(json.dumps(description(code)))
         self.program.chmod(0o755)
 
     def tearDown(self):

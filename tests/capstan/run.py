@@ -17,8 +17,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
 REPORT = ROOT / "docs" / "reports" / "capstan.md"
-sys.path.insert(0, str(ROOT / "utils"))
+sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
 from results import command, find_program, launch, number, read_table, totals  # noqa: E402
+from run_description import check_description  # noqa: E402
 
 EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0
@@ -49,6 +50,7 @@ def measure(program, work, thickness, contact):
     file, out = work / f"{name}.dat", work / name
     file.write_text(deck(thickness, contact), encoding="utf-8")
     done = launch(command(program, file, out, ["--quiet"]), timeout=600)
+    check_description(out, done.code)
     history = read_table(out / "history.csv")
     total = totals(read_table(out / "status.csv"))
     depth = max(RADIUS - math.hypot(number(row, f"node{i}_x", out), number(row, f"node{i}_z", out) + RADIUS)

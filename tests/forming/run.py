@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
+sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
 if any(importlib.util.find_spec(name) is None for name in ("h5py", "numpy")):
     print("skipped: the packages of utils/requirements.txt are not installed")
     sys.exit(77)
@@ -17,6 +17,7 @@ if any(importlib.util.find_spec(name) is None for name in ("h5py", "numpy")):
 import numpy as np  # noqa: E402
 from fields import Fields  # noqa: E402
 from results import command, launch, parser_of_runs, read_table  # noqa: E402
+from run_description import check_description  # noqa: E402
 
 K, E0, N, YOUNG, POISSON = 565.0, 0.007117, 0.259, 2.1e5, 0.3
 MATERIAL = f"*MATERIAL steel\n  young = {YOUNG}\n  poisson = {POISSON}\n  yield = von_mises\n" \
@@ -132,6 +133,7 @@ def run(options, name, text):
     deck.write_text(text, encoding="utf-8")
     done = launch(command(options.program, deck, folder, ["--quiet"]), timeout=100)
     assert done.code == 0, f"{name}: exit code {done.code}\n{done.errors}"
+    check_description(folder, done.code)
     return Results(folder)
 
 

@@ -15,7 +15,20 @@ import subprocess
 import h5py
 
 from killed import CASES
-from runs import RECORDS, Deck, Failure, Runner, after, call_tests, check, compare, fresh, identity, table
+from runs import (
+    RECORDS,
+    Deck,
+    Failure,
+    Runner,
+    after,
+    call_tests,
+    check,
+    check_description,
+    compare,
+    fresh,
+    identity,
+    table,
+)
 
 # Number of interrupted runs.
 INTERRUPTIONS = 3
@@ -106,6 +119,12 @@ def interrupted(runner, work):
     check(done == INTERRUPTIONS, f"only {done} interruptions hit a run")
     runner.run(deck, output, output / "restart.h5", settings=("restart=1000",))
     compare(output, work / "whole")
+    found = check_description(output, 0)
+    while found["continued"]:
+        last, found = found["continued"], found["continued"]["earlier"]
+        check(found, "run.json lacks an earlier run")
+        check(last["increment"] <= max(phase["result"]["last_increment"] or 0 for phase in found["phases"]),
+              "run.json was continued beyond the end of the earlier run")
 
 
 def stopped(runner, work):

@@ -16,6 +16,9 @@ except ModuleNotFoundError as missing:
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+sys.path.insert(0, str(HERE.parent))
+from run_description import check_description  # noqa: E402
+
 RECORDS = ("history.csv", "status.csv", "fields.vtkhdf", "restart.h5")
 LONGEST = 300
 
@@ -67,6 +70,8 @@ class Runner:
                               stderr=subprocess.STDOUT, text=True, timeout=LONGEST, check=False, **options)
         check(done.returncode == expect, f"exit code {done.returncode} instead of {expect}:\n{done.stdout}")
         check("Backtrace" not in done.stdout, f"backtrace:\n{done.stdout}")
+        if expect == 0 and "--check" not in arguments:
+            check_description(pathlib.Path(options.get("cwd", "."), output), expect)
         return done.stdout
 
     def stop(self, number, when, deck, output, restart=None, settings=(), arguments=()):

@@ -13,9 +13,10 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "utils"))
+sys.path[:0] = [str(HERE.parents[1] / "utils"), str(HERE.parents[0])]
 from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
 from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to  # noqa: E402
+from run_description import check_description  # noqa: E402
 from scripts import check  # noqa: E402
 
 TOLERANCE = 0.02
@@ -69,6 +70,7 @@ def run(program, folder, text, force):
     file.write_text(text, encoding="utf-8")
     done = launch(command(program, file, folder / "out"), timeout=300)
     check(done.code == 0, f"{folder.name}: exit code {done.code}\n{done.output}{done.errors}")
+    check_description(folder / "out", done.code)
     rows = read_table(history)
     bent = [row for row in rows if row["phase"] == "bend"][-1]
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "utils"))
+sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
 from results import command, launch, number, read_table, read_text  # noqa: E402
+from run_description import check_description  # noqa: E402
 from scripts import Problem, need  # noqa: E402
 
 VALUE_HEAD = ["quantity", "expected", "computed", "error", "tolerance"]
@@ -181,4 +182,5 @@ class Bench:
         done = launch(command(self.program, deck, folder, ["--quiet", *options], settings), timeout=timeout)
         if done.code != 0:
             raise Problem(f"{name}: exit code {done.code}\n{done.output}{done.errors}")
+        check_description(folder, done.code)
         return Run(folder, done)

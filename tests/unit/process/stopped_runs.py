@@ -14,6 +14,9 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests"))
+from run_description import check_description, read_description  # noqa: E402
+
 BENDING = ROOT / "input_files" / "bending" / "bending.dat"
 BEGINNING = ROOT / "tests" / "cases" / "bending_start" / "case.dat"
 SLIDING = ROOT / "tests" / "cases" / "friction_above" / "case.dat"
@@ -58,6 +61,8 @@ def no_convergence(program, directory):
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["reason"], f"status.csv ends with {last}")
     check("stopped: " in (directory / "job.log").read_text(encoding="utf-8"), "job.log does not say that it stopped")
+    result = check_description(directory, 3)["phases"][-1]["result"]
+    check((result["state"], result["last_increment"]) == ("stopped", accepted), f"run.json: the phase is {result}")
 
 
 def inside_out(program, directory):
@@ -73,6 +78,7 @@ def inside_out(program, directory):
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["worst_element"] == "1", f"status.csv ends with {last}")
     check(last["criterion"] == "", f"the criterion is {last['criterion']}")
+    check_description(directory, 3)
 
 
 def free_sheet(program, directory):
@@ -99,6 +105,7 @@ def led_into_tool(program, directory):
     output = run(program, directory, deck)
     check("a prescribed motion leads a node" in output, f"the reason is another one:\n{output}")
     check(", tool ram; try first" in output, f"the tool is not named:\n{output}")
+    check(check_description(directory, 3)["outcome"]["message"] in output, "run.json has another message")
 
 
 def small_disk(program, directory):
@@ -161,7 +168,7 @@ def next_to_old(program, directory):
     done = subprocess.run([program, "--quiet", "--output", directory, POINT], timeout=300, check=False)
     check(done.returncode == 0, f"expected exit code 0, got {done.returncode}")
     left = sorted(path.name for path in directory.iterdir())
-    check(left == ["history.csv", "job.log", "own.txt"], f"unexpected files: {left}")
+    check(left == ["history.csv", "job.log", "own.txt", "run.json"], f"unexpected files: {left}")
     output = (directory / "job.log").read_text(encoding="utf-8")
     check("removed from an earlier run: history.csv status.csv fields.vtkhdf" in output, f"job.log says:\n{output}")
 
@@ -181,6 +188,27 @@ def interrupted(program, directory):
     check(f"interrupted by the user after increment {last}" in output, f"the last increment is not {last}:\n{output}")
     check(table(directory / "status.csv")[-1]["increment"] == last, "status.csv ends at another increment")
     check((directory / "fields.vtkhdf").read_bytes()[:4] == b"\x89HDF", "fields.vtkhdf is incomplete")
+    found = check_description(directory, 3)
+    check(found["outcome"]["state"] == "interrupted" and found["outcome"]["code"] == "E201", str(found["outcome"]))
+    stopped = [phase["result"] for phase in found["phases"] if phase["result"]["state"] == "interrupted"]
+    check([result["last_increment"] for result in stopped] == [int(last)], "run.json ends at another increment")
+
+
+def initial(program, directory):
+    """Test the run.json of --check --initial, also of a tool inside the sheet."""
+    directory.mkdir(parents=True)
+    deck = directory / "inside.dat"
+    deck.write_text(BENDING.read_text(encoding="utf-8").replace('patches = "', f'patches = "{BENDING.parent}/')
+                    .replace("*TOOL punch", "*TOOL punch\n  position = 0 0 -0.5"), encoding="utf-8")
+    for path, code, state in ((BENDING, 0, "checked"), (deck, 2, "input_error")):
+        folder = directory / state
+        done = subprocess.run([program, "--check", "--quiet", "--initial", folder, path], capture_output=True, text=True,
+                              check=False)
+        check(done.returncode == code, f"expected exit code {code}, got {done.returncode}:\n{done.stderr}")
+        found = read_description(folder)
+        check(found["outcome"]["state"] == state and len(found["errors"]) == (code > 0), f"{state}: {found['outcome']}")
+        check(all(error["text"].split(";")[0] in done.stderr for error in found["errors"]), f"{state}: {found['errors']}")
+        check(all(pathlib.Path(tool["patches"]).exists() for tool in found["tools"]), f"{state}: {found['tools']}")
 
 
 def main():
@@ -192,7 +220,7 @@ def main():
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
     for test in (no_convergence, inside_out, free_sheet, led_into_tool, small_disk, full_disk, full_device,
-                 no_directory, next_to_old, interrupted):
+                 no_directory, next_to_old, interrupted, initial):
         test(options.program.resolve(), options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 

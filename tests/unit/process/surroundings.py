@@ -5,6 +5,7 @@
 """
 import argparse
 import csv
+import json
 import os
 import pathlib
 import re
@@ -219,6 +220,10 @@ def little_memory(program, directory):
         check("Backtrace" not in done.stderr, f"{megabytes} MB: it says {done.stderr}")
         if (directory / str(megabytes)).exists():
             said(directory / str(megabytes), " memory; " if "lack of" in done.stderr else "not enough memory")
+            description = directory / str(megabytes) / "run.json"
+            check(not description.exists() or
+                  json.loads(description.read_text(encoding="utf-8"))["outcome"]["exit_code"] == 3,
+                  f"{megabytes} MB: run.json does not say that it stopped")
         stopped += 1
     check(stopped > 1, "no limit was low enough")
     # The threads of OpenBLAS fail under this limit.
