@@ -17,7 +17,8 @@ A case is a folder with a case.json:
     last        per column [value, tolerance]: the last row of history.csv
     equal       lists [column, column, tolerance] of columns that agree in every row of history.csv
     status      per column of status.csv [lowest, highest]: bounds of every row
-    contains    texts that the program's output must contain, a list
+    codes       codes of messages that the run must give, a list; those of docs/messages.md
+    contains    texts that the program's output must contain, a list: names and numbers, not sentences
     files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"]
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
                 `arguments` and keys that replace those of the case, such as a reference of their own
@@ -37,7 +38,7 @@ from scripts import Problem  # noqa: E402
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains",
-         "files", "variants", "labels", "timeout", "description"}
+         "codes", "files", "variants", "labels", "timeout", "description"}
 
 
 class Mismatch(Exception):
@@ -148,7 +149,15 @@ def check_output(case, done, results):
         if not (results / name).exists():
             raise Mismatch(f"{name} was not written")
     if expected in (0, 3):
-        check_description(results, expected)
+        check_codes(case, check_description(results, expected))
+
+
+def check_codes(case, found):
+    """Check the codes of the messages of a run, given its run.json."""
+    given = {message["code"] for name in ("warnings", "notes", "errors") for message in found[name]}
+    missing = set(case.get("codes", [])) - given
+    if missing:
+        raise Mismatch(f"expected the messages {', '.join(sorted(missing))}, got {', '.join(sorted(map(str, given)))}")
 
 
 def run(case, folder, program, results, arguments):
@@ -160,7 +169,7 @@ def run(case, folder, program, results, arguments):
     done = launch(words, timeout=case.get("timeout", 300), folder=results.parent, one_core=False)
     print("\n".join((done.output + done.errors).splitlines()[-40:]))
     check_output(case, done, results)
-    compared, path = len(case.get("contains", [])), results / "history.csv"
+    compared, path = len(case.get("contains", [])) + len(case.get("codes", [])), results / "history.csv"
     if path.exists():
         history = read_table(path)
         compared += compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)

@@ -61,7 +61,7 @@ class Points:
                 break
             refused = {owner[int(line) - 1] for line in re.findall(re.escape(results.POINTS) + r":(\d+): error", said)}
             if code == 2 and refused:
-                self.refusal = re.search(r": error: (.*)", said).group(1)
+                self.refusal = re.search(r": error(?: E\d+)?: (.*)", said).group(1)
                 left = [number for i, number in enumerate(left) if i not in refused]
             elif code == 2:
                 raise Problem(said.strip())

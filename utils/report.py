@@ -102,7 +102,7 @@ def columns(*tables):
 
 def warnings_in(log):
     """Return the warnings of a log."""
-    return [line for line in log.splitlines() if re.match(r"(\S+:\d+: )?warning: ", line)]
+    return [line for line in log.splitlines() if re.match(r"(\S+:\d+: )?warning\b.*?: ", line)]
 
 
 def add_summary(report):

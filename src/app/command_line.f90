@@ -197,8 +197,8 @@ contains
         "  --reproducible       choose the linear solver by counting, not by the clock"//newline// &
         "  --quiet              print nothing but errors"//newline// &
         "  --version            the program's version"//newline// &
-        "  --help [name]        this text, or help on a block, key, law or element, or markdown"// &
-        newline// &
+        "  --help [name]        this text, or help on a block, key, law, element or code of a "// &
+        "message"//newline// &
         "exit codes: 0 reached the end; 1 usage; 2 input errors; 3 stopped before the end"//newline
   end function usage_text
 

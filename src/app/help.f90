@@ -7,6 +7,7 @@ module dd3_app_help
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
+  use dd3_message_table, only : help_message, message_markdown
   use dd3_app_law_help, only : help_law, help_laws, law_reference_markdown
   implicit none
   private
@@ -16,7 +17,8 @@ contains
 
   !> Shows help on a topic.
   subroutine show_help(topic, exit_code)
-    !> A block, a key, a law, an element or `markdown`; empty for the usage and the lists.
+    !> A block, a key, a law, an element, the code of a message, `markdown` or `messages`; empty for
+    !> the usage and the lists.
     character(len=*), intent(in) :: topic
     !> Whether there is such a topic.
     integer, intent(out) :: exit_code
@@ -29,8 +31,10 @@ contains
              "laws:"//newline//help_laws()//"elements:"//newline//help_elements()
     else if (same_name(topic, "markdown")) then
       text = reference_markdown()//law_reference_markdown()
+    else if (same_name(topic, "messages")) then
+      text = message_markdown()
     else
-      text = help_topic(topic)//help_law(topic)//help_registry(topic)
+      text = help_topic(topic)//help_law(topic)//help_registry(topic)//help_message(topic)
     end if
     if (text == "") then
       write (error_unit, '(a)') "there is no help on '"//topic// &

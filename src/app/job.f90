@@ -2,7 +2,7 @@
 module dd3_app_job
   use, intrinsic :: iso_fortran_env, only : output_unit
   use dd3_app_command_line, only : options_t
-  use dd3_app_error_stream, only : put_line, write_line
+  use dd3_app_error_stream, only : message_of, put_line, write_line
   use dd3_app_exit_codes, only : exit_end, exit_input, exit_stopped
   use dd3_app_overwrite, only : check_overwrite, result_file
   use dd3_app_run, only : command_of, run_checked
@@ -63,18 +63,18 @@ contains
       if (options%initial == "" .or. .not. allocated(model%history)) return
       call set_start(start, options, case, model, error)
       if (.not. allocated(error)) call write_initial(options, case, model, start, errors, error)
-      if (allocated(error)) call write_line("dd3imp: "//error%message)
+      if (allocated(error)) call write_line("dd3imp: "//message_of(error, "error"))
       return
     end if
     call set_start(start, options, case, model, error)
     if (allocated(error)) then
-      call write_line("dd3imp: "//error%message)
+      call write_line("dd3imp: "//message_of(error, "error"))
       exit_code = exit_input
     else if (options%check) then
       if (.not. options%quiet) call show_checked(case, model, start)
       if (options%initial /= "") call write_initial(options, case, model, start, errors, error)
       exit_code = merge(exit_stopped, exit_end, allocated(error))
-      if (allocated(error)) call write_line("dd3imp: "//error%message)
+      if (allocated(error)) call write_line("dd3imp: "//message_of(error, "error"))
     else
       call run_checked(options, start, case, model, exit_code)
     end if
@@ -112,7 +112,7 @@ contains
     start%directory = results_directory(options, case)
     if (size(case%point) > 0) then
       if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &
-          "has no restart")
+          "has no restart", "E205")
     else if (options%restart == "") then
       call new_state(start%state, model)
     else
@@ -132,10 +132,10 @@ contains
     if (n_ranks() == 1) return
     if (size(case%point) > 0) then
       call fatal_error(error, "a run of material points (*POINT) needs one process, got "// &
-          to_text(n_ranks()))
+          to_text(n_ranks()), "E205")
     else if (case%solver%method /= "auto" .and. index(case%solver%method, "petsc") /= 1) then
       call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
-          "got "//to_text(n_ranks())//"; expected auto, petsc_mumps or petsc_bicgstab")
+          "got "//to_text(n_ranks())//"; expected auto, petsc_mumps or petsc_bicgstab", "E205")
     end if
   end subroutine check_ranks
 
@@ -148,7 +148,7 @@ contains
     type(job_size_t) :: job
     class(linear_solver_t), allocatable :: solver
     type(error_t), allocatable :: ignored
-    type(message_list_t) :: warnings
+    type(message_list_t) :: messages, warnings
     integer :: i
 
     if (this_rank() > 0) return
@@ -158,11 +158,14 @@ contains
       call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
       if (allocated(solver)) call solver%release()
       write (output_unit, '(a)', advance="no") size_report(job)
-      if (len(memory_warning(job)) > 0) write (output_unit, '(a)') "warning: "//memory_warning(job)
+      call messages%add_new("W014", memory_warning(job))
     end if
     call unit_warnings(case, model, warnings)
     do i = 1, warnings%count
-      write (output_unit, '(a)') warnings%line(i)
+      call messages%add(warnings%item(i))
+    end do
+    do i = 1, messages%count
+      write (output_unit, '(a)') messages%line(i)
     end do
     write (output_unit, '(a)') "checked: "//case%file
   end subroutine show_checked
@@ -185,7 +188,7 @@ contains
     integer :: i
 
     if (size(case%point) > 0) then
-      call fatal_error(error, "material points (*POINT) have no fields")
+      call fatal_error(error, "material points (*POINT) have no fields", "E205")
       return
     end if
     if (this_rank() > 0) return
@@ -195,7 +198,7 @@ contains
         if (allocated(error)) return
         inquire (file=directory//"/"//trim(result_file(i)), exist=there)
         if (there) call fatal_error(error, "'"//directory//"' holds results of a run; "// &
-            "--initial needs a folder without")
+            "--initial needs a folder without", "E205")
       end do
       if (.not. allocated(error)) call fields%open(model, directory, error)
       if (.not. allocated(error)) call fields%write(model, start%state, error)

@@ -123,7 +123,7 @@ contains
 
     if (ending) call posix_exit(code_stopped)
     ending = .true.
-    call put("stopped: not enough memory")
+    call put("stopped E202: not enough memory")
     do i = 1, len(has_size)
       if (message(i) /= has_size(i:i)) exit
     end do
@@ -146,8 +146,8 @@ contains
   subroutine end_in_library() bind(c)
     if (finished .or. ending) return
     ending = .true.
-    call put("stopped: a library ended the program, most often for lack of memory; its own "// &
-        "message is on the error stream"//remedy//new_line("a"))
+    call put("stopped E202: a library ended the program, most often for lack of memory; its "// &
+        "own message is on the error stream"//remedy//new_line("a"))
     call write_run_file()
     call posix_exit(code_stopped)
   end subroutine end_in_library

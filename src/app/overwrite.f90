@@ -85,7 +85,7 @@ contains
         if (.not. is_same_file(path, target(k)%s)) cycle
         call errors%push_input(at, "the results would overwrite the input file '"//path//"'", &
             "another folder of results, by --output DIR or directory of *OUTPUT, or another "// &
-            "name of the file")
+            "name of the file", code="E151")
       end do
     end do
   end subroutine check_file

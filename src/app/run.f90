@@ -2,7 +2,7 @@
 module dd3_app_run
   use, intrinsic :: iso_c_binding, only : c_int
   use dd3_app_command_line, only : options_t
-  use dd3_app_error_stream, only : write_line
+  use dd3_app_error_stream, only : message_of, write_line
   use dd3_app_exit_codes, only : exit_end, exit_stopped
   use dd3_app_memory, only : ended_message, watch_log, watch_run_file
   use dd3_app_overwrite, only : result_file
@@ -61,7 +61,7 @@ contains
       call file%start(command_of(options, start), case, model, start%directory)
       call run_logged(start, case, model, log, file, summary, error)
       if (allocated(error)) then
-        call log%note("stopped: "//error%message)
+        call log%note(message_of(error, "stopped"))
       else
         call log%say("reached the end; results in "//start%directory)
       end if
@@ -71,7 +71,7 @@ contains
       call end_file(file, case, model, summary, log, error)
     end if
     exit_code = merge(exit_stopped, exit_end, allocated(error))
-    if (allocated(error)) call write_line("dd3imp: stopped: "//error%message)
+    if (allocated(error)) call write_line("dd3imp: "//message_of(error, "stopped"))
   end subroutine run_checked
 
   !> Run a job whose log is open.

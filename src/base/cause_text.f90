@@ -8,7 +8,7 @@ module dd3_base_cause_text
       cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
   implicit none
   private
-  public :: cause_text
+  public :: cause_code, cause_text
 
 contains
 
@@ -25,6 +25,28 @@ contains
     text = text//"contact status changes at "//to_text(verdict%changing)//" node"
     if (verdict%changing > 1) text = text//"s"
   end function cause_text
+
+  !> Return the code of the message on a cause; blank for none. See docs/messages.md.
+  pure function cause_code(verdict) result(code)
+    type(verdict_t), intent(in) :: verdict
+    character(len=4) :: code
+
+    ! Causes and their codes.
+    integer, parameter :: cause(19) = [cause_inverted, cause_inverted_strain, cause_not_finite, &
+        cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
+        cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
+        cause_ranks_differ, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
+        cause_residual, cause_tool_force]
+    character(len=4), parameter :: code_of(19) = ["E211", "E212", "E213", "E214", "E215", "E221", &
+        "E222", "E223", "E224", "E231", "E232", "E233", "E234", "E241", "E242", "E243", "E244", &
+        "E245", "E246"]
+    integer :: i
+
+    code = ""
+    if (verdict%cause == cause_no_progress) code = "E247"
+    i = findloc(cause, verdict%cause, 1)
+    if (i > 0) code = code_of(i)
+  end function cause_code
 
   !> Return the text without the changes of the contact status.
   pure function text_of_cause(verdict, tool) result(text)

@@ -114,12 +114,14 @@ contains
   end function as_written
 
   !> Create an error that shows a location in the input: file, line, text, caret, expectation.
-  subroutine input_error(error, location, message, expected)
+  subroutine input_error(error, location, message, expected, code)
     type(error_t), allocatable, intent(out) :: error
     type(location_t), intent(in) :: location
     character(len=*), intent(in) :: message
     !> What was expected at the location.
     character(len=*), intent(in), optional :: expected
+    !> Kind of the error, see docs/messages.md.
+    character(len=*), intent(in), optional :: code
 
     character(len=12) :: number
     integer(i8) :: width
@@ -131,7 +133,8 @@ contains
     error%at = location
     error%text = shortened(message)
     if (present(expected)) error%text = error%text//"; expected: "//shortened(expected)
-    error%message = "error: "//shortened(message)
+    if (present(code)) error%code = code
+    error%message = trim("error "//error%code)//": "//shortened(message)
     if (allocated(location%file)) then
       write (number, '(i0)') location%line
       if (location%line > 0) then
@@ -200,19 +203,21 @@ contains
   end subroutine error_list_push
 
   !> Append an input error.
-  subroutine error_list_push_input(self, location, message, expected)
+  subroutine error_list_push_input(self, location, message, expected, code)
     class(error_list_t), intent(inout) :: self
     type(location_t), intent(in) :: location
     character(len=*), intent(in) :: message
     !> What was expected at the location.
     character(len=*), intent(in), optional :: expected
+    !> Kind of the error, see docs/messages.md.
+    character(len=*), intent(in), optional :: code
 
     type(error_t), allocatable :: error
 
     if (self%count >= most_kept) then
       self%count = self%count + 1
     else
-      call input_error(error, location, message, expected)
+      call input_error(error, location, message, expected, code)
       call self%push(error)
     end if
   end subroutine error_list_push_input

@@ -171,11 +171,11 @@ contains
     if (descriptor >= 0) return
     self%failed = .true.
     if (busy) then
-      call fatal_error(error, "'"//path//"' is being written by another run")
+      call fatal_error(error, "'"//path//"' is being written by another run", "E203")
     else if (.not. is_folder(folder_of(path))) then
-      call fatal_error(error, "'"//folder_of(path)//"'"//lost)
+      call fatal_error(error, "'"//folder_of(path)//"'"//lost, "E203")
     else
-      call fatal_error(error, "cannot write '"//path//"': "//system_message(cause))
+      call fatal_error(error, "cannot write '"//path//"': "//system_message(cause), "E203")
     end if
   end subroutine file_create
 
@@ -258,7 +258,7 @@ contains
       end if
       if (n <= 0) then
         self%failed = .true.
-        call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()))
+        call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()), "E203")
         if (self%descriptor > standard_output) then
           status = posix_ftruncate(self%descriptor, int(self%whole, c_long))
         end if
@@ -269,7 +269,7 @@ contains
     end do
     self%used = 0
     if (self%failed .or. cause == 0) return
-    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
+    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause), "E203")
   end subroutine file_flush
 
   !> Check that the file still has its name.
@@ -281,7 +281,7 @@ contains
     if (self%failed .or. self%descriptor < 0) return
     if (is_at(self%descriptor, self%path)) return
     self%failed = .true.
-    call fatal_error(error, "'"//self%path//"'"//lost)
+    call fatal_error(error, "'"//self%path//"'"//lost, "E203")
   end subroutine file_check_name
 
   !> Report why an operation on the name of the file failed. A check before the operation is not
@@ -293,7 +293,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call self%check_name(error)
-    if (.not. allocated(error)) call fatal_error(error, message)
+    if (.not. allocated(error)) call fatal_error(error, message, "E203")
   end subroutine file_refuse
 
   !> Reserve disk space for the buffer from now on.
@@ -335,7 +335,7 @@ contains
     call try_to_reserve(self, size, more, cause)
     if (cause == 0) return
     call self%release()
-    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause))
+    call fatal_error(error, "cannot write '"//self%path//"': "//system_message(cause), "E203")
   end subroutine file_reserve
 
   !> Reserve disk space at the end of the file.
@@ -385,7 +385,7 @@ contains
     status = posix_close(self%descriptor)
     self%descriptor = -1
     if (status /= 0 .and. .not. self%failed) then
-      call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()))
+      call fatal_error(error, "cannot write '"//self%path//"': "//system_message(errno()), "E203")
     end if
   end subroutine file_close
 
@@ -406,7 +406,8 @@ contains
     if (status == 0) return
     cause = errno()
     if (cause == eexist .and. is_folder(path)) return
-    call fatal_error(error, "cannot create the directory '"//path//"': "//system_message(cause))
+    call fatal_error(error, "cannot create the directory '"//path//"': "//system_message(cause), &
+        "E203")
   end subroutine make_directory
 
   !> Remove a file. A symbolic link is kept, as its target was chosen by the user.

@@ -46,7 +46,7 @@ contains
       read (unit, iostat=status, iomsg=message) text
       close (unit)
     end if
-    if (status /= 0) call fatal_error(error, "cannot read '"//path//"': "//trim(message))
+    if (status /= 0) call fatal_error(error, "cannot read '"//path//"': "//trim(message), "E203")
   end subroutine read_file
 
   !> Return the temporary name under which a file is written before it replaces the old one.

@@ -54,13 +54,14 @@ contains
     is_warning = self%code(1:1) == "W"
   end function is_warning
 
-  !> Return the message as one line of the log: place, severity, text.
+  !> Return the message as one line of the log: place, severity and code, text.
   pure function message_line(self) result(line)
     class(message_t), intent(in) :: self
     character(len=:), allocatable :: line
 
     line = self%text
-    if (self%is_warning()) line = "warning: "//line
+    if (self%is_warning()) line = "warning "//self%code//": "//line
+    if (.not. self%is_warning()) line = "note "//self%code//": "//line
     if (.not. allocated(self%at%file)) return
     line = ": "//line
     if (self%at%line > 0) line = ":"//to_text(self%at%line)//line

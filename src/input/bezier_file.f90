@@ -81,7 +81,7 @@ contains
     if (allocated(error)) then
       allocate (patches(0))
       call errors%push_input(location, "cannot read the tool surface '"//file//"': "// &
-          error%message, "a file of Bézier patches")
+          error%message, "a file of Bézier patches", code="E101")
       return
     end if
     self%file = file
@@ -97,7 +97,8 @@ contains
     if (self%errors%count <= most_errors) call close_patch(self)
     if (self%n_begun == 0 .and. self%errors%count == 0) then
       allocate (patches(0))
-      call errors%push_input(location, "the tool surface '"//file//"' contains no patch", header)
+      call errors%push_input(location, "the tool surface '"//file//"' contains no patch", header, &
+          code="E102")
       return
     end if
     call push_file_errors(errors, self%errors, location)
@@ -151,7 +152,7 @@ contains
     call split_line(line, token, continues, self%errors)
     if (continues) then
       call self%errors%push_input(place(line, index(text, "&"), 1), &
-          "continuation lines are not allowed in a tool surface")
+          "continuation lines are not allowed in a tool surface", code="E103")
     end if
     if (token%count == 0) return
     here = place(line, 1, len_trim(text))
@@ -163,7 +164,7 @@ contains
     else if (.not. self%skipping) then
       self%skipping = .true.
       call self%errors%push_input(token%item(1)%at, "'"//token%item(1)%text// &
-          "' is outside a patch", header)
+          "' is outside a patch", header, code="E103")
     end if
   end subroutine read_line
 
@@ -219,7 +220,7 @@ contains
     self%n_begun = self%n_begun + 1
     self%skipping = .true.
     if (token%count < 3) then
-      call self%errors%push_input(here, "the degrees of the patch are missing", header)
+      call self%errors%push_input(here, "the degrees of the patch are missing", header, code="E121")
       return
     end if
     self%current = patch_spec_t(number=self%n_begun, rational=token%count > 3)
@@ -228,14 +229,15 @@ contains
       if (ok) ok = self%current%degree(i) >= 1 .and. self%current%degree(i) <= self%largest_degree
       if (ok) cycle
       call self%errors%push_input(token%item(i + 1)%at, "'"//token%item(i + 1)%text// &
-          "' is not a valid degree", "an integer from 1 to "//to_text(self%largest_degree))
+          "' is not a valid degree", "an integer from 1 to "//to_text(self%largest_degree), &
+          code="E131")
       return
     end do
     if (self%current%rational) then
       i = merge(5, 4, same_name(token%item(4)%text, "rational"))
       if (i <= token%count) then
         call self%errors%push_input(token%item(i)%at, "unexpected '"//token%item(i)%text//"'", &
-            header)
+            header, code="E103")
         return
       end if
     end if
@@ -264,7 +266,7 @@ contains
       if (self%n_read == n_point + 1) then
         call self%errors%push_input(here, "patch "//to_text(self%n_begun)//" of degrees "// &
             degrees(self%current)//" has more than "//to_text(n_point)//" points", &
-            "the next patch, or the end of the file")
+            "the next patch, or the end of the file", code="E132")
       end if
       return
     end if
@@ -278,7 +280,7 @@ contains
     else
       self%valid = .false.
       call self%errors%push_input(misfit(token, n, here), "expected "//to_text(n)// &
-          " numbers, got "//to_text(token%count), expected)
+          " numbers, got "//to_text(token%count), expected, code="E132")
     end if
   end subroutine read_point
 
@@ -327,7 +329,7 @@ contains
     character(len=*), intent(in) :: message, expected
 
     self%valid = .false.
-    call self%errors%push_input(token%at, message, expected)
+    call self%errors%push_input(token%at, message, expected, code="E141")
   end subroutine refuse
 
   !> Return the degrees of a patch as text.
@@ -350,7 +352,7 @@ contains
     if (self%n_read < n_point) then
       call self%errors%push_input(self%current%at, "patch "//to_text(self%n_begun)// &
           ": expected "//to_text(n_point)//" points, got "//to_text(self%n_read), &
-          to_text(n_point)//" points for the degrees "//degrees(self%current))
+          to_text(n_point)//" points for the degrees "//degrees(self%current), code="E132")
       return
     end if
     if (.not. self%valid) return

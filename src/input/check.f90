@@ -36,7 +36,7 @@ contains
         call unknown_block(deck%block(i), table, errors)
       else if (table(k)%later) then
         call errors%push_input(deck%block(i)%opened, "*"//upper_case(trim(table(k)%keyword))// &
-            " "//not_available)
+            " "//not_available, code="E116")
       else
         call check_name(deck%block(i), table(k), given, errors)
         call check_keys(deck%block(i), table(k)%key, errors)
@@ -71,7 +71,7 @@ contains
     nearest = nearest_name(block%keyword, table%keyword)
     if (nearest /= "") nearest = "; did you mean *"//upper_case(nearest)//"?"
     call errors%push_input(block%opened, "unknown block *"//upper_case(block%keyword)//nearest, &
-        "one of: *"//upper_case(join(table%keyword, " *")))
+        "one of: *"//upper_case(join(table%keyword, " *")), code="E111")
   end subroutine unknown_block
 
   !> Check the name of a block, and that the block is not given twice.
@@ -86,20 +86,21 @@ contains
 
     title = "*"//upper_case(block%keyword)
     if (row%named .and. block%name == "") then
-      call errors%push_input(block%opened, title//" requires a name", title//" name")
+      call errors%push_input(block%opened, title//" requires a name", title//" name", code="E121")
     else if (.not. row%named .and. block%name /= "") then
-      call errors%push_input(block%named, title//" takes no name", title//" alone on its line")
+      call errors%push_input(block%named, title//" takes no name", title//" alone on its line", &
+          code="E123")
     else if (row%named .and. .not. is_name(block%name)) then
       call errors%push_input(block%named, "'"//block%called()//"' is not a valid name", &
           "a letter, then letters, digits, _ - or ., at most "//to_text(longest_name)// &
-          " characters")
+          " characters", code="E123")
     end if
     if (row%repeatable .and. block%name == "") return
     full_name = block%keyword
     if (row%repeatable) full_name = full_name//" "//block%name
     if (given%find(full_name) > 0) call errors%push_input(block%named, &
         trim(title//" "//block%called())//trim(merge(" is given twice        ", &
-            " may be given only once", row%repeatable)))
+            " may be given only once", row%repeatable)), code="E122")
     call given%add(full_name, 1)
   end subroutine check_name
 
@@ -136,7 +137,7 @@ contains
       if (.not. key(k)%repeatable .and. given(k)) then
         call errors%push_input(block%entry(i)%at, "'"// &
             as_written(block%entry(i)%key, block%entry(i)%at)//"' is given twice in "// &
-            title_of(block))
+            title_of(block), code="E122")
       end if
       given(k) = .true.
       call check_value(block%entry(i), key(k), errors)
@@ -160,7 +161,8 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     call errors%push_input(entry%at, "unknown key '"//as_written(entry%key, entry%at)//"' in "// &
-        title_of(block)//suggestion(entry%key, key%name), "one of: "//join(key%name, " "))
+        title_of(block)//suggestion(entry%key, key%name), "one of: "//join(key%name, " "), &
+        code="E112")
   end subroutine unknown_key
 
   !> Add the defaults of the keys that were left out; report keys without a default.
@@ -183,7 +185,7 @@ contains
       if (value == "-") cycle
       if (value == "") then
         call errors%push_input(block%opened, "'"//trim(key(k)%name)//"' is missing in "// &
-            title_of(block), trim(key(k)%name)//" = "//trim(key(k)%help))
+            title_of(block), trim(key(k)%name)//" = "//trim(key(k)%help), code="E121")
         cycle
       end if
       word = token_list_t()
@@ -213,19 +215,20 @@ contains
       if (.not. table(i)%required .or. has_block(deck, trim(table(i)%keyword))) cycle
       if (table(i)%keyword == "phase" .and. has_block(deck, "point")) cycle
       call errors%push_input(whole_file, "the block *"//upper_case(trim(table(i)%keyword))// &
-          " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help))
+          " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help), &
+          code="E121")
     end do
     if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. &
         has_block(deck, "point"))) then
       call errors%push_input(whole_file, "the block *BLANK is missing", &
           "*BLANK name for a sheet, *MESH name for one from a mesh file, or *POINT name for a "// &
-          "single material point")
+          "single material point", code="E121")
     end if
     if (has_block(deck, "blank") .and. has_block(deck, "mesh")) then
       do i = 1, deck%n_block
         if (deck%block(i)%keyword /= "mesh") cycle
         call errors%push_input(deck%block(i)%opened, "there is a *BLANK as well", &
-            "one sheet, by *BLANK or by *MESH")
+            "one sheet, by *BLANK or by *MESH", code="E122")
       end do
     end if
   end subroutine check_presence

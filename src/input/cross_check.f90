@@ -69,7 +69,7 @@ contains
     call check_grading(blank%source, "grading_z", blank%divisions(3), errors)
     if (n_element > 5.0e6_wp) then
       call errors%push_input(blank%source%at("divisions"), &
-          "more than 5 million elements", "at most 5 million")
+          "more than 5 million elements", "at most 5 million", code="E133")
     end if
     if (errors%count > before .or. blank%divisions(1) < 2 .or. blank%radius > 0.0_wp) return
     associate (x => blank%grading_x, n => blank%divisions(1))
@@ -78,7 +78,7 @@ contains
       if (shift >= room) then
         call errors%push_input(blank%source%at("skew"), "skew = "//to_text(blank%skew)// &
             " inverts the elements at the ends", "a magnitude below "// &
-            to_text(2.0_wp*room*real(n, wp)))
+            to_text(2.0_wp*room*real(n, wp)), code="E133")
       end if
     end associate
   end subroutine check_blank
@@ -96,20 +96,21 @@ contains
     if (block%find("radius") == 0) then
       if (block%find("size") == 0) call errors%push_input(block%opened, &
           "'size' is missing in *BLANK "//block%called(), "size = lx ly lz for a box, or "// &
-          "radius = R and thickness = t for a round blank")
+          "radius = R and thickness = t for a round blank", code="E121")
       do i = 1, size(round_keys)
         if (block%given(trim(round_keys(i)))) call errors%push_input( &
             block%at(trim(round_keys(i))), "'"//trim(round_keys(i))//"' is a key of a round "// &
-            "blank", "radius, thickness and portion, or size alone")
+            "blank", "radius, thickness and portion, or size alone", code="E124")
       end do
       return
     end if
     if (block%find("thickness") == 0) call errors%push_input(block%opened, &
-        "'thickness' is missing in *BLANK "//block%called(), "thickness = t with radius = R")
+        "'thickness' is missing in *BLANK "//block%called(), "thickness = t with radius = R", &
+        code="E121")
     do i = 1, size(box_keys)
       if (block%given(trim(box_keys(i)))) call errors%push_input(block%at(trim(box_keys(i))), &
           "'"//trim(box_keys(i))//"' is a key of a box; this blank is round", &
-          "radius, thickness, portion and divisions")
+          "radius, thickness, portion and divisions", code="E124")
     end do
   end subroutine check_form
 
@@ -129,19 +130,20 @@ contains
     if (size(x) /= n + 1) then
       call errors%push_input(block%at(key), "expected "//to_text(n + 1)//" abscissae for "// &
           to_text(n)//" elements, got "//to_text(size(x)), key//" = "//to_text(n + 1)// &
-          " numbers increasing from 0 to 1")
+          " numbers increasing from 0 to 1", code="E132")
       return
     end if
     if (abs(x(1)) > 0.0_wp) call errors%push_input(block%at(key), key//" does not start at 0", &
-        "0 ... 1")
+        "0 ... 1", code="E134")
     do i = 2, size(x)
       if (x(i) > x(i - 1)) cycle
       call errors%push_input(block%entry(k)%value(i)%at, key//" does not increase here", &
-          "each number larger than the one before")
+          "each number larger than the one before", code="E134")
       return
     end do
     if (abs(x(n + 1) - 1.0_wp) > 0.0_wp) then
-      call errors%push_input(block%entry(k)%value(n + 1)%at, key//" does not end at 1", "0 ... 1")
+      call errors%push_input(block%entry(k)%value(n + 1)%at, key//" does not end at 1", "0 ... 1", &
+          code="E134")
     end if
   end subroutine check_grading
 
@@ -157,14 +159,14 @@ contains
     if (n /= 1) then
       call errors%push_input(set%source%opened, "set '"//set%source%called()// &
           "': expected 1 definition, got "//to_text(n), &
-          "one of plane, box, nodes, near, alone or with of")
+          "one of plane, box, nodes, near, alone or with of", code="E132")
     end if
     if (.not. set%source%has("box")) return
     do i = 1, 5, 2
       if (set%value(i + 1) >= set%value(i)) cycle
       call errors%push_input(set%source%entry(set%source%find("box"))%value(i)%at, &
           "the bounds of the box are reversed", &
-          "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1")
+          "box = x0 x1 y0 y1 z0 z1 with x0 <= x1, y0 <= y1, z0 <= z1", code="E134")
       return
     end do
   end subroutine check_set
@@ -177,7 +179,7 @@ contains
     if (any(abs(material%frame) > 0.0_wp)) return
     call errors%push_input(material%source%at("rolling_direction"), &
         "rolling and normal direction are zero or parallel", &
-        "two directions that are neither zero nor parallel")
+        "two directions that are neither zero nor parallel", code="E135")
   end subroutine check_material
 
   !> Check the bounds of the factor r if the block gives one of them.
@@ -194,7 +196,7 @@ contains
     if (.not. block%given(key)) return
     if (limits%r_min%value <= limits%r_max%value) return
     call errors%push_input(block%at(key), "r_min = "//to_text(limits%r_min%value)// &
-        " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max")
+        " is larger than r_max = "//to_text(limits%r_max%value), "r_min <= r_max", code="E134")
   end subroutine check_limits
 
   !> Check that the settings of the contact belong to its formulation.
@@ -205,16 +207,18 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     if (contact%mixed .and. block%given("layer")) call errors%push_input(block%at("layer"), &
-        "the mixed formulation has no layer", "formulation = compliant, without penalty")
+        "the mixed formulation has no layer", "formulation = compliant, without penalty", &
+        code="E124")
     if (.not. contact%mixed .and. block%given("penalty")) call errors%push_input( &
-        block%at("penalty"), "the compliant formulation has no penalty", "formulation = mixed")
+        block%at("penalty"), "the compliant formulation has no penalty", "formulation = mixed", &
+        code="E124")
     if (.not. contact%mixed .or. contact%points == 1) return
     if (block%given("points")) then
       call errors%push_input(block%at("points"), &
-          "the mixed formulation has its points at the nodes", "points = 1")
+          "the mixed formulation has its points at the nodes", "points = 1", code="E124")
     else
       call errors%push_input(block%opened, "the mixed formulation has its points at the nodes", &
-          "formulation = compliant, or points = 1 in *CONTACT")
+          "formulation = compliant, or points = 1 in *CONTACT", code="E124")
     end if
   end subroutine check_contact
 
@@ -231,7 +235,7 @@ contains
       if (case%output%fields == fields_every) then
         if (value(1) > 0.0_wp) return
         call errors%push_input(block%entry(k)%value(2)%at, "the interval is not positive", &
-            "fields = every v mm, v > 0")
+            "fields = every v mm, v > 0", code="E134")
       else if (case%output%fields == fields_at) then
         do i = 1, size(value)
           if (i == 1 .and. value(1) >= 0.0_wp) cycle
@@ -239,7 +243,8 @@ contains
             if (value(i) > value(i - 1)) cycle
           end if
           call errors%push_input(block%entry(k)%value(i + 1)%at, &
-              "the travels do not increase here", "fields = at v1 v2 ..., 0 <= v1 < v2")
+              "the travels do not increase here", "fields = at v1 v2 ..., 0 <= v1 < v2", &
+              code="E134")
           return
         end do
       end if
@@ -256,7 +261,7 @@ contains
     if (some_tool_controls(case)) return
     call errors%push_input(block%at("fields"), &
         "fields are written by travel, but no phase is controlled by a tool", &
-        "fields = increments N if all phases have control = load")
+        "fields = increments N if all phases have control = load", code="E125")
   end subroutine check_travel
 
   !> Whether a tool controls one of the phases; true if a phase has errors.
@@ -284,7 +289,7 @@ contains
         if (case%history(i)%name /= case%tool(j)%name) cycle
         call errors%push_input(case%history(i)%source%named, "'"// &
             case%tool(j)%source%called()//"' is the name of a tool: the columns of history.csv "// &
-            "would be ambiguous", "another name")
+            "would be ambiguous", "another name", code="E123")
       end do
     end do
   end subroutine check_history_names

@@ -55,7 +55,7 @@ contains
     call close_block(self)
     if (self%deck%n_block == 0 .and. errors%count == before) then
       call errors%push_input(whole_file, "the file contains no block", &
-          "blocks such as *BLANK, *MATERIAL, *PHASE")
+          "blocks such as *BLANK, *MATERIAL, *PHASE", code="E102")
     end if
     if (self%deck%n_block > 0) call self%substitution%check_overrides(errors)
     if (self%deck%n_block > 0) deck = self%deck
@@ -77,7 +77,8 @@ contains
 
     call read_lines(path, text, error)
     if (allocated(error)) then
-      call errors%push_input(named_at, "cannot read the input file '"//path//"': "//error%message)
+      call errors%push_input(named_at, "cannot read the input file '"//path//"': "//error%message, &
+          code="E101")
       return
     end if
     opened%s = path
@@ -167,7 +168,7 @@ contains
     do while (continues)
       if (i == size(text)) then
         call errors%push_input(place(line, len_trim(line%text), 1), &
-            "continuation beyond the end of the file", "a line after the ampersand")
+            "continuation beyond the end of the file", "a line after the ampersand", code="E103")
         exit
       end if
       call advance_line(self, line, text, i)
@@ -237,7 +238,8 @@ contains
     end if
     if (word%count > 1) then
       call errors%push_input(word%item(2)%at, "unexpected '"//word%item(2)%text// &
-          "' after the name of *"//upper_case(keyword), "key = value, on a line of its own")
+          "' after the name of *"//upper_case(keyword), "key = value, on a line of its own", &
+          code="E103")
     end if
   end subroutine open_block
 
@@ -257,19 +259,20 @@ contains
 
     if (word%count /= 1) then
       call errors%push_input(opened, "expected 1 file, got "//to_text(word%count), &
-          '*INCLUDE "file"')
+          '*INCLUDE "file"', code="E103")
       return
     end if
     path = resolve_path(folder_of(file), word%item(1)%text)
     do k = 1, size(self%file)
       if (self%file(k)%s == path) then
-        call errors%push_input(word%item(1)%at, "the file '"//path//"' includes itself")
+        call errors%push_input(word%item(1)%at, "the file '"//path//"' includes itself", &
+            code="E104")
         return
       end if
     end do
     if (size(self%file) > deepest) then
       call errors%push_input(word%item(1)%at, &
-          "*INCLUDE is nested more than "//to_text(deepest)//" levels deep")
+          "*INCLUDE is nested more than "//to_text(deepest)//" levels deep", code="E104")
       return
     end if
     call read_file(self, path, word%item(1)%at, errors)
@@ -289,7 +292,7 @@ contains
     if (self%mode == into_nothing) then
       if (.not. self%stray) then
         call errors%push_input(token%item(1)%at, "this line is outside any block", &
-            "a line *BLOCK above it; *INCLUDE ends a block")
+            "a line *BLOCK above it; *INCLUDE ends a block", code="E103")
       end if
       self%stray = .true.
       return
@@ -324,16 +327,17 @@ contains
 
     is_assignment = .false.
     if (token%item(1)%text == "=" .and. .not. token%item(1)%quoted) then
-      call errors%push_input(token%item(1)%at, "missing key before the equals sign", "key = value")
+      call errors%push_input(token%item(1)%at, "missing key before the equals sign", &
+          "key = value", code="E103")
     else if (token%count == 1) then
       call errors%push_input(token%item(1)%at, "this is neither a block nor a key with a value", &
-          "*BLOCK name, or key = value")
+          "*BLOCK name, or key = value", code="E103")
     else if (token%item(2)%text /= "=" .or. token%item(2)%quoted) then
       call errors%push_input(token%item(2)%at, "missing equals sign after '"// &
-          token%item(1)%text//"'", "key = value")
+          token%item(1)%text//"'", "key = value", code="E103")
     else if (token%count == 2) then
       call errors%push_input(token%item(2)%at, "no value is given for '"//token%item(1)%text//"'", &
-          "key = value")
+          "key = value", code="E121")
     else
       is_assignment = .true.
     end if

@@ -36,15 +36,15 @@ contains
 
     if (.not. block%has("points") .and. .not. block%has("file")) then
       call errors%push_input(block%opened, "the line of *DRAWBEAD "//block%called()// &
-          " is missing", "points = x1 y1 x2 y2 ..., or file = a file of points")
+          " is missing", "points = x1 y1 x2 y2 ..., or file = a file of points", code="E121")
     else if (block%has("points") .and. block%has("file")) then
       call errors%push_input(block%at("file"), "the line is given by points as well", &
-          "one of points and file")
+          "one of points and file", code="E124")
     else if (block%has("points")) then
       n = size(block%numbers("points"))
       if (n < 4 .or. mod(n, 2) > 0) call errors%push_input(block%at("points"), &
           "expected the coordinates of two or more points, got "//to_text(n)//" numbers", &
-          "points = x1 y1 x2 y2 ...")
+          "points = x1 y1 x2 y2 ...", code="E132")
     end if
   end subroutine check_line
 
@@ -59,21 +59,21 @@ contains
     if (.not. block%has("table")) return
     if (block%given("rise")) then
       call errors%push_input(block%at("rise"), "the force is given by a table as well", &
-          "one of rise and table")
+          "one of rise and table", code="E124")
     end if
     table = block%numbers("table")
     associate (value => block%entry(block%find("table"))%value)
       if (mod(size(table), 2) > 0) then
         call errors%push_input(value(size(value))%at, "this path has no factor", &
-            "pairs: path and factor")
+            "pairs: path and factor", code="E132")
         return
       end if
       if (table(1) > 0.0_wp) call errors%push_input(value(1)%at, &
-          "the table does not begin at path 0", "table = 0 f1  s2 f2 ...")
+          "the table does not begin at path 0", "table = 0 f1  s2 f2 ...", code="E134")
       do i = 3, size(table), 2
         if (table(i) > table(i - 2)) cycle
         call errors%push_input(value(i)%at, "the path does not increase here", &
-            "each path larger than the one before")
+            "each path larger than the one before", code="E134")
         return
       end do
     end associate

@@ -34,7 +34,7 @@ contains
     do i = 1, size(entry%value)
       if (k > size(form)) then
         call errors%push_input(entry%value(i)%at, "unexpected value '"//entry%value(i)%text// &
-            "'", describe(row))
+            "'", describe(row), code="E132")
         return
       end if
       form_word = form(k)
@@ -47,7 +47,7 @@ contains
     if (repeats .or. k > size(form)) return
     if (form(k)(1:1) == "[") return
     call errors%push_input(entry%value(size(entry%value))%at, &
-        "a value is missing after this: "//trim(form(k)), describe(row))
+        "a value is missing after this: "//trim(form(k)), describe(row), code="E121")
   end subroutine check_form
 
   !> Check one word of a value against one word of the form.
@@ -72,7 +72,7 @@ contains
       call entry%add_number(real(axis_of(text), wp))
       if (axis_of(text) == 0) call errors%push_input(entry%value(i)%at, "'"// &
           as_written(text, entry%value(i)%at)//"' is not an axis: expected x, y or z", &
-          describe(row))
+          describe(row), code="E114")
     case ("range")
       call add_range(entry, entry%value(i), row, errors)
     case ("set", "tool", "material")
@@ -112,7 +112,7 @@ contains
     if (errors%count > before) return
     if (entry%number(entry%n_number) >= 1.0_wp) return
     call errors%push_input(token%at, "'"//token%text// &
-        "' is out of range: expected at least 1", describe(row))
+        "' is out of range: expected at least 1", describe(row), code="E133")
   end subroutine add_count
 
   !> Append a range of node numbers, `n` or `n-m`, to the numbers of an entry: first and last.
@@ -140,7 +140,7 @@ contains
       call entry%add_number(real(last, wp))
     else
       call errors%push_input(token%at, "'"//token%text//"' is not a range of node numbers", &
-          describe(row))
+          describe(row), code="E114")
     end if
   end subroutine add_range
 

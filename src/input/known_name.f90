@@ -29,7 +29,7 @@ contains
     meant = suggestion(name, known)
     if (meant == "") meant = names_containing(name, known)
     call errors%push_input(at, "there is no "//what//" '"//as_written(name, at)//"'"//meant, &
-        "one of: "//join(known, " "))
+        "one of: "//join(known, " "), code="E113")
   end subroutine check_known_name
 
   !> Return the known names that contain a name, as a question; empty if there is none.

@@ -73,7 +73,7 @@ contains
         call all%add(value, i)
       else if (rows(k)%default == "") then
         call errors%push_input(spec%at, "'"//trim(rows(k)%name)//"' is missing for "//spec%name, &
-            trim(rows(k)%name)//"=value: "//trim(rows(k)%help))
+            trim(rows(k)%name)//"=value: "//trim(rows(k)%help), code="E121")
       else if (rows(k)%default /= "-") then
         call parse_real(trim(rows(k)%default), value%value, ok)
         call all%add(value, 0)
@@ -139,14 +139,15 @@ contains
     if (spec%parameter(i)%text == "") return
     if (all%count > 0) then
       call errors%push_input(spec%parameter(i)%key_at, &
-          "pairs p:Y and a file of pairs cannot be combined", "one of the two")
+          "pairs p:Y and a file of pairs cannot be combined", "one of the two", code="E124")
       return
     end if
     row = find_key(rows, pair_name)
     path = resolve_path(spec%folder, spec%parameter(i)%text)
     call read_lines(path, line, error)
     if (allocated(error)) then
-      call errors%push_input(spec%parameter(i)%at, "cannot read '"//path//"': "//error%message)
+      call errors%push_input(spec%parameter(i)%at, "cannot read '"//path//"': "//error%message, &
+          code="E101")
       return
     end if
     value%name = pair_name
@@ -157,7 +158,7 @@ contains
       if (.not. ok) then
         call errors%push_input(spec%parameter(i)%at, "expected 2 numbers in line "// &
             to_text(n)//" of '"//path//"'", &
-            "p and Y in each line, with decimal points; # begins a comment")
+            "p and Y in each line, with decimal points; # begins a comment", code="E132")
         return
       end if
       call check_range(value%value, rows(row), spec%parameter(i)%at, &
@@ -199,24 +200,24 @@ contains
         known = "no parameters"
         if (size(rows) > 0) known = "one of: "//join(rows%name, " ")
         call errors%push_input(given%key_at, "unknown parameter '"//given%key//"' of "// &
-            spec%name//suggestion(given%key, rows%name), known)
+            spec%name//suggestion(given%key, rows%name), known, code="E112")
       else if (find_parameter(spec, given%key) < i .and. .not. rows(k)%repeatable) then
-        call errors%push_input(given%key_at, "'"//given%key//"' is given twice")
+        call errors%push_input(given%key_at, "'"//given%key//"' is given twice", code="E122")
       else if (given%text == "") then
         call errors%push_input(given%at, "no value is given for '"//given%key//"'", &
             trim(rows(k)%name)//"="//trim(merge("path  ", "number", rows(k)%kind == kind_text))// &
-            range_text(rows(k)))
+            range_text(rows(k)), code="E121")
       else if (rows(k)%kind == kind_text) then
         return  ! checked when the file is read
       else if (.not. given%numeric .and. rows(k)%repeatable) then
         call errors%push_input(given%at, "'"//given%text//"' is not a pair of numbers", &
-            trim(rows(k)%name)//": "//trim(rows(k)%help))
+            trim(rows(k)%name)//": "//trim(rows(k)%help), code="E131")
       else if (.not. given%numeric) then
         call errors%push_input(given%at, not_a_number(given%text), &
-            trim(rows(k)%name)//"=number"//range_text(rows(k)))
+            trim(rows(k)%name)//"=number"//range_text(rows(k)), code="E131")
       else if (abs(given%value) > largest_size) then
         call errors%push_input(given%at, trim(rows(k)%name)//" = "//to_text(given%value)// &
-            " is out of range", "at most 1e30 in size")
+            " is out of range", "at most 1e30 in size", code="E133")
       else
         call check_range(given%value, rows(k), given%at, trim(rows(k)%name)//"=number"// &
             range_text(rows(k)), errors)

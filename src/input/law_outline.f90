@@ -26,11 +26,13 @@ contains
     call unfold_law(entry, errors)
     entry%value(1)%text = lower_case(entry%value(1)%text)
     if (any(split_words(row%later) == entry%value(1)%text)) then
-      call errors%push_input(entry%value(1)%at, "'"//entry%value(1)%text//"' "//not_available)
+      call errors%push_input(entry%value(1)%at, "'"//entry%value(1)%text//"' "//not_available, &
+          code="E116")
       return
     end if
     if (is_equals(entry%value(1))) then
-      call errors%push_input(entry%value(1)%at, "the law's name is missing", describe(row))
+      call errors%push_input(entry%value(1)%at, "the law's name is missing", describe(row), &
+          code="E121")
       return
     end if
     call add_words(word, entry, 1, 1)
@@ -41,7 +43,7 @@ contains
         i = i + 1
       else if (equals_at(entry, i) .or. .not. equals_at(entry, i + 1)) then
         call errors%push_input(entry%value(i)%at, "'"//entry%value(i)%text// &
-            "' is not followed by =value", describe(row))
+            "' is not followed by =value", describe(row), code="E121")
         i = next_parameter(entry, i + 1)
       else if (i + 2 > size(entry%value) .or. equals_at(entry, i + 2) .or. &
           equals_at(entry, i + 3)) then

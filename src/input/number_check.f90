@@ -54,7 +54,7 @@ contains
     if (required == 1) values = " value"
     ! The caret is below the first excess value or, if some are missing, below the last one.
     call errors%push_input(entry%value(min(given, required + 1))%at, "expected "// &
-        to_text(required)//values//", got "//to_text(given), expected)
+        to_text(required)//values//", got "//to_text(given), expected, code="E132")
   end subroutine check_count
 
   !> Append a word as a real number to the numbers of an entry.
@@ -71,7 +71,7 @@ contains
     if (ok) then
       call entry%add_number(value)
     else
-      call errors%push_input(token%at, not_a_number(token%text), expected)
+      call errors%push_input(token%at, not_a_number(token%text), expected, code="E131")
     end if
   end subroutine add_real
 
@@ -102,7 +102,7 @@ contains
     if (ok) then
       call entry%add_number(real(value, wp))
     else
-      call errors%push_input(token%at, not_an_integer(token%text), expected)
+      call errors%push_input(token%at, not_an_integer(token%text), expected, code="E131")
     end if
   end subroutine add_integer
 
@@ -127,7 +127,8 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     if (in_range(row, value)) return
-    call errors%push_input(at, trim(row%name)//" = "//to_text(value)//" is out of range", expected)
+    call errors%push_input(at, trim(row%name)//" = "//to_text(value)//" is out of range", &
+        expected, code="E133")
   end subroutine check_range
 
 end module dd3_input_number_check

@@ -81,14 +81,14 @@ contains
       call name_tool(case, phase%release(i)%tool, phase%release(i)%at, released, errors)
       if (any(phase%press%tool == phase%release(i)%tool)) then
         call errors%push_input(phase%release(i)%at, &
-            "a tool cannot be pressed and released in the same phase")
+            "a tool cannot be pressed and released in the same phase", code="E124")
       end if
       if (motion(phase%release(i)%tool) == pressed) motion(phase%release(i)%tool) = held
     end do
     if (phase%unload) then
       do i = 1, size(phase%press)
         call errors%push_input(phase%press(i)%at, "a tool cannot be pressed in a phase with "// &
-            "unload = on, which releases all tools")
+            "unload = on, which releases all tools", code="E124")
       end do
       where (motion == pressed) motion = held
     end if
@@ -113,7 +113,8 @@ contains
 
     if (named(tool)) then
       call errors%push_input(at, "tool '"//case%tool(tool)%source%called()// &
-          "' is given two actions in this phase", "one of hold, move, gap and press for each tool")
+          "' is given two actions in this phase", &
+          "one of hold, move, gap and press for each tool", code="E122")
     end if
     named(tool) = .true.
   end subroutine name_tool
@@ -124,9 +125,9 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     if (gap%tool == gap%other) call errors%push_input(gap%at, "a gap is between two tools", &
-        "gap = tool tool number")
+        "gap = tool tool number", code="E144")
     if (.not. gap%value > 0.0_wp) call errors%push_input(gap%at, "the gap is not positive", &
-        "a number > 0")
+        "a number > 0", code="E133")
   end subroutine check_gap
 
   !> Check that the motion of the tool from which another one has a gap is known beforehand.
@@ -149,7 +150,7 @@ contains
     end if
     call errors%push_input(gap%at, "the gap is not known beforehand, as '"// &
         case%tool(gap%other)%source%called()//"' "//reason//" in this phase", &
-        "a gap from a tool that is held or moved")
+        "a gap from a tool that is held or moved", code="E144")
   end subroutine check_other_tool
 
   !> Check the force on a tool: it is not zero at first, and keeps its direction while the tool is
@@ -170,11 +171,13 @@ contains
     if (norm2(press%vector) > 0.0_wp) force(:, press%tool) = press%vector
     if (.not. norm2(press%vector) > 0.0_wp) then
       if (norm2(before) > 0.0_wp) return
-      call errors%push_input(press%at, "a zero force has no direction", "press = tool fx fy fz")
+      call errors%push_input(press%at, "a zero force has no direction", "press = tool fx fy fz", &
+          code="E135")
     else if (norm2(before) > 0.0_wp) then
       if (norm2(press%vector/norm2(press%vector) - before/norm2(before)) <= 1.0e-6_wp) return
       call errors%push_input(press%at, "the force on a pressed tool cannot change its direction", &
-          "a force in the direction of the last one, or a phase in between that holds the tool")
+          "a force in the direction of the last one, or a phase in between that holds the tool", &
+          code="E135")
     end if
   end subroutine check_press
 
@@ -194,24 +197,26 @@ contains
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
             "at least one of move, gap, press, displace, free, load, release, unload, rotate, "// &
-            "bend, pressure")
+            "bend, pressure", code="E144")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &
-            " is out of range", "a fraction of the phase, at most 1, for control = load")
+            " is out of range", "a fraction of the phase, at most 1, for control = load", &
+            code="E133")
       end if
       return
     end if
     do i = 1, size(phase%move)
       if (phase%move(i)%tool /= phase%control) cycle
       if (.not. norm2(phase%move(i)%vector) > 0.0_wp) then
-        call errors%push_input(phase%move(i)%at, "the move of the controlling tool is zero")
+        call errors%push_input(phase%move(i)%at, "the move of the controlling tool is zero", &
+            code="E144")
       end if
       return
     end do
     call errors%push_input(phase%source%at("control"), "the controlling tool '"// &
         case%tool(phase%control)%source%called()//"' has no move in this phase", "move = "// &
-        case%tool(phase%control)%source%called()//" dx dy dz, or control = load")
+        case%tool(phase%control)%source%called()//" dx dy dz, or control = load", code="E144")
   end subroutine check_control
 
   !> Check the trial increment against the motion of the controlling tool, or against the phase.
@@ -239,11 +244,11 @@ contains
         if (r_max < 1.0_wp) bound = ", with r_max = "//to_text(r_max)//","
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)//bound// &
             " divides the phase into more than 1e7 increments", "at least "// &
-            to_text(length/most_increments/r_max)//unit)
+            to_text(length/most_increments/r_max)//unit, code="E133")
       else if (phase%control > 0 .and. trial > largest_trial*length) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(trial)// &
             " is out of range: the controlling tool moves by "//to_text(length)//unit, &
-            "at most "//to_text(largest_trial*length)//unit)
+            "at most "//to_text(largest_trial*length)//unit, code="E133")
       end if
     end associate
   end subroutine check_trial
@@ -258,7 +263,7 @@ contains
     do i = 1, size(phase%motion)
       if (norm2(phase%motion(i)%value(4:6)) > 0.0_wp) cycle
       call errors%push_input(phase%motion(i)%at, "the axis has no direction", &
-          "set, x y z of a point, three components of a direction, angle")
+          "set, x y z of a point, three components of a direction, angle", code="E135")
     end do
   end subroutine check_motions
 
@@ -281,7 +286,7 @@ contains
           end associate
           call errors%push_input(motion%at, "phase '"//case%phase(j)%source%called()// &
               "' bends '"//motion%set//"' to an angle that is not known, as `until` may end it "// &
-              "early", "no until in a phase with a bend that a later phase continues")
+              "early", "no until in a phase with a bend that a later phase continues", code="E144")
         end do
       end associate
     end do
@@ -297,12 +302,12 @@ contains
     do i = 2, size(phase%load)
       if (any([(phase%load(j)%set == phase%load(i)%set, j=1, i - 1)])) call errors%push_input( &
           phase%load(i)%at, "'"//phase%load(i)%set//"' is given two loads in this phase", &
-          "one load for each set")
+          "one load for each set", code="E122")
     end do
     do i = 2, size(phase%pressure)
       if (any([(phase%pressure(j)%set == phase%pressure(i)%set, j=1, i - 1)])) &
           call errors%push_input(phase%pressure(i)%at, "'"//phase%pressure(i)%set// &
-          "' is given two pressures in this phase", "one pressure for each set")
+          "' is given two pressures in this phase", "one pressure for each set", code="E122")
     end do
   end subroutine check_loads
 
@@ -322,14 +327,14 @@ contains
         value => phase%source%entry(phase%source%find("table"))%value)
       if (mod(n, 2) == 1 .or. n < 4) then
         call errors%push_input(value(1)%at, "expected pairs of progress and factor, at least "// &
-            "two, got "//to_text(n)//" numbers", form)
+            "two, got "//to_text(n)//" numbers", form, code="E132")
         return
       end if
       if (any(abs(x(:2)) > 0.0_wp)) call errors%push_input(value(1)%at, &
-          "the table does not begin with 0 0", form)
+          "the table does not begin with 0 0", form, code="E134")
       if (size(phase%displace) + size(phase%motion) + size(phase%load) + size(phase%pressure) &
           == 0) call errors%push_input(value(1)%at, "the table has no effect in this phase", &
-          "a phase with displace, rotate, bend, load or pressure; tools move linearly")
+          "a phase with displace, rotate, bend, load or pressure; tools move linearly", code="E125")
       call check_progress(x(3:), value(3:), form, errors)
     end associate
   end subroutine check_table
@@ -350,14 +355,15 @@ contains
         value => phase%source%entry(phase%source%find("press_table"))%value)
       if (mod(n, 2) == 1) then
         call errors%push_input(value(1)%at, "expected pairs of progress and factor, got "// &
-            to_text(n)//" numbers", form)
+            to_text(n)//" numbers", form, code="E132")
         return
       end if
       if (size(phase%press) == 0) call errors%push_input(value(1)%at, &
-          "the table has no effect in this phase", "a phase with press")
+          "the table has no effect in this phase", "a phase with press", code="E125")
       call check_progress(x, value, form, errors)
       do i = 2, n, 2
-        if (x(i) < 0.0_wp) call errors%push_input(value(i)%at, "the factor is negative", form)
+        if (x(i) < 0.0_wp) call errors%push_input(value(i)%at, "the factor is negative", form, &
+            code="E133")
       end do
     end associate
   end subroutine check_press_table
@@ -377,11 +383,12 @@ contains
     previous = 0.0_wp
     do i = 1, size(x) - 1, 2
       if (x(i) - previous < least_progress) &
-          call errors%push_input(value(i)%at, "the progress does not increase here", form)
+          call errors%push_input(value(i)%at, "the progress does not increase here", form, &
+              code="E134")
       previous = x(i)
     end do
     if (abs(previous - 1.0_wp) > 0.0_wp) call errors%push_input(value(size(x) - 1)%at, &
-        "the table does not end at a progress of 1", form)
+        "the table does not end at a progress of 1", form, code="E134")
   end subroutine check_progress
 
   !> Check the condition that ends the phase early.
@@ -394,12 +401,13 @@ contains
 
     if (phase%until%kind == until_never) return
     if (.not. phase%until%value > 0.0_wp) then
-      call errors%push_input(phase%until%at, "the magnitude is not positive", "a number > 0")
+      call errors%push_input(phase%until%at, "the magnitude is not positive", "a number > 0", &
+          code="E133")
     end if
     if (motion(phase%until%tool) == held) then
       call errors%push_input(phase%until%at, "tool '"// &
           case%tool(phase%until%tool)%source%called()// &
-          "' does not move in this phase", "a tool that is moved or pressed")
+          "' does not move in this phase", "a tool that is moved or pressed", code="E144")
     end if
   end subroutine check_until
 

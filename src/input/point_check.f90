@@ -54,14 +54,15 @@ contains
       do i = 1, size(block)
         if (any(of_a_sheet == block(i)%keyword)) call errors%push_input(block(i)%opened, &
             "*"//upper_case(block(i)%keyword)//" cannot be combined with *POINT", &
-            "*POINT in a file of its own")
+            "*POINT in a file of its own", code="E124")
       end do
       if (errors%count > before) return
       do i = 1, size(block)
         if (any(of_a_point == block(i)%keyword) .or. .not. block(i)%valid) cycle
         if (.not. allocated(block(i)%opened%file)) cycle
         call errors%push_input(block(i)%opened, "*"//upper_case(block(i)%keyword)// &
-            " has no effect on single points", "one of: *"//upper_case(join(of_a_point, " *")))
+            " has no effect on single points", "one of: *"//upper_case(join(of_a_point, " *")), &
+            code="E125")
       end do
     end associate
   end subroutine check_company
@@ -74,16 +75,16 @@ contains
     associate (block => point%source)
       if (block%has("gradient") .and. block%has("target")) then
         call errors%push_input(block%at("gradient"), "gradient and target cannot be combined", &
-            "one of the two")
+            "one of the two", code="E124")
       else if (block%has("gradient") .and. block%has("control")) then
         call errors%push_input(block%at("control"), "control and gradient cannot be combined", &
-            "gradient alone, or control and target")
+            "gradient alone, or control and target", code="E124")
       else if (block%has("target") .and. .not. block%has("control")) then
         call errors%push_input(block%at("target"), "target requires control", &
-            "control = e11 s22 s33 s12 s23 s13")
+            "control = e11 s22 s33 s12 s23 s13", code="E121")
       else if (.not. (block%has("target") .or. block%has("gradient"))) then
         call errors%push_input(block%opened, "nothing is prescribed for the point '"// &
-            block%called()//"'", "control and target, or gradient")
+            block%called()//"'", "control and target, or gradient", code="E121")
       end if
     end associate
   end subroutine check_drive
@@ -103,7 +104,8 @@ contains
       word = lower_case(point%source%entry(k)%value(i)%text)
       if (word == "e"//component(i) .or. word == "s"//component(i)) cycle
       call errors%push_input(point%source%entry(k)%value(i)%at, "expected e"//component(i)// &
-          " or s"//component(i)//", got '"//word//"'", "control = e11 s22 s33 s12 s23 s13")
+          " or s"//component(i)//", got '"//word//"'", "control = e11 s22 s33 s12 s23 s13", &
+          code="E114")
     end do
   end subroutine check_control
 
@@ -121,7 +123,7 @@ contains
       steps = steps + real(point%goal(i)%steps, wp)
       if (steps > most_steps) then
         call errors%push_input(point%goal(i)%at, "more than 10 million steps", &
-            "at most 10 million in a run")
+            "at most 10 million in a run", code="E133")
         return
       end if
       if (point%by_gradient) then
@@ -129,7 +131,7 @@ contains
         from = point%goal(i)%value
       else if (any(abs(point%goal(i)%value) > largest_strain .and. .not. point%by_stress)) then
         call errors%push_input(point%goal(i)%at, "a strain is larger than "// &
-            to_text(largest_strain), "logarithmic strains: 0.1 is about 10 %")
+            to_text(largest_strain), "logarithmic strains: 0.1 is about 10 %", code="E133")
       end if
     end do
   end subroutine check_goals
@@ -151,7 +153,8 @@ contains
       if (volume(from + fraction*(point%goal(i)%value - from)) > 0.0_wp) cycle
       call errors%push_input(point%goal(i)%at, "det F is not positive "// &
           trim(merge("on the path", "at the end ", k < n)), &
-          "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant on the whole path")
+          "F11 F12 F13 F21 F22 F23 F31 F32 F33 with a positive determinant on the whole path", &
+          code="E135")
       return
     end do
   end subroutine check_gradient

@@ -38,7 +38,7 @@ contains
     call read_lines(file, text, error)
     if (allocated(error)) then
       call errors%push_input(location, "cannot read the points of '"//file//"': "//error%message, &
-          "a file with "//form//", in each line")
+          "a file with "//form//", in each line", code="E101")
       return
     end if
     do i = 1, size(text)
@@ -69,13 +69,13 @@ contains
     if (token%count == 0) return
     if (token%count /= 2 .or. continues) then
       call errors%push_input(place(line, 1, len_trim(line%text)), "expected 2 numbers, got "// &
-          to_text(token%count), form)
+          to_text(token%count), form, code="E132")
       return
     end if
     do i = 1, 2
       call parse_real(token%item(i)%text, point(i), ok)
       if (ok) cycle
-      call errors%push_input(token%item(i)%at, not_a_number(token%item(i)%text), form)
+      call errors%push_input(token%item(i)%at, not_a_number(token%item(i)%text), form, code="E131")
       return
     end do
   end subroutine read_point

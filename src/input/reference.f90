@@ -99,10 +99,11 @@ contains
     if (block%keyword == "set" .and. known%index%find("set "//block%name) == of_sheet) then
       call errors%push_input(block%named, "'"//block%called()//"' is a set of the "// &
           trim(merge("mesh ", "blank", known%of_mesh)), &
-          "another name")
+          "another name", code="E123")
     end if
     if (block%keyword == "tool" .and. block%name == "load") then
-      call errors%push_input(block%named, "'load' is reserved for control = load", "another name")
+      call errors%push_input(block%named, "'load' is reserved for control = load", "another name", &
+          code="E123")
     end if
   end subroutine check_reserved_name
 
@@ -168,7 +169,7 @@ contains
     if (size(names) > 0) expected = "one of: "//listed(names)
     if (last < deck%n_block) expected = expected//"; only sets defined above can be used"
     call errors%push_input(token%at, "there is no "//what//" '"// &
-        as_written(token%text, token%at)//"'"//suggestion(token%text, names), expected)
+        as_written(token%text, token%at)//"'"//suggestion(token%text, names), expected, code="E113")
   end subroutine check_reference
 
   !> Return the first names of a list, as text.

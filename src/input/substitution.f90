@@ -63,11 +63,12 @@ contains
       line%text = overrides(i)%s(equals + 1:)
       if (equals > 0) call split_line(line, binding%value, continues, errors)
       if (binding%name == "" .or. binding%value%count == 0) then
-        call errors%push_input(binding%at, "expected --set name=value")
+        call errors%push_input(binding%at, "expected --set name=value", code="E103")
         cycle
       end if
       if (position(self, binding%name) > 0) then
-        call errors%push_input(binding%at, "parameter '"//binding%name//"' is set twice")
+        call errors%push_input(binding%at, "parameter '"//binding%name//"' is set twice", &
+            code="E122")
       else
         call append(self, binding)
       end if
@@ -91,7 +92,7 @@ contains
       call append(self, binding)
       i = self%count
     else if (self%item(i)%defined) then
-      call errors%push_input(name%at, "parameter '"//name%text//"' is defined twice")
+      call errors%push_input(name%at, "parameter '"//name%text//"' is defined twice", code="E122")
       return
     end if
     self%item(i)%at = name%at
@@ -128,7 +129,7 @@ contains
       if (self%item(i)%defined) cycle
       call errors%push_input(self%item(i)%at, "the input defines no parameter '"// &
           self%item(i)%name//"'"//suggestion(self%item(i)%name, defined_names(self)), &
-          expected_names(self))
+          expected_names(self), code="E115")
     end do
   end subroutine check_overrides
 
@@ -153,7 +154,7 @@ contains
       at%column = token%at%column + first + k - 2 + merge(1, 0, token%quoted)
       at%width = merge(last + 1, len(token%text) - first - k + 2, last > 0)
       if (last == 0) then
-        call errors%push_input(at, "missing closing brace", "${name}")
+        call errors%push_input(at, "missing closing brace", "${name}", code="E103")
         return
       end if
       name = slice(token%text, first + k + 1, first + k + last - 2)
@@ -163,7 +164,7 @@ contains
       end if
       if (i == 0) then
         call errors%push_input(at, "unknown parameter '"//name//"'"// &
-            suggestion(name, defined_names(self)), expected_names(self))
+            suggestion(name, defined_names(self)), expected_names(self), code="E115")
         return
       end if
       if (last + 1 == len(token%text) .and. .not. token%quoted) then

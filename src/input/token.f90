@@ -89,7 +89,8 @@ contains
         last = closing_quote(line%text, start)
         if (last == 0) then
           call errors%push_input(place(line, start, len_trim(line%text) - start + 1), &
-              "unclosed quote", "a second "//line%text(start:start)//" on the same line")
+              "unclosed quote", "a second "//line%text(start:start)//" on the same line", &
+              code="E103")
           return
         end if
         call add_token(token, slice(line%text, start + 1, last - 1), .true., place(line, start, &

@@ -31,7 +31,7 @@ contains
       return
     end if
     if (row%later == "*") then
-      call errors%push_input(entry%at, "'"//trim(row%name)//"' "//not_available)
+      call errors%push_input(entry%at, "'"//trim(row%name)//"' "//not_available, code="E116")
     else if (row%may_be_off .and. size(entry%value) == 1 .and. &
         same_name(entry%value(1)%text, "off")) then
       entry%is_off = .true.

@@ -31,7 +31,7 @@ contains
     if (errors%count > before .and. row%kind /= kind_names) return
     if (row%kind == kind_text) then
       if (entry%value(1)%text == "") then
-        call errors%push_input(entry%value(1)%at, "the text is empty", describe(row))
+        call errors%push_input(entry%value(1)%at, "the text is empty", describe(row), code="E133")
       end if
     else if (row%kind == kind_logical) then
       call check_switch(entry, row, errors)
@@ -40,7 +40,7 @@ contains
         entry%value(i)%text = lower_case(entry%value(i)%text)
         call check_choice(entry%value(i), row, errors)
         if (occurs_before(entry, i)) call errors%push_input(entry%value(i)%at, "'"// &
-            as_written(entry%value(i)%text, entry%value(i)%at)//"' is given twice")
+            as_written(entry%value(i)%text, entry%value(i)%at)//"' is given twice", code="E122")
       end do
     end if
   end subroutine check_words
@@ -61,7 +61,7 @@ contains
       call entry%add_number(0.0_wp)
     case default
       call errors%push_input(entry%value(1)%at, "expected on or off, got '"// &
-          entry%value(1)%text//"'", describe(row))
+          entry%value(1)%text//"'", describe(row), code="E114")
     end select
   end subroutine check_switch
 
@@ -87,7 +87,7 @@ contains
 
     if (len(token%text) <= word_length .and. any(split_words(row%later) == token%text)) then
       call errors%push_input(token%at, "'"//as_written(token%text, token%at)//"' "// &
-          not_available, describe(row))
+          not_available, describe(row), code="E116")
     else if (row%choices /= "") then
       call check_known_word(token, split_words(row%choices), describe(row), errors)
     end if
@@ -106,7 +106,7 @@ contains
       if (same_name(known(i), token%text)) return
     end do
     call errors%push_input(token%at, "unknown word '"//as_written(token%text, token%at)//"'"// &
-        suggestion(token%text, known), expected)
+        suggestion(token%text, known), expected, code="E114")
   end subroutine check_known_word
 
 end module dd3_input_word_check

@@ -95,10 +95,10 @@ contains
         if (.not. phase%free(i)%direction(axis)) cycle
         if (all(held(axis, node))) then
           call errors%push_input(phase%free(i)%at, "'"//phase%free(i)%set//"' is fixed along "// &
-              axis_name(axis)//" in every phase by *BOUNDARY", directions_led)
+              axis_name(axis)//" in every phase by *BOUNDARY", directions_led, code="E145")
         else if (.not. any(led(axis, node))) then
           call errors%push_input(phase%free(i)%at, "no earlier phase displaces '"// &
-              phase%free(i)%set//"' along "//axis_name(axis), directions_led)
+              phase%free(i)%set//"' along "//axis_name(axis), directions_led, code="E145")
         end if
         led(axis, node) = .false.
       end do
@@ -155,10 +155,11 @@ contains
     node = mesh%nodes_of(set)
     if (any(held(axis, node))) then
       call errors%push_input(at, "a node of '"//set//"' is fixed along "//axis_name(axis)// &
-          " by *BOUNDARY", "nodes that are free in this direction")
+          " by *BOUNDARY", "nodes that are free in this direction", code="E145")
     else if (any(moved(axis, node))) then
       call errors%push_input(at, "a node of '"//set//"' is displaced twice along "// &
-          axis_name(axis)//" in this phase", "one of displace, rotate and bend for each node")
+          axis_name(axis)//" in this phase", "one of displace, rotate and bend for each node", &
+          code="E122")
     end if
     moved(axis, node) = .true.
   end subroutine check_direction
@@ -181,7 +182,7 @@ contains
     if (norm2(line) > 1.0e-6_wp*mesh%model_size()) return
     call errors%push_input(motion%at, "the bar has no length across the axis, from the point "// &
         "to the mean position of '"//motion%set//"'", &
-        "a point at the fixed end of the bar, or rotate to turn the set in its place")
+        "a point at the fixed end of the bar, or rotate to turn the set in its place", code="E135")
   end subroutine check_length
 
   !> Whether a vector is along a coordinate axis.

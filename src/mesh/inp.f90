@@ -73,9 +73,11 @@ contains
     line%number = number
     line%text = self%line(number)%s
     if (present(first)) then
-      call self%errors%push_input(place(line, first, max(1, last - first + 1)), message, expected)
+      call self%errors%push_input(place(line, first, max(1, last - first + 1)), message, expected, &
+          code="E147")
     else
-      call self%errors%push_input(place(line, 1, len_trim(line%text)), message, expected)
+      call self%errors%push_input(place(line, 1, len_trim(line%text)), message, expected, &
+          code="E147")
     end if
   end subroutine report
 

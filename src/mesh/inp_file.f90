@@ -58,7 +58,7 @@ contains
     call read_lines(file, self%line, error)
     if (allocated(error)) then
       call errors%push_input(location, "cannot read the mesh '"//file//"': "//error%message, &
-          "a mesh as an Abaqus or CalculiX .inp file")
+          "a mesh as an Abaqus or CalculiX .inp file", code="E101")
       return
     end if
     do while (at%number < size(self%line) .and. self%errors%count <= most_errors)
@@ -74,9 +74,10 @@ contains
     call end_element(self, at)
     if (self%errors%count > 0) return
     if (self%n_node == 0) call errors%push_input(location, "the mesh '"//file// &
-        "' contains no node", "*NODE, then lines: label, x, y, z")
+        "' contains no node", "*NODE, then lines: label, x, y, z", code="E102")
     if (self%n_node > 0 .and. self%n_element == 0) call errors%push_input(location, "the mesh '"// &
-        file//"' contains no element", "*ELEMENT, TYPE=C3D8, then lines: label, 8 nodes")
+        file//"' contains no element", "*ELEMENT, TYPE=C3D8, then lines: label, 8 nodes", &
+        code="E102")
   end subroutine read_inp
 
   !> Begin the section of a keyword.

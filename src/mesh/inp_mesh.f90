@@ -40,7 +40,7 @@ contains
       call errors%push_input(spec%source%at("element"), "the elements of '"//spec%file// &
           "' are of type "//trim(inp%element_type)//" and have "//to_text(inp%n_element_node)// &
           " nodes; element = "//spec%element//" has "//to_text(size(natural, 2)), &
-          "an element with "//to_text(inp%n_element_node)//" nodes")
+          "an element with "//to_text(inp%n_element_node)//" nodes", code="E147")
       return
     end if
     if (inp%errors%count == 0) call resolve(mesh, inp, node)
@@ -233,7 +233,7 @@ contains
       if (same) return
       call errors%push_input(spec%source%at("file"), "the set '"//name//"' of '"//spec%file// &
           "' has other nodes than "//meaning(name), "another name: "//name//" is found by the "// &
-          "program")
+          "program", code="E123")
     end subroutine add
 
   end subroutine add_faces
@@ -325,7 +325,7 @@ contains
         k = mesh%find_element_set(this%set)
         if (k == 0) then
           call errors%push_input(this%at, "there is no element set '"//this%set//"' in '"// &
-              spec%file//"'", known_element_sets(mesh))
+              spec%file//"'", known_element_sets(mesh), code="E113")
           cycle
         end if
         associate (element => mesh%element_set(k)%element)
@@ -333,7 +333,7 @@ contains
               .true., dim=1)
           if (e > 0) call errors%push_input(this%at, "element "// &
               to_text(inp%element_label(element(e)))//" gets two materials", &
-              "one material for each element")
+              "one material for each element", code="E122")
           mesh%material(element) = this%material
         end associate
       end associate
@@ -343,7 +343,7 @@ contains
     if (e > 0) call errors%push_input(spec%source%opened, "element "// &
         to_text(inp%element_label(e))//" has no material (elements without: "// &
         to_text(count(mesh%material == 0))//")", &
-        "material = name, or material_of = set name for the set of each element")
+        "material = name, or material_of = set name for the set of each element", code="E121")
     do k = 1, size(mesh%element_set)
       call add_nodes_of(mesh, k)
     end do

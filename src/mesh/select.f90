@@ -50,7 +50,7 @@ contains
     set%node = pack([(i, i=1, mesh%n_node)], member)
     if (size(set%node) == 0 .and. errors%count == before) then
       call errors%push_input(wanted%source%opened, "set '"//wanted%source%called()// &
-          "' contains no node", "at least one node")
+          "' contains no node", "at least one node", code="E146")
     end if
     call mesh%append_set(set)
   end subroutine add_set
@@ -75,7 +75,7 @@ contains
       if (wanted%range(2, i) > maxval(label) .or. .not. any(inside)) then
         call errors%push_input(wanted%source%entry(wanted%source%find("nodes"))%value(i)%at, &
             "there is no node "//to_text(wanted%range(2, i)), "numbers from "// &
-            to_text(minval(label))//" to "//to_text(maxval(label)))
+            to_text(minval(label))//" to "//to_text(maxval(label)), code="E113")
         cycle
       end if
       named = named .or. inside

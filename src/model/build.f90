@@ -114,7 +114,7 @@ contains
       if (model%element%n_thickness_point == 0) call errors%push_input( &
           block%at("thickness_points"), "element type '"//trim(name(position))// &
           "' has a fixed number of points through the thickness", &
-          "this key only with an element that has a choice: solid_shell")
+          "this key only with an element that has a choice: solid_shell", code="E148")
     end subroutine set_from
 
   end subroutine set_element
@@ -148,7 +148,7 @@ contains
     package = missing_package(case%solver%method)
     if (package /= "") call errors%push_input(case%solver%method_at, "the program was built "// &
         "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
-        "built with the package "//package)
+        "built with the package "//package, code="E116")
   end subroutine check_solver
 
   !> Join the lines of the title.
@@ -191,7 +191,8 @@ contains
       if (.not. case%tool(t)%source%has("contact")) cycle
       call errors%push_input(case%tool(t)%source%at("contact"), "the element "// &
           trim(model%element%name)//" cannot be in contact: pressure on its faces pulls at the "// &
-          "corners", "no tools, or an element whose nodes all push: hex8, hex27 or solid_shell")
+          "corners", "no tools, or an element whose nodes all push: hex8, hex27 or solid_shell", &
+          code="E148")
     end do
   end subroutine read_tools
 
@@ -231,7 +232,7 @@ contains
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
       call errors%push_input(sheet_location(case), "element "//to_text(e)// &
-          " has no volume", "a sheet whose node lines do not cross")
+          " has no volume", "a sheet whose node lines do not cross", code="E148")
       return
     end do
   end subroutine set_mesh
@@ -265,7 +266,8 @@ contains
     points = case%contact%points
     if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
         case%contact%points_at, "points between the nodes need a sheet of one layer of "// &
-        "elements with eight nodes", "points = 1, or one element through the thickness")
+        "elements with eight nodes", "points = 1, or one element through the thickness", &
+        code="E148")
     if (errors%count > 0) return
     call set_contact_points(model, member, points)
     pressed = .false.
@@ -375,13 +377,15 @@ contains
         call errors%push_input(case%tool(t)%source%opened, "tool '" &
             //case%tool(t)%source%called()//"' turns away from the sheet, "// &
             to_text(-nearest, 4)//" mm off", &
-            "patches whose normals (the cross product of their u and v) point to the sheet")
+            "patches whose normals (the cross product of their u and v) point to the sheet", &
+            code="E142")
       end if
       if (worst == 0) cycle
       call errors%push_input(case%tool(t)%source%opened, "tool '"//case%tool(t)%source%called()// &
           "' starts inside the sheet: node "//to_text(worst)//" is "//to_text(-deepest, 4)// &
           " mm deep in it", &
-          "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
+          "a start no deeper than 0.001 mm (see position), normals that point to the sheet", &
+          code="E142")
     end do
   end subroutine check_start
 
@@ -407,7 +411,8 @@ contains
         call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &
             part_name(part, k)//" in phase '"//case%phase(i)%source%called()// &
             "': it is free to "//motion, &
-            "supports by *BOUNDARY or displace, a tool that is not released, or unload = on")
+            "supports by *BOUNDARY or displace, a tool that is not released, or unload = on", &
+            code="E143")
         return
       end do
     end do

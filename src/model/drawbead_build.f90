@@ -108,11 +108,11 @@ contains
     integer :: i
 
     if (size(point) < 4) call errors%push_input(at, "the line has "//to_text(size(point)/2)// &
-        " points", "two or more points")
+        " points", "two or more points", code="E132")
     do i = 3, size(point), 2
       if (norm2(point(i:i + 1) - point(i - 2:i - 1)) > shortest_segment*thickness) cycle
       call errors%push_input(at, "points "//to_text(i/2)//" and "//to_text(i/2 + 1)// &
-          " of the line coincide", "points that differ")
+          " of the line coincide", "points that differ", code="E150")
     end do
   end subroutine check_points
 
@@ -130,7 +130,7 @@ contains
             /(elastic_slip*thickness)) cycle
         call errors%push_input(spec%source%at("table"), "the force falls too fast: from path "// &
             to_text(table(i - 2), 4)//" to "//to_text(table(i), 4), "a fall by its largest value "// &
-            "over "//to_text(2.0_wp*elastic_slip)//" thicknesses or more")
+            "over "//to_text(2.0_wp*elastic_slip)//" thicknesses or more", code="E150")
       end do
     end associate
   end subroutine check_slopes

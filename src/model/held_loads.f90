@@ -39,7 +39,7 @@ contains
           axis => axis_name(found(i)%axis))
         call errors%push_input(load%at, "the load along "//axis//" on '"//load%set// &
             "' has no effect: all its nodes are held in this direction", "free = "//load%set// &
-            " "//axis//" where `displace` holds them, or no load in this direction")
+            " "//axis//" where `displace` holds them, or no load in this direction", code="E125")
       end associate
     end do
     call check_pressures(model, case, errors)
@@ -60,7 +60,7 @@ contains
             if (model%pressure_set(s)%name /= pressure%set) cycle
             if (size(model%pressure_set(s)%node, 2) == 0) call errors%push_input(pressure%at, &
                 "the set '"//pressure%set//"' contains no face of the sheet", &
-                "all nodes of at least one face on the boundary")
+                "all nodes of at least one face on the boundary", code="E146")
           end do
         end associate
       end do

@@ -112,7 +112,7 @@ contains
     call check_together(kind, choice%name, choice%values, problems, errors%count > found)
     do i = 1, size(problems)
       call errors%push_input(problem_place(spec, origin, problems(i)%index), &
-          trim(problems(i)%message), trim(problems(i)%expected))
+          trim(problems(i)%message), trim(problems(i)%expected), code="E149")
     end do
   end subroutine choose_checked
 

@@ -363,7 +363,7 @@ contains
                 model%phase(i)%gap_offset(spec%tool), found)
             if (.not. found) call errors%push_input(spec%at, "no displacement along z gives "// &
                 "this gap between '"//tool%name//"' and '"//other%name//"'", &
-                "two tools whose surfaces face each other along z")
+                "two tools whose surfaces face each other along z", code="E144")
           end associate
         end associate
       end do

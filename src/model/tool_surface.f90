@@ -46,7 +46,7 @@ contains
       deallocate (patches(i)%point)
       if (is_degenerate(surface%patch(i))) then
         call found%push_input(patches(i)%at, "patch "//to_text(patches(i)%number)// &
-            " has no area", "control points that span a surface")
+            " has no area", "control points that span a surface", code="E141")
       end if
     end do
     if (found%count == 0) then
@@ -103,7 +103,7 @@ contains
       if (two(1) == 0) return
       call errors%push_input(patches(maxval(two))%at, "dozens of patches lie at the same place, "// &
           "among them "//to_text(patches(minval(two))%number)//" and "// &
-          to_text(patches(maxval(two))%number), "each part of the surface once")
+          to_text(patches(maxval(two))%number), "each part of the surface once", code="E141")
     end associate
   end subroutine check_crowding
 
@@ -124,7 +124,7 @@ contains
         here%line = patches(k)%at%line
         call errors%push_input(here, "the normals of patches "//to_text(patches(next)%number)// &
             " and "//to_text(patches(k)%number)//" point to opposite sides of their common edge", &
-            "S_u x S_v pointing out of the tool on both")
+            "S_u x S_v pointing out of the tool on both", code="E141")
       end do
     end do
   end subroutine check_orientation

@@ -182,7 +182,7 @@ contains
     inquire (file=path, exist=there)
     call open_hdf5(path, file, ok)
     if (.not. there) then
-      call fatal_error(error, "cannot read the restart file '"//path//"': no such file")
+      call fatal_error(error, "cannot read the restart file '"//path//"': no such file", "E204")
     else if (ok) then
       call check_origin(path, file, error)
       if (.not. allocated(error)) call check_model(path, file, model, error)
@@ -190,7 +190,7 @@ contains
       call close_hdf5(file)
     else
       call fatal_error(error, "cannot read the restart file '"//path// &
-          "': truncated or not an HDF5 file")
+          "': truncated or not an HDF5 file", "E204")
     end if
   end subroutine read_restart
 
@@ -207,11 +207,11 @@ contains
     call read_text_attribute(file, "version", version)
     found = read_integer_attribute(file, "format")
     if (program_mark /= mark) then
-      call fatal_error(error, "'"//path//"' is not a restart file of dd3imp")
+      call fatal_error(error, "'"//path//"' is not a restart file of dd3imp", "E204")
     else if (found /= format_version) then
       call fatal_error(error, "'"//path//"' has restart format "//to_text(found)// &
           ", written by dd3imp "//version//"; this version reads format "// &
-          to_text(format_version))
+          to_text(format_version), "E204")
     end if
   end subroutine check_origin
 
@@ -239,7 +239,7 @@ contains
       call read_codes(file, size(code), code, ok)
     end if
     if (.not. ok) then
-      call fatal_error(error, "'"//path//"' has no fingerprint of its model")
+      call fatal_error(error, "'"//path//"' has no fingerprint of its model", "E204")
       return
     end if
     do i = 1, size(before)
@@ -249,7 +249,7 @@ contains
     end do
     names = changed_parts(before, model_fingerprint(model, phase(1)))
     if (len(names) > 0) call fatal_error(error, "'"//path//"' belongs to another model; "// &
-      "different: "//names)
+      "different: "//names, "E204")
   end subroutine check_model
 
   !> Read the names of a fingerprint as character codes.
@@ -280,7 +280,7 @@ contains
     reader%file = file
     reader%problem = ""
     call visit_state(state, reader)
-    if (len(reader%problem) > 0) call fatal_error(error, "'"//path//"': "//reader%problem)
+    if (len(reader%problem) > 0) call fatal_error(error, "'"//path//"': "//reader%problem, "E204")
   end subroutine read_state
 
   !> Read a component of real numbers. Sets with loads that later phases have added or dropped come

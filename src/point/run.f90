@@ -6,7 +6,7 @@ module dd3_point_run
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
-  use dd3_base_cause_text, only : cause_text
+  use dd3_base_cause_text, only : cause_code, cause_text
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_converged, verdict_t, cause_gradient
   use dd3_element_log_strain, only : polar_increment
@@ -134,7 +134,7 @@ contains
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//path%name//", step "// &
-            to_text(run%increment + 1)//": "//cause_text(verdict, ""))
+            to_text(run%increment + 1)//": "//cause_text(verdict, ""), cause_code(verdict))
         return
       end if
       run%increment = run%increment + 1

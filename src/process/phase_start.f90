@@ -138,7 +138,7 @@ contains
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
           model%tool(tool)%name//"', which was released, but node "//to_text(node)//" is "// &
           to_text(depth, 3)//" mm inside it: move the tool clear of the sheet in the phase "// &
-          "that releases it")
+          "that releases it", "E206")
       return
     end do
   end subroutine check_returns

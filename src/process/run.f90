@@ -1,7 +1,7 @@
 !> Run of a job: phase by phase, increment by increment, with its records.
 module dd3_process_run
   use dd3_base_kinds, only : wp
-  use dd3_base_cause_text, only : cause_text
+  use dd3_base_cause_text, only : cause_code, cause_text
   use dd3_base_clock, only : section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
@@ -257,7 +257,8 @@ contains
       predicted = attempt%verdict%outcome == verdict_converged
       if (predicted .and. .not. makes_progress(attempt, stepper%prediction%progress)) then
         attempt%verdict%cause = cause_no_progress
-        call fatal_error(error, failure_message(model, run%committed, stepper))
+        call fatal_error(error, failure_message(model, run%committed, stepper), &
+            cause_code(attempt%verdict))
         return
       end if
       do
@@ -287,7 +288,8 @@ contains
         call accept_increment(model, run%trial, stepper, run%committed)
         run%summary%increments = run%committed%increment
       else if (.not. allocated(error)) then
-        call fatal_error(error, failure_message(model, run%committed, stepper))
+        call fatal_error(error, failure_message(model, run%committed, stepper), &
+            cause_code(attempt%verdict))
       end if
     end associate
   end subroutine run_increment

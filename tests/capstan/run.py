@@ -58,7 +58,7 @@ def measure(program, work, thickness, contact):
     depth = max(depth, 0.0)
     ratio = -LOAD * thickness / THICKNESS / number(history[-1], "left_rx", out)
     error, wrong = ratio / EXACT - 1, []
-    if done.code == 3 and "dd3imp: stopped: " in done.errors:
+    if done.code == 3 and "dd3imp: stopped E2" in done.errors:
         end, results = "stopped", ["", ""]
     else:
         end, results = "reached", [f"{ratio:.5f}", f"{100 * error:+.2f}"]

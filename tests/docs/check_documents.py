@@ -122,6 +122,25 @@ def missing_remedies():
             yield f"docs/status.md does not contain the remedy {remedy!r}"
 
 
+def wrong_codes(program):
+    """Yield what is wrong with the codes of messages: docs/messages.md, and the codes in the source."""
+    printed = run(program, "--help", "messages")[0]
+    if printed != (ROOT / "docs" / "messages.md").read_text(encoding="utf-8"):
+        yield ("docs/messages.md differs from the output of the program; update it: "
+               "dd3imp --help messages >docs/messages.md")
+    listed = re.findall(r"^\| ([WNE]\d{3}) \|", printed, re.MULTILINE)
+    used = set()
+    for path in (ROOT / "src").rglob("*.f90"):
+        if path.parent.name != "message":
+            used |= set(re.findall(r'"([WNE]\d{3})"', path.read_text(encoding="utf-8")))
+    for code in sorted(set(listed) ^ used):
+        yield f"the code {code} is " + ("listed, but not used" if code in listed else "not listed in src/message")
+    for code in sorted({code for code in listed if listed.count(code) > 1}):
+        yield f"the code {code} is listed twice"
+    if f"{listed[0]}: " not in run(program, "--help", listed[0].lower())[0]:
+        yield f"--help {listed[0]} prints no entry"
+
+
 def laws_of(reference):
     """Return the laws of the keyword reference: kind and name."""
     kind, laws = "", []
@@ -197,7 +216,7 @@ def main():
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:
             wrong.append(f"{path.relative_to(ROOT)}: {problem}")
-    wrong += [*broken_laws(program, printed), *missing_remedies()]
+    wrong += [*broken_laws(program, printed), *missing_remedies(), *wrong_codes(program)]
     if wrong:
         sys.exit("\n".join(wrong))
 

@@ -204,12 +204,12 @@ def make_deck(index, seed, corpus, mutate):
 
 def faults_of_errors(said):
     """Return what is wrong with the messages of an input that was refused."""
-    messages = re.findall(r"^(?!  )(.*error: .*)$", said, re.MULTILINE)
+    messages = re.findall(r"^(?!  )(.*error E1\d\d: .*)$", said, re.MULTILINE)
     faults = [] if messages else ["exit code 2 without a message"]
     for message in messages:
-        if not re.match(r".*?\S: error: ", message):
+        if not re.match(r".*?\S: error E1", message):
             faults.append(f"no file: {message[:200]}")
-        elif not re.match(r".*?:\d+: error: ", message) and not any(text in message for text in WITHOUT_LINE):
+        elif not re.match(r".*?:\d+: error E1", message) and not any(text in message for text in WITHOUT_LINE):
             faults.append(f"no line: {message[:200]}")
     return faults
 
@@ -261,7 +261,7 @@ def try_deck(index, options, corpus):
         faults.append(f"exit code {code}")
     elif code == 2:
         faults += faults_of_errors(said)
-    elif code == 3 and "dd3imp: stopped: " not in said:
+    elif code == 3 and "dd3imp: stopped E2" not in said:
         faults.append("exit code 3 without a sentence")
     faults += [f"it says {trace!r}" for trace in TRACES if trace in said]
     faults += faults_of_tables(output, code)

@@ -204,7 +204,7 @@ def small_disk(runner, work):
         shutil.copytree(work / "whole", output)
         said = runner.run(deck, output, output / found[max(found)].name, 3, settings,
                           preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
-        check("stopped: cannot write" in said, f"limit {limit}: {said}")
+        check("stopped E203: cannot write" in said, f"limit {limit}: {said}")
         compare(output, work / "whole")
 
 

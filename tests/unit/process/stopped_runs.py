@@ -46,7 +46,7 @@ def run(program, directory, deck, **options):
     done = subprocess.run([program, "--output", directory, deck], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, timeout=300, check=False, **options)
     check(done.returncode == 3, f"expected exit code 3, got {done.returncode}:\n{done.stdout}")
-    check("dd3imp: stopped: " in done.stdout, f"no message that it stopped:\n{done.stdout}")
+    check("dd3imp: stopped E" in done.stdout, f"no message that it stopped:\n{done.stdout}")
     check("Backtrace" not in done.stdout, f"backtrace in the output:\n{done.stdout}")
     return done.stdout
 
@@ -60,7 +60,7 @@ def no_convergence(program, directory):
     check("did not converge" in output, f"the reason is not named:\n{output}")
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["reason"], f"status.csv ends with {last}")
-    check("stopped: " in (directory / "job.log").read_text(encoding="utf-8"), "job.log does not say that it stopped")
+    check("stopped E" in (directory / "job.log").read_text(encoding="utf-8"), "job.log does not say that it stopped")
     result = check_description(directory, 3)["phases"][-1]["result"]
     check((result["state"], result["last_increment"]) == ("stopped", accepted), f"run.json: the phase is {result}")
 
@@ -202,12 +202,12 @@ def initial(program, directory):
                     .replace("*TOOL punch", "*TOOL punch\n  position = 0 0 -0.5"), encoding="utf-8")
     for path, code, state in ((BENDING, 0, "checked"), (deck, 2, "input_error")):
         folder = directory / state
-        done = subprocess.run([program, "--check", "--quiet", "--initial", folder, path], capture_output=True, text=True,
-                              check=False)
+        words = [program, "--check", "--quiet", "--initial", folder, path]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
         check(done.returncode == code, f"expected exit code {code}, got {done.returncode}:\n{done.stderr}")
         found = read_description(folder)
         check(found["outcome"]["state"] == state and len(found["errors"]) == (code > 0), f"{state}: {found['outcome']}")
-        check(all(error["text"].split(";")[0] in done.stderr for error in found["errors"]), f"{state}: {found['errors']}")
+        check(all(error["text"].split(";")[0] in done.stderr for error in found["errors"]), str(found["errors"]))
         check(all(pathlib.Path(tool["patches"]).exists() for tool in found["tools"]), f"{state}: {found['tools']}")
 
 

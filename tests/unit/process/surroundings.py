@@ -215,7 +215,7 @@ def little_memory(program, directory):
         if done.returncode == 127:
             continue  # the libraries cannot be loaded
         check(done.returncode == 3, f"{megabytes} MB: exit code {done.returncode}:\n{done.stderr}")
-        check(re.search(r"stopped: .*(not enough|lack of) memory", done.stderr),
+        check(re.search(r"stopped E202: .*(not enough|lack of) memory", done.stderr),
               f"{megabytes} MB: it says {done.stderr}")
         check("Backtrace" not in done.stderr, f"{megabytes} MB: it says {done.stderr}")
         if (directory / str(megabytes)).exists():

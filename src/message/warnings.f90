@@ -1,0 +1,135 @@
+!> Warnings and notes.
+module dd3_message_warnings
+  use dd3_message_row, only : message_row_t, row
+  implicit none
+  private
+  public :: input_warnings, run_warnings, notes
+
+contains
+
+  !> Return the warnings of unusual input.
+  function input_warnings() result(list)
+    type(message_row_t), allocatable :: list(:)
+
+    list = [ &
+      row("W001", "unusual Young's modulus", &
+          "It lies outside 1e3 to 1e6 MPa: most often another unit than MPa.", &
+          "Check `young` of the material; stresses are in MPa, lengths in mm, forces in N."), &
+      row("W002", "unusual yield stress in the rolling direction", &
+          "The yield criterion makes the material yield there far from the flow stress of its "// &
+          "hardening law; in most published sets the two agree.", &
+          "Check the parameters of the criterion, their order and their convention."), &
+      row("W003", "unusual initial flow stress", &
+          "It is very small or very large compared with Young's modulus: another unit, or a "// &
+          "parameter of the hardening law in the wrong place.", &
+          "Check the parameters of the hardening law."), &
+      row("W004", "unusual thickness of the sheet", &
+          "It lies outside 0.01 to 100 mm.", "Check the unit and the order of `size`."), &
+      row("W005", "unusual coefficient of friction", &
+          "Coulomb's coefficient is below 1 in sheet metal forming.", &
+          "Check `friction` of the tool; it is no percentage."), &
+      row("W006", "large tolerance of the corrector", &
+          "Above 0.02 forces may be inaccurate.", "A smaller `tolerance` in `*NEWTON`."), &
+      row("W007", "small search distance of the tools", &
+          "Nodes may pass a tool before it is found.", &
+          "Leave `search_distance` out: its default is the thickness of the sheet."), &
+      row("W008", "load on nodes that are held", &
+          "Supports hold some nodes of the set in the direction of the load and carry their "// &
+          "part "// &
+          "of it.", "Load a set without these nodes, if the sheet should carry all of it."), &
+      row("W009", "elements too long for bending", &
+          "Elements `hex8` of this length are too stiff where the sheet bends.", &
+          "At most half a thickness there, or the element `solid_shell`."), &
+      row("W010", "patches of a tool that nearly join", &
+          "The edges of two patches run beside each other without the same control points: a "// &
+          "node may fall through the gap between them.", &
+          "Edges with the same control points and weights, or one patch in place of the two."), &
+      row("W011", "candidates on the wrong face of the sheet", &
+          "The faces before the tool whose nodes are its candidates are turned away from it.", &
+          "The set of the face that the tool meets, such as `contact = z_max`."), &
+      row("W012", "draw-bead beside the sheet", &
+          "No part of its line lies on the sheet, seen along z.", "Check the points of the "// &
+          "line."), &
+      row("W013", "yield surface that may not be convex", &
+          "The input takes the law in spite of it; the stress update may fail.", &
+          "Parameters of a convex surface."), &
+      row("W014", "too little memory", &
+          "The job needs more memory than the machine has left: it would be slow, or be ended "// &
+          "by "// &
+          "the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`.")]
+  end function input_warnings
+
+  !> Return the warnings during a run.
+  function run_warnings() result(list)
+    type(message_row_t), allocatable :: list(:)
+
+    list = [ &
+      row("W101", "records that begin at the restart", &
+          "Records of the earlier run are missing or have other columns.", &
+          "Keep the records beside the restart file, and `*HISTORY` as it was."), &
+      row("W102", "pressed tool without contact", &
+          "At the start of the phase the pressed tool does not meet the sheet along its force, "// &
+          "or "// &
+          "its force points away from it.", &
+          "The sign of the force, the place of the tool, its set of candidates."), &
+      row("W103", "sheet that nothing holds", &
+          "Neither supports nor tools in contact stop a rigid motion of the sheet at the start "// &
+          "of "// &
+          "the phase.", "Supports, or a tool that is in contact from the start."), &
+      row("W104", "forces out of equilibrium in an unloading", &
+          "The supports that the program chose carry forces of loads, or of released tools.", &
+          "Remove the loads with the tools, or support the sheet by `*BOUNDARY`."), &
+      row("W105", "early end not met", &
+          "The phase went to its whole end without meeting its `until`, or beyond its value.", &
+          "A larger motion or force in the phase, or another value of `until`."), &
+      row("W106", "yielding while forces of released tools fade", &
+          "The free shape depends on how the forces fade.", &
+          "Withdraw the tools by `move` and compare."), &
+      row("W107", "reactions of chosen supports", &
+          "The supports that the program chose carry forces at the end of the unloading: the "// &
+          "forces on the sheet are not in equilibrium.", &
+          "A smaller tolerance of the corrector; loads that are in equilibrium."), &
+      row("W108", "moved tool that has not touched the sheet", &
+          "The tool passed the sheet, lies elsewhere, points its normals away from it, or has "// &
+          "other candidates.", "Its place, its normals, its set of candidates; a finer mesh if "// &
+          "it "// &
+          "passed between the nodes."), &
+      row("W109", "tool between the nodes of the sheet", &
+          "Contact holds at the nodes: a tool with a small radius enters the faces between them.", &
+          "Elements of the length that the message gives; `points` in `*CONTACT`."), &
+      row("W110", "sheet beyond an open edge of a tool", &
+          "The sheet has left the tool under pressure where its surface ends.", &
+          "A surface that continues beyond this edge."), &
+      row("W111", "tools that crossed each other", &
+          "Their surfaces overlap at the end of the phase.", &
+          "Motions that leave at least the thickness of the sheet between the tools."), &
+      row("W112", "ironing with contact points between the nodes", &
+          "Where two tools pinch the sheet, these points thin it too much.", &
+          "Compare with `points = 1` in `*CONTACT`."), &
+      row("W113", "unusual strain at a single point", &
+          "A logarithmic strain of 2 is a stretch of more than seven; 0.1 is about 10 %.", &
+          "Check `target`; strains are no percentages.")]
+  end function run_warnings
+
+  !> Return the notes.
+  function notes() result(list)
+    type(message_row_t), allocatable :: list(:)
+
+    list = [ &
+      row("N101", "directions that stay displaced", &
+          "Earlier phases displaced nodes, and this one holds them where they are.", &
+          "`free` in the phase frees them."), &
+      row("N102", "chosen supports", &
+          "The unloaded sheet is free to move as a rigid body; the program holds it at some "// &
+          "nodes.", &
+          "Supports by `*BOUNDARY`, if other nodes should stay in place."), &
+      row("N103", "small reactions of chosen supports", &
+          "The forces on the sheet are in equilibrium, as they should be.", "None."), &
+      row("N104", "mean gap in the contact layers", &
+          "The compliant contact keeps the sheet off the tools by this distance.", &
+          "A smaller `layer` in `*CONTACT`, if it matters."), &
+      row("N105", "phase without increments", &
+          "The condition of its early end holds at its start.", "Check `until` of the phase.")]
+  end function notes
+
+end module dd3_message_warnings
