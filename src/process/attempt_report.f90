@@ -14,7 +14,7 @@ module dd3_process_attempt_report
   use dd3_process_stepper, only : stepper_t
   implicit none
   private
-  public :: status_row, failure_message
+  public :: status_row, failure_message, tool_name
 
 contains
 

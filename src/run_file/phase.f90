@@ -7,6 +7,7 @@ module dd3_run_file_phase
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_output_run_summary, only : phase_summary_t
+  use dd3_process_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
   use dd3_run_file_sheet, only : add_axes, axis_name
   implicit none
@@ -352,15 +353,5 @@ contains
     call json%add("seconds", summary%seconds)
     call json%end_object()
   end subroutine add_result
-
-  !> Return the name of a tool; empty for 0.
-  function tool_name(model, tool) result(name)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: tool
-    character(len=:), allocatable :: name
-
-    name = ""
-    if (tool > 0) name = model%tool(tool)%name
-  end function tool_name
 
 end module dd3_run_file_phase

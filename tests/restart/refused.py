@@ -158,13 +158,13 @@ class Refusals:
         output = self.work / name.replace(" ", "_")
         shutil.copytree(self.work / "results", output)
         change(output / "restart.h5")
-        self.refuse(Deck(self.work / "same.dat"), "dd3imp: " + sentence.format(output / "restart.h5"), output=output)
+        self.refuse(Deck(self.work / "same.dat"), "dd3imp: error E204: " + sentence.format(output / "restart.h5"), output=output)
 
     def point(self):
         """A run of a material point."""
         deck = Deck(self.work / "same.dat")
         shutil.copy(POINT, deck.path)
-        self.refuse(deck, "dd3imp: a run of material points (*POINT) has no restart")
+        self.refuse(deck, "dd3imp: error E205: a run of material points (*POINT) has no restart")
 
     def unreadable(self):
         """A file that may not be read."""
