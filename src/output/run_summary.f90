@@ -10,6 +10,12 @@ module dd3_output_run_summary
   private
   public :: phase_summary_t, run_summary_t
 
+  !> Number of accepted increments that a limiter set.
+  type :: limiter_count_t
+    character(len=16) :: limiter = ""
+    integer :: count = 0
+  end type limiter_count_t
+
   !> Totals of a phase in this run.
   type :: phase_summary_t
     !> `pending`; `earlier` if it ended before a restart; `running`; `ended`; `stopped`;
@@ -23,9 +29,8 @@ module dd3_output_run_summary
     integer :: increments = 0, attempts = 0, retries = 0, iterations = 0, solver_iterations = 0
     !> Wall-clock time of the attempts, s.
     real(wp) :: seconds = 0.0_wp
-    !> Limiters of the accepted increments, and the number of increments of each.
-    character(len=16), allocatable :: limiter(:)
-    integer, allocatable :: limited(:)
+    !> Limiters of the accepted increments.
+    type(limiter_count_t), allocatable :: limited(:)
   contains
     procedure :: add => phase_add
     procedure :: finish => phase_finish
@@ -62,7 +67,7 @@ contains
     if (allocated(self%phase)) deallocate (self%phase)
     allocate (self%phase(n_phase))
     do i = 1, n_phase
-      allocate (self%phase(i)%limiter(0), self%phase(i)%limited(0))
+      allocate (self%phase(i)%limited(0))
     end do
     self%phase(:state%phase - 1)%state = "earlier"
   end subroutine run_start
@@ -93,13 +98,11 @@ contains
     self%seconds = self%seconds + row%seconds
     if (row%outcome /= "accepted") return
     self%increments = self%increments + 1
-    i = findloc(self%limiter, row%limiter, 1)
-    if (i == 0) then
-      self%limiter = [self%limiter, row%limiter]
-      self%limited = [self%limited, 0]
-      i = size(self%limited)
-    end if
-    self%limited(i) = self%limited(i) + 1
+    do i = 1, size(self%limited)
+      if (self%limited(i)%limiter == row%limiter) exit
+    end do
+    if (i > size(self%limited)) self%limited = [self%limited, limiter_count_t(row%limiter)]
+    self%limited(i)%count = self%limited(i)%count + 1
   end subroutine phase_add
 
   !> Set where the phase ended, and how.

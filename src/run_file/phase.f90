@@ -347,7 +347,7 @@ contains
     call json%add("solver_iterations", summary%solver_iterations)
     call json%begin_object("limiters", flat=.true.)
     do i = 1, size(summary%limited)
-      call json%add(trim(summary%limiter(i)), summary%limited(i))
+      call json%add(trim(summary%limited(i)%limiter), summary%limited(i)%count)
     end do
     call json%end_object()
     call json%add("seconds", summary%seconds)
