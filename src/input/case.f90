@@ -234,9 +234,7 @@ module dd3_input_case
     integer :: iterations = 0
     !> Whether a failed increment is repeated with a smaller r.
     logical :: cutback = .false.
-    !> Iterations that the size of the increments is steered to; 0: not steered.
-    integer :: target_iterations = 0
-    !> Whether iterations are damped.
+    !> Whether there is a line search.
     logical :: damping = .false.
   end type newton_spec_t
 

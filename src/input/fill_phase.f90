@@ -303,8 +303,6 @@ contains
     if (block%has("tolerance")) newton%tolerance = block%number("tolerance")
     if (block%has("iterations")) newton%iterations = nint(block%number("iterations"))
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
-    if (block%has("target_iterations")) &
-        newton%target_iterations = nint(block%number("target_iterations"))
     if (block%has("damping")) newton%damping = block%number("damping") > 0.5_wp
   end subroutine fill_newton
 

@@ -196,10 +196,8 @@ contains
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
-      row("target_iterations", kind_integer, "", "8", "number of iterations that the size of "// &
-          "the increments is steered to; 0: not steered", lower=zero, upper=1000.0_wp), &
-      row("damping", kind_logical, "", "on", "on: shorten a first iteration "// &
-          "with large displacement gradients, halve one that inverts an element or overshoots")]
+      row("damping", kind_logical, "", "on", "on: line search, which shortens an iteration that "// &
+          "inverts an element or overshoots")]
   end function newton_keys
 
   function solver_keys() result(key)

@@ -49,10 +49,8 @@ module dd3_model_state
     real(wp) :: progress = 0.0_wp
     !> Path of the controlling tools since the start of the job, mm.
     real(wp) :: travel = 0.0_wp
-    !> Upper bound of r after a cut-back, or after more iterations than the target.
+    !> Upper bound of r after a cut-back.
     real(wp) :: r_cap = huge(1.0_wp)
-    !> Whether the iterations set r_cap.
-    logical :: r_cap_by_iterations = .false.
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
     !> Data that the linear solver keeps from matrix to matrix.

@@ -55,7 +55,6 @@ contains
     call visitor%one_real("progress", state%progress)
     call visitor%one_real("travel", state%travel)
     call visitor%one_real("r_cap", state%r_cap)
-    call visitor%one_logical("r_cap_by_iterations", state%r_cap_by_iterations)
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)
     call visitor%integers("solver_memory", size(state%solver_memory), state%solver_memory)

@@ -65,7 +65,7 @@ contains
 
     associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       row%iterations = verdict%iterations
-      row%damped = attempt%course%halved
+      row%damped = attempt%course%shortened
       if (allocated(attempt%course%norm)) then
         if (size(attempt%course%norm) > 0) &
             row%criterion = attempt%course%norm(size(attempt%course%norm))

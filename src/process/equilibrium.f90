@@ -10,7 +10,6 @@ module dd3_process_equilibrium
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
-  use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
@@ -20,9 +19,9 @@ module dd3_process_equilibrium
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_load_stiffness, only : add_load_stiffness
-  use dd3_system_reduced, only : contact_force_increment, reduce_equilibrium
+  use dd3_system_reduced, only : contact_force_increment
   use dd3_system_round_off, only : attainable_residual
-  use dd3_system_solve, only : solve_factorised, solve_info_t, solve_reduced
+  use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -56,8 +55,6 @@ module dd3_process_equilibrium
     !> Residual, and its scaled norm.
     type(residual_t) :: residual
     real(wp) :: norm = 0.0_wp
-    !> Number of linearisations in this increment.
-    integer, private :: linearisations = 0
     !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
     integer, allocatable :: status(:, :)
     !> Work of the linear solver.
@@ -68,11 +65,10 @@ module dd3_process_equilibrium
     procedure :: begin
     procedure :: evaluate
     procedure :: scaled_norm
-    procedure :: residual_norm
     procedure :: is_admissible
     procedure :: linearise
     procedure :: apply
-    procedure :: correction_left
+    procedure :: slope
     procedure :: explain
     procedure :: changing
   end type equilibrium_t
@@ -82,17 +78,13 @@ module dd3_process_equilibrium
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Residual over the scale above which it is not round-off.
   real(wp), parameter :: largest_round_off = 1.0e-3_wp
+  !> Work of the residual in a step that is round-off, over the norms of internal forces and step.
+  real(wp), parameter :: negligible_work = 1.0e-9_wp
   !> Weight of the balance of a pressed tool in the norm: what is off at the end of an increment is
   !> a step in the force of the next.
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
-  !> Number of steps in an increment that are bounded, in which the contact status of the prediction
-  !> is wrong; the largest difference of the displacements of two nodes of an element over their
-  !> distance in the first: a strain or rotation, beyond which the status would carry the sheet far
-  !> from the solution; and its growth from step to step.
-  integer, parameter :: bounded_steps = 3
-  real(wp), parameter :: first_gradient = 0.005_wp, gradient_growth = 4.0_wp
   !> Number of contact status kept, and the value before the first.
   integer, parameter :: n_kept = 3, unknown = -1
 
@@ -195,19 +187,11 @@ contains
 
   !> Return the norm of residual and step over their scale.
   function scaled_norm(self) result(norm)
-    class(equilibrium_t), intent(inout) :: self
+    class(equilibrium_t), intent(in) :: self
     real(wp) :: norm
 
     norm = self%norm
   end function scaled_norm
-
-  !> Return the norm of the residual, N.
-  function residual_norm(self) result(norm)
-    class(equilibrium_t), intent(inout) :: self
-    real(wp) :: norm
-
-    norm = self%residual%norm
-  end function residual_norm
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
   !> prescribed displacements have reached their positions.
@@ -230,9 +214,11 @@ contains
     !> Retry if there is no solution, or if it moves a node too far.
     type(verdict_t), intent(out) :: verdict
 
+    real(wp) :: residual(3, self%model%n_node)
     logical :: first
 
     first = self%assembled
+    residual = self%system%problem%residual
     self%status(:, 2:) = self%status(:, :n_kept - 1)
     self%status(:, 1) = self%system%contact%status
     associate (model => self%model, trial => self%trial, system => self%system, &
@@ -250,10 +236,8 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
       call set_step(self)
+      system%problem%residual = residual
     end associate
-    self%linearisations = self%linearisations + 1
-    if (self%model%phase(self%trial%phase)%newton%damping .and. &
-        self%linearisations <= bounded_steps) call bound_step(self)
     call check_step(self, verdict)
   end subroutine linearise
 
@@ -288,45 +272,6 @@ contains
     end associate
   end subroutine set_step
 
-  !> Scale a step with large displacement gradients.
-  subroutine bound_step(self)
-    class(equilibrium_t), intent(inout) :: self
-
-    real(wp) :: gradient, largest
-
-    gradient = displacement_gradient(self)
-    largest = first_gradient*gradient_growth**(self%linearisations - 1)
-    if (gradient <= largest) return
-    associate (step => self%step, factor => largest/gradient)
-      step%x = factor*step%x
-      step%enhanced = factor*step%enhanced
-      step%lambda = factor*step%lambda
-      step%tool = factor*step%tool
-      self%system%problem%solution = factor*self%system%problem%solution
-    end associate
-  end subroutine bound_step
-
-  !> Return the largest difference of the step at two nodes of an element over their distance.
-  pure real(wp) function displacement_gradient(self) result(gradient)
-    class(equilibrium_t), intent(in) :: self
-
-    real(wp) :: square
-    integer :: e, i, j
-
-    square = 0.0_wp
-    do e = 1, self%model%n_element
-      associate (node => self%model%connectivity(:, e))
-        do i = 2, size(node)
-          do j = 1, i - 1
-            square = max(square, sum((self%step%x(:, node(i)) - self%step%x(:, node(j)))**2) &
-                /sum((self%trial%x(:, node(i)) - self%trial%x(:, node(j)))**2))
-          end do
-        end do
-      end associate
-    end do
-    gradient = sqrt(square)
-  end function displacement_gradient
-
   !> Set a verdict to retry if the step moves a node too far.
   subroutine check_step(self, verdict)
     class(equilibrium_t), intent(in) :: self
@@ -359,24 +304,29 @@ contains
     end associate
   end subroutine apply
 
-  !> Return the norm of the displacements that the last matrix assigns to the residual of
-  !> equilibrium, over that of the last step; 0 if the solver fails.
-  function correction_left(self) result(norm)
-    class(equilibrium_t), intent(inout) :: self
-    real(wp) :: norm
+  !> Return the work of the residuals of nodes, enhanced strains and pressed tools in the last step,
+  !> mJ; zero if it is round-off.
+  function slope(self) result(work)
+    class(equilibrium_t), intent(in) :: self
+    real(wp) :: work
 
-    real(wp) :: left(size(self%system%problem%solution))
-    type(solver_report_t) :: report
+    real(wp) :: force(3, self%model%n_node), by_element(self%model%n_element)
+    integer :: tool
 
-    associate (system => self%system, phase => self%model%phase(self%trial%phase))
-      call reduce_equilibrium(self%model, phase, system%problem)
-      call solve_factorised(system, left, self%solver, report)
-      norm = 0.0_wp
-      if (.not. report%converged .or. all(abs(left) <= 0.0_wp)) return
-      norm = norm2(left)
-      norm = norm/max(norm2(system%problem%solution), epsilon(norm)*norm)
+    associate (model => self%model, problem => self%system%problem, step => self%step, &
+        phase => self%model%phase(self%trial%phase))
+      force = problem%residual &
+          + model%nodal_contact_forces(self%trial%x, problem%contact_residual)
+      by_element = sum(self%system%enhanced%residual*step%enhanced, dim=1)
+      call self%system%partition%share_elements(size(by_element), by_element)
+      work = sum(force*step%x, mask=.not. phase%prescribed) + sum(by_element)
+      do tool = 1, model%n_tool
+        if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
+            *dot_product(phase%direction(:, tool), step%tool(:, tool))
+      end do
+      if (abs(work) <= negligible_work*norm2(self%trial%internal_force)*norm2(step%x)) work = 0.0_wp
     end associate
-  end function correction_left
+  end function slope
 
   !> Return the number of candidates whose status changed in the last linearisations.
   pure integer function changing(self)

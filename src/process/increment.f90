@@ -148,8 +148,7 @@ contains
     call observe_passages(model, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp
-    call set_next_r_cap(committed, stepper%attempt, &
-        model%phase(trial%phase)%newton%target_iterations)
+    call set_next_r_cap(committed, stepper%attempt)
     committed%solver_memory = stepper%system%solver%memory
   end subroutine accept_increment
 

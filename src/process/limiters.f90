@@ -58,8 +58,7 @@ contains
         limit%r = limits%r_min%value
         limit%limiter = "r_min"
       end if
-      call keep_smaller(limit, limit_t(r=state%r_cap, &
-          limiter=merge("iterations", "cutback   ", state%r_cap_by_iterations)))
+      call keep_smaller(limit, limit_t(r=state%r_cap, limiter="cutback"))
       call end_after("phase", 1.0_wp - state%progress)
       call end_after("table", phase%next_kink(state%progress) - state%progress)
       call apply("gap", gap_limit)

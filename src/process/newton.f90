@@ -1,12 +1,12 @@
-!> Newton-Raphson iterations on an abstract problem. The step is that of the linearised problem;
-!> one that leaves the domain of the problem or overshoots is halved.
-!>
-!> A step overshoots if the residual has grown and the same matrix assigns a correction to the
-!> residual left behind that is not small against the step. The growth alone is no reason to shorten
-!> a step: where the sheet rotates, the linear rotation stretches it, and the next iteration removes
-!> that residual at once. In a problem that is linear but for contact the correction vanishes.
-!> Source: P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (natural monotonicity
-!> test, simplified Newton correction, contraction).
+!> Newton-Raphson iterations on an abstract problem. The step du is that of the linearised problem,
+!> with a line search: at the fraction s of the step the residual R does the work
+!>     g(s) = du . R(u + s du),
+!> the derivative of the potential along the step, if there is one. The full step is taken if it ends
+!> short of the minimum or g there is small against g(0); otherwise it is shortened to where g is
+!> small, or where it is in the domain of the problem. Full steps are too long where points return
+!> from plastic to elastic behaviour: the tangent is that of plastic flow.
+!> Source: H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626 (line search);
+!> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction).
 module dd3_process_newton
   use dd3_base_interrupt, only : interrupted
   use dd3_base_kinds, only : wp
@@ -28,11 +28,10 @@ module dd3_process_newton
   contains
     procedure(evaluate_interface), deferred :: evaluate
     procedure(norm_interface), deferred :: scaled_norm
-    procedure(norm_interface), deferred :: residual_norm
     procedure(is_admissible_interface), deferred :: is_admissible
     procedure(linearise_interface), deferred :: linearise
     procedure(apply_interface), deferred :: apply
-    procedure(norm_interface), deferred :: correction_left
+    procedure(norm_interface), deferred :: slope
   end type newton_problem_t
 
   abstract interface
@@ -47,12 +46,10 @@ module dd3_process_newton
     end subroutine evaluate_interface
 
     !> `scaled_norm`: return the norm of residual and step over their scale, which tells
-    !> convergence. `residual_norm`: return the norm of the residual alone. `correction_left`:
-    !> return the norm of the step that the last matrix assigns to the residual, over that of the
-    !> last step.
+    !> convergence. `slope`: return the work of the residual in the last step.
     function norm_interface(self) result(norm)
       import :: newton_problem_t, wp
-      class(newton_problem_t), intent(inout) :: self
+      class(newton_problem_t), intent(in) :: self
       real(wp) :: norm
     end function norm_interface
 
@@ -86,16 +83,19 @@ module dd3_process_newton
     integer :: iterations = 0
     !> Scaled norm in each iteration that had one.
     real(wp), allocatable :: norm(:)
-    !> Number of times that a step was halved.
-    integer :: halved = 0
+    !> Number of times that a step was shortened.
+    integer :: shortened = 0
     !> Of the last evaluation or linearisation.
     type(verdict_t) :: verdict
   end type newton_course_t
 
-  !> Ratio of the correction left to the step above which a step overshoots, and the largest number
-  !> of times that one is halved.
-  real(wp), parameter :: largest_ratio = 0.25_wp
-  integer, parameter :: most_halvings = 4
+  !> Ratio |g(s)/g(0)| up to which a step is not shortened. A more exact line search costs
+  !> evaluations, and fewer iterations do not repay them.
+  real(wp), parameter :: largest_ratio = 0.3_wp
+  !> Distance of the next fraction from the ends of its interval, over the interval, and the largest
+  !> number of times that a step is shortened.
+  real(wp), parameter :: margin = 0.1_wp
+  integer, parameter :: most_times = 4
   !> Iterations over which the contraction is measured; those with a norm above `far`, after which a
   !> contraction of 1 or more ends them.
   integer, parameter :: span = 5, patience = 10
@@ -110,24 +110,23 @@ contains
     real(wp), intent(in) :: tolerance
     !> Largest number of iterations.
     integer, intent(in) :: iterations
-    !> Whether steps are halved, and iterations without contraction are ended.
+    !> Whether steps are shortened, and iterations without contraction are ended.
     logical, intent(in) :: damping
     type(newton_course_t), intent(out) :: course
 
-    real(wp) :: before
+    real(wp) :: start
     integer :: j
 
-    before = huge(1.0_wp)
+    start = 0.0_wp
     course%norm = [real(wp) ::]
     do j = 1, iterations
       course%outcome = newton_interrupted
       if (interrupted()) return
       course%iterations = j
       course%outcome = newton_invalid
-      call evaluate(problem, damping, before, course)
+      call evaluate(problem, damping, start, course)
       if (course%verdict%outcome /= verdict_converged) return
       course%norm = [course%norm, problem%scaled_norm()]
-      before = problem%residual_norm()
       course%outcome = newton_converged
       if (j > 1 .and. course%norm(j) < tolerance) then
         if (problem%is_admissible()) return
@@ -137,45 +136,74 @@ contains
       course%outcome = newton_invalid
       call problem%linearise(course%verdict)
       if (course%verdict%outcome /= verdict_converged) return
+      start = problem%slope()
       call problem%apply(1.0_wp)
     end do
     course%outcome = newton_slow
   end subroutine solve
 
-  !> Evaluate the problem after a step, which is halved if need be.
-  subroutine evaluate(problem, damping, before, course)
+  !> Evaluate the problem after a step, which is shortened if need be: regula falsi between a
+  !> fraction short of the minimum and one beyond it. The step to the first iteration, that of the
+  !> prediction, is only kept in the domain of the problem.
+  subroutine evaluate(problem, damping, start, course)
     class(newton_problem_t), intent(inout) :: problem
     logical, intent(in) :: damping
-    !> Norm of the residual before the step.
-    real(wp), intent(in) :: before
+    !> Slope at the start of the step.
+    real(wp), intent(in) :: start
     !> Holds the number of the iteration.
     type(newton_course_t), intent(inout) :: course
 
+    !> Fractions of the step, and the slopes there.
+    real(wp) :: fraction, short, beyond, slope, slope_short, slope_beyond
+    logical :: too_far
     integer :: k
 
-    do k = 0, most_halvings
+    fraction = 1.0_wp
+    short = 0.0_wp
+    beyond = 1.0_wp
+    slope_short = start
+    slope_beyond = -start
+    do k = 0, most_times
       call problem%evaluate(course%iterations == 1, course%verdict)
-      if (.not. damping .or. k == most_halvings) return
+      if (.not. damping .or. k == most_times) return
+      slope = -slope_short
+      too_far = .true.
       if (course%verdict%outcome == verdict_converged) then
-        if (.not. overshoots(problem, course%iterations, before)) return
+        if (course%iterations == 1) return
+        slope = problem%slope()
+        too_far = slope*start < 0.0_wp
+        if (is_small(slope, start) .or. (k == 0 .and. .not. too_far)) return
       end if
-      course%halved = course%halved + 1
-      call problem%apply(0.5_wp**(k + 1))
+      if (too_far) then
+        beyond = fraction
+        slope_beyond = slope
+      else
+        short = fraction
+        slope_short = slope
+      end if
+      fraction = between(short, beyond, slope_short, slope_beyond)
+      course%shortened = course%shortened + 1
+      call problem%apply(fraction)
     end do
   end subroutine evaluate
 
-  !> Whether the last step overshoots. That to the first iteration has no matrix.
-  logical function overshoots(problem, iteration, before)
-    class(newton_problem_t), intent(inout) :: problem
-    integer, intent(in) :: iteration
-    !> Norm of the residual before the step.
-    real(wp), intent(in) :: before
+  !> Whether a slope is small enough against that at the start of the step.
+  pure logical function is_small(slope, start)
+    real(wp), intent(in) :: slope, start
 
-    overshoots = .false.
-    if (iteration == 1) return
-    if (problem%residual_norm() <= before) return
-    overshoots = problem%correction_left() > largest_ratio
-  end function overshoots
+    is_small = abs(slope) <= largest_ratio*abs(start)
+  end function is_small
+
+  !> Return the fraction at which the secant vanishes, not too near to the ends.
+  pure real(wp) function between(short, beyond, slope_short, slope_beyond) result(fraction)
+    real(wp), intent(in) :: short, beyond, slope_short, slope_beyond
+
+    real(wp) :: part
+
+    part = 0.5_wp
+    if (abs(slope_short - slope_beyond) > 0.0_wp) part = slope_short/(slope_short - slope_beyond)
+    fraction = short + min(max(part, margin), 1.0_wp - margin)*(beyond - short)
+  end function between
 
   !> Whether the iterations do not approach a solution: far from it for long, without contraction.
   pure logical function is_lost(norm)

@@ -46,8 +46,6 @@ module dd3_process_step_control
   real(wp), parameter :: cutback_factor = 0.5_wp, cutback_min = 1.0e-5_wp
   !> Factor on the bound after an accepted increment, and the value above which it is removed.
   real(wp), parameter :: growth = 1.5_wp, largest_r_cap = 1.0e3_wp
-  !> Smallest factor on r after an increment that took more iterations than the target.
-  real(wp), parameter :: smallest_factor = 0.5_wp
   !> Largest number of attempts up to which one beyond the early end of the phase is repeated.
   integer, parameter :: most_returns = 10
   !> Smallest increment of the progress of a phase.
@@ -93,30 +91,16 @@ contains
     attempt%number = attempt%number + 1
   end subroutine try_again
 
-  !> Set the bound of r after an accepted increment. A cut-back, or more iterations than the target,
-  !> set one, which every other increment raises; a failed increment leaves none, so that a restart
-  !> repeats its attempts.
-  pure subroutine set_next_r_cap(state, attempt, target_iterations)
+  !> Set the bound of r after an accepted increment: a cut-back sets one, which every other increment
+  !> raises; a failed increment leaves none, so that a restart repeats its attempts.
+  pure subroutine set_next_r_cap(state, attempt)
     !> With the bound of the increment.
     type(state_t), intent(inout) :: state
     !> Accepted.
     type(attempt_t), intent(in) :: attempt
-    !> 0 for none.
-    integer, intent(in) :: target_iterations
 
-    real(wp) :: factor
-
-    factor = growth
-    if (target_iterations > 0 .and. attempt%verdict%iterations > target_iterations) then
-      factor = max(smallest_factor, &
-          sqrt(real(target_iterations, wp)/real(attempt%verdict%iterations, wp)))
-      state%r_cap = attempt%limit%r
-      state%r_cap_by_iterations = .true.
-    else if (attempt%after_failure) then
-      state%r_cap = attempt%limit%r
-      state%r_cap_by_iterations = .false.
-    end if
-    if (state%r_cap < huge(1.0_wp)/growth) state%r_cap = state%r_cap*factor
+    if (attempt%after_failure) state%r_cap = attempt%limit%r
+    if (state%r_cap < huge(1.0_wp)/growth) state%r_cap = growth*state%r_cap
     if (state%r_cap > largest_r_cap) state%r_cap = huge(1.0_wp)
   end subroutine set_next_r_cap
 

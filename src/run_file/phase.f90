@@ -293,7 +293,6 @@ contains
     call json%add("tolerance", newton%tolerance)
     call json%add("iterations", newton%iterations)
     call json%add("cutback", newton%cutback)
-    call json%add("target_iterations", newton%target_iterations)
     call json%add("damping", newton%damping)
     call json%end_object()
   end subroutine add_newton

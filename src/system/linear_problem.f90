@@ -23,10 +23,6 @@ module dd3_system_linear_problem
     real(wp), allocatable :: tool_prescribed(:, :)
     !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
     real(wp), allocatable :: tool_residual(:)
-    !> I - E of the candidates in the reduced matrix, `(3, 3, n_contact)`, and their tools, 0 in a
-    !> gap, `(n_contact)`.
-    real(wp), allocatable :: remaining(:, :, :)
-    integer, allocatable :: contact_tool(:)
     !> Right-hand side of the reduced system, `(3*n_row)`.
     real(wp), allocatable :: rhs(:)
     !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
@@ -45,8 +41,6 @@ contains
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
-    allocate (self%remaining(3, 3, model%n_contact), source=0.0_wp)
-    allocate (self%contact_tool(model%n_contact), source=0)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
         source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)

@@ -23,7 +23,7 @@ module dd3_system_reduced
       start_tool_rows
   implicit none
   private
-  public :: reduce, reduce_equilibrium, contact_force_increment
+  public :: reduce, contact_force_increment
 
 contains
 
@@ -73,8 +73,6 @@ contains
 
     do c = 1, model%n_contact
       node = model%contact_node(c)
-      problem%remaining(:, :, c) = identity - contact%e(:, :, c)
-      problem%contact_tool(c) = 0
       if (contact%status(c) == status_gap) then
         problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - &
             problem%contact_residual(:, c)
@@ -101,11 +99,10 @@ contains
 
     node = model%contact_node(c)
     tool = contact%tool(c)
-    problem%contact_tool(c) = tool
     block = model%tool_row(tool)
     pressed = phase%pressed(tool)
     d = contact%d(:, :, c)
-    remaining = problem%remaining(:, :, c)
+    remaining = identity - contact%e(:, :, c)
     residual = node_residual(phase, problem, node, c)
     problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
     if (.not. pressed) then
@@ -146,35 +143,6 @@ contains
       call add_to_tool_row(reduced, block, row, block, -weight)
     end if
   end subroutine reduce_node
-
-  !> Set the right-hand side to that of the residual of equilibrium alone, in the reduced system
-  !> built last.
-  subroutine reduce_equilibrium(model, phase, problem)
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    !> Gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-
-    real(wp) :: residual(3), remaining(3)
-    integer :: node, c, tool, row
-
-    problem%rhs = 0.0_wp
-    do node = 1, model%n_node
-      residual = merge(0.0_wp, problem%residual(:, node), phase%prescribed(:, node))
-      problem%rhs(3*node - 2:3*node) = -residual
-      if (.not. phase%mixed) cycle
-      c = model%candidate_of(node)
-      if (c == 0) cycle
-      tool = problem%contact_tool(c)
-      if (tool == 0) cycle
-      remaining = matmul(problem%remaining(:, :, c), residual)
-      problem%rhs(3*node - 2:3*node) = -merge(0.0_wp, remaining, phase%prescribed(:, node))
-      if (.not. phase%pressed(tool)) cycle
-      row = 3*(model%tool_row(tool) - 1) + force_row(phase%direction(:, tool))
-      problem%rhs(row) = problem%rhs(row) &
-          + dot_product(phase%direction(:, tool), residual - remaining)
-    end do
-  end subroutine reduce_equilibrium
 
   !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
   !> equilibrium holds the unknown reaction, the contact force follows the contact law instead.

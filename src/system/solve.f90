@@ -10,7 +10,7 @@ module dd3_system_solve
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: solve_info_t, solve_reduced, solve_factorised
+  public :: solve_info_t, solve_reduced
 
   !> Work of the linear solver in an attempt.
   type :: solve_info_t
