@@ -17,28 +17,16 @@ module dd3_process_equilibrium
   use dd3_process_balance, only : balance_tools, tool_imbalance
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
-  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness, update_material
+  use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_load_stiffness, only : add_load_stiffness
-  use dd3_system_reduced, only : contact_force_increment, reduce_equilibrium
+  use dd3_system_reduced, only : read_step, reduce_equilibrium
   use dd3_system_round_off, only : attainable_residual
   use dd3_system_solve, only : solve_factorised, solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: equilibrium_t, unknowns_t
-
-  !> Unknowns of the increment, or a step of them.
-  type :: unknowns_t
-    !> Positions of the nodes, `(3, n_node)`, or displacements, mm.
-    real(wp), allocatable :: x(:, :)
-    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
-    real(wp), allocatable :: enhanced(:, :)
-    !> Contact forces, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda(:, :)
-    !> Displacements of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool(:, :)
-  end type unknowns_t
+  public :: equilibrium_t
 
   !> The problem. What it is built on is pointed to, as the procedures of an abstract problem have
   !> no argument for it; it must not outlive that.
@@ -245,11 +233,12 @@ contains
         where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x
       end if
       call system%profile%add(section_assembly)
-      call solve_reduced(system, model, phase, self%trial%x, self%solver, verdict)
+      call solve_reduced(system, model, trial, self%solver, verdict)
       if (first) call system%threads%end_iteration()
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
-      call set_step(self)
+      call read_step(system, model, trial, self%step)
+      self%step%enhanced = self%step%enhanced - system%enhanced%offset
     end associate
     self%linearisations = self%linearisations + 1
     if (self%model%phase(self%trial%phase)%newton%damping .and. &
@@ -268,26 +257,6 @@ contains
     end associate
   end subroutine keep_start
 
-  !> Set the step from the solution of the linear system.
-  subroutine set_step(self)
-    class(equilibrium_t), intent(inout) :: self
-
-    integer :: tool, row
-
-    associate (model => self%model, system => self%system, step => self%step, &
-        solution => self%system%problem%solution)
-      step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
-      step%enhanced = enhanced_response(system%enhanced, model, solution) - system%enhanced%offset
-      call contact_force_increment(model, model%phase(self%trial%phase), system%contact, &
-          self%trial%x, system%stiffness, system%problem, step%lambda)
-      step%tool = 0.0_wp
-      do tool = 1, model%n_tool
-        row = model%tool_row(tool)
-        if (row > 0) step%tool(:, tool) = solution(3*row - 2:3*row)
-      end do
-    end associate
-  end subroutine set_step
-
   !> Scale a step with large displacement gradients.
   subroutine bound_step(self)
     class(equilibrium_t), intent(inout) :: self
@@ -297,13 +266,8 @@ contains
     gradient = displacement_gradient(self)
     largest = first_gradient*gradient_growth**(self%linearisations - 1)
     if (gradient <= largest) return
-    associate (step => self%step, factor => largest/gradient)
-      step%x = factor*step%x
-      step%enhanced = factor*step%enhanced
-      step%lambda = factor*step%lambda
-      step%tool = factor*step%tool
-      self%system%problem%solution = factor*self%system%problem%solution
-    end associate
+    self%step = self%step%scaled(largest/gradient)
+    self%system%problem%solution = largest/gradient*self%system%problem%solution
   end subroutine bound_step
 
   !> Return the largest difference of the step at two nodes of an element over their distance.
@@ -369,7 +333,7 @@ contains
     type(solver_report_t) :: report
 
     associate (system => self%system, phase => self%model%phase(self%trial%phase))
-      call reduce_equilibrium(self%model, phase, system%problem)
+      call reduce_equilibrium(system%problem, self%model, phase)
       call solve_factorised(system, left, self%solver, report)
       norm = 0.0_wp
       if (.not. report%converged .or. all(abs(left) <= 0.0_wp)) return

@@ -6,7 +6,7 @@ module dd3_process_increment
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_state, only : state_t
-  use dd3_process_equilibrium, only : equilibrium_t, unknowns_t
+  use dd3_process_equilibrium, only : equilibrium_t
   use dd3_process_external, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
   use dd3_process_newton, only : newton_converged, newton_diverging, newton_interrupted, &
@@ -63,9 +63,7 @@ contains
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*model%phase(committed%phase)%length
       trial%hint%due = .true.
-      associate (step => prediction%step)
-        call equilibrium%begin(unknowns_t(r*step%x, r*step%enhanced, r*step%lambda, r*step%tool))
-      end associate
+      call equilibrium%begin(prediction%step%scaled(r))
       call set_loads(model, trial)
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)

@@ -18,15 +18,14 @@ module dd3_process_predictor
   use dd3_model_phase, only : phase_t
   use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
-  use dd3_process_equilibrium, only : unknowns_t
   use dd3_process_external, only : unfaded_forces
   use dd3_system_contact, only : predictor_contact
-  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_drawbead, only : place_beads
   use dd3_system_load_stiffness, only : add_load_stiffness
+  use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_partition, only : partition_t
-  use dd3_system_reduced, only : contact_force_increment
+  use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -79,7 +78,7 @@ contains
     !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: switch, switched, tool, row
+    integer :: switch, switched
 
     associate (phase => model%phase(committed%phase), &
         unloading => model%phase(committed%phase)%limits%unloading)
@@ -96,25 +95,16 @@ contains
         call assemble_stiffness(system, model, committed)
         call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
-        call solve_reduced(system, model, phase, committed%x, solver, verdict)
+        call solve_reduced(system, model, committed, solver, verdict)
         if (verdict%outcome /= verdict_converged) return
         call system%profile%start()
-        self%step%x(:, :) = reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
-        self%step%enhanced(:, :) = enhanced_response(system%enhanced, model, &
-            system%problem%solution)
+        call read_step(system, model, committed, self%step)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, system%partition, switched)
         if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
       end do
-      call contact_force_increment(model, phase, system%contact, committed%x, system%stiffness, &
-          system%problem, self%step%lambda)
       where (spread(system%contact%status == status_gap, 1, 3)) self%step%lambda = 0.0_wp
-      self%step%tool = system%problem%tool_prescribed
-      do tool = 1, model%n_tool
-        row = 3*model%tool_row(tool)
-        if (phase%pressed(tool)) self%step%tool(:, tool) = system%problem%solution(row - 2:row)
-      end do
     end associate
   end subroutine predict
 
