@@ -7,9 +7,8 @@ module dd3_model_phases
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
-  use dd3_model_loads, only : face_load_weights, load_set_t
+  use dd3_model_loads, only : face_load_weights, load_set_t, pressure_set_t
   use dd3_model_model, only : model_t
-  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   implicit none
@@ -18,9 +17,6 @@ module dd3_model_phases
 
   !> Default height of the contact layer over the thickness.
   real(wp), parameter :: default_layer = 0.02_wp
-  !> Largest tolerance of the corrector when all tools are released: the residual stresses, by which
-  !> the criterion is scaled, are far larger than those that bend a slender sheet.
-  real(wp), parameter :: release_tolerance = 1.0e-5_wp
 
 contains
 
@@ -171,8 +167,6 @@ contains
     do t = 1, merge(size(phase%active), 0, spec%unload)
       call stop_pressing(phase, t, .false.)
     end do
-    if (size(phase%active) > 0 .and. .not. any(phase%active)) &
-        phase%newton%tolerance = min(phase%newton%tolerance, release_tolerance)
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return

@@ -5,6 +5,7 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   implicit none
@@ -132,6 +133,7 @@ module dd3_model_state
     type(phase_start_t) :: start
   contains
     procedure :: placement
+    procedure :: touches
   end type state_t
 
 contains
@@ -143,6 +145,14 @@ contains
 
     placement%translation = self%tool_displacement(:, tool)
   end function placement
+
+  !> Whether a tool is in contact.
+  pure logical function touches(self, tool)
+    class(state_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    touches = any(self%contact_tool == tool .and. self%status /= status_gap)
+  end function touches
 
   !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
   subroutine new_state(self, model)

@@ -7,7 +7,6 @@ module dd3_model_tool_depth
   use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_curvature, only : smallest_radius
-  use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -71,8 +70,7 @@ contains
     state%tool_depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
-      state%touched(tool) = state%touched(tool) .or. &
-          any(state%contact_tool == tool .and. state%status /= status_gap)
+      state%touched(tool) = state%touched(tool) .or. state%touches(tool)
       found = measure_tool_depth(model, state, tool)
       state%tool_depth(tool) = found%depth
       if (found%depth <= state%largest_depth(tool)) cycle

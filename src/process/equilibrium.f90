@@ -1,9 +1,7 @@
 !> Equilibrium of a trial state, as the problem that the corrector solves: element forces, loads,
 !> contact and supports, with all non-linearities (plasticity, large rotations, contact, friction)
 !> in one residual.
-!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
-!> scaled by the norm of the internal forces where it exceeds that of the contact forces, and such
-!> that a residual that is round-off has converged.
+!> Source: Menezes and Teodosiu 2000.
 module dd3_process_equilibrium
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
@@ -14,14 +12,13 @@ module dd3_process_equilibrium
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
-  use dd3_process_balance, only : balance_tools, tool_imbalance
+  use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
-  use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
+  use dd3_process_norm, only : evaluate_norm, residual_t, tool_imbalance
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : read_step, reduce_equilibrium
-  use dd3_system_round_off, only : attainable_residual
   use dd3_system_solve, only : solve_factorised, solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -41,9 +38,7 @@ module dd3_process_equilibrium
     type(unknowns_t) :: start, step
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
-    !> Residual, and its scaled norm.
     type(residual_t) :: residual
-    real(wp) :: norm = 0.0_wp
     !> Number of linearisations in this increment.
     integer, private :: linearisations = 0
     !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
@@ -55,8 +50,6 @@ module dd3_process_equilibrium
   contains
     procedure :: begin
     procedure :: evaluate
-    procedure :: scaled_norm
-    procedure :: residual_norm
     procedure :: is_admissible
     procedure :: linearise
     procedure :: apply
@@ -65,14 +58,6 @@ module dd3_process_equilibrium
     procedure :: changing
   end type equilibrium_t
 
-  !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
-  !> sheet at rest all forces are round-off.
-  real(wp), parameter :: negligible_strain = 1.0e-6_wp
-  !> Residual over the scale above which it is not round-off.
-  real(wp), parameter :: largest_round_off = 1.0e-3_wp
-  !> Weight of the balance of a pressed tool in the norm: what is off at the end of an increment is
-  !> a step in the force of the next.
-  real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Number of steps in an increment that are bounded, in which the contact status of the prediction
@@ -119,83 +104,13 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
-      call set_norm(self, .not. with_stiffness)
-      call system%partition%check_agreement(self%norm, verdict)
+      call evaluate_norm(self%model, self%committed, self%trial, system, self%step, &
+          .not. with_stiffness, self%residual)
+      self%scaled_norm = self%residual%scaled
+      self%residual_norm = self%residual%norm
+      call system%partition%check_agreement(self%scaled_norm, verdict)
     end associate
   end subroutine evaluate
-
-  !> Set the scaled norm: the criterion of convergence, or the imbalance of a pressed tool if that
-  !> is larger and the criterion has met the tolerance.
-  subroutine set_norm(self, balance)
-    class(equilibrium_t), intent(inout) :: self
-    !> Whether the tools are balanced first.
-    logical, intent(in) :: balance
-
-    logical :: moved
-
-    associate (model => self%model, trial => self%trial, system => self%system, &
-        tolerance => self%model%phase(self%trial%phase)%newton%tolerance)
-      call evaluate_norm(model, trial, system, self%residual)
-      self%norm = criterion(self)
-      if (self%norm >= tolerance) return
-      moved = .false.
-      if (balance .and. model%phase(trial%phase)%mixed) call balance_tools(model, self%committed, &
-          trial, system, moved)
-      if (moved) then
-        call evaluate_norm(model, trial, system, self%residual)
-        self%norm = criterion(self)
-      end if
-      self%norm = max(self%norm, tool_weight*tool_imbalance(model, trial, system))
-    end associate
-  end subroutine set_norm
-
-  !> Return the criterion of convergence, eq. (19).
-  real(wp) function criterion(self)
-    class(equilibrium_t), intent(in) :: self
-
-    real(wp) :: force, scale
-
-    associate (trial => self%trial, system => self%system, model => self%model)
-      force = norm2(self%step%lambda) + self%residual%norm
-      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-          negligible_strain*model%least_shear()*model%thickness**2)
-      associate (tolerance => model%phase(trial%phase)%newton%tolerance)
-        if (force >= tolerance*scale .and. force < largest_round_off*scale) scale = max(scale, &
-            round_off_of_forces(self)/tolerance)
-      end associate
-      criterion = force/scale
-    end associate
-  end function criterion
-
-  !> Return the norm of the residual below which it is round-off, N. In the compliant formulation
-  !> the reduced matrix is that of the sheet and the contact layers.
-  real(wp) function round_off_of_forces(self) result(residual)
-    class(equilibrium_t), intent(in) :: self
-
-    associate (system => self%system, trial => self%trial)
-      if (self%model%phase(trial%phase)%mixed) then
-        residual = attainable_residual(system%stiffness, trial%x, system%partition)
-      else
-        residual = attainable_residual(system%reduced, trial%x, system%partition)
-      end if
-    end associate
-  end function round_off_of_forces
-
-  !> Return the norm of residual and step over their scale.
-  function scaled_norm(self) result(norm)
-    class(equilibrium_t), intent(inout) :: self
-    real(wp) :: norm
-
-    norm = self%norm
-  end function scaled_norm
-
-  !> Return the norm of the residual, N.
-  function residual_norm(self) result(norm)
-    class(equilibrium_t), intent(inout) :: self
-    real(wp) :: norm
-
-    norm = self%residual%norm
-  end function residual_norm
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
   !> prescribed displacements have reached their positions.
@@ -205,7 +120,7 @@ contains
 
     associate (model => self%model, trial => self%trial, contact => self%system%contact, &
         problem => self%system%problem)
-      admissible = lost_tool(model, trial, contact) == 0 .and. &
+      admissible = lost_tool(model, trial) == 0 .and. &
           all(contact%distance + contact%onset >= -model%tolerance%depth .or. contact%tool == 0)
       if (problem%missed) admissible = admissible .and. all(abs(problem%target - trial%x) &
           <= model%tolerance%closed .or. .not. model%phase(trial%phase)%prescribed)
@@ -357,9 +272,9 @@ contains
     class(equilibrium_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
-    associate (model => self%model, trial => self%trial, contact => self%system%contact, &
+    associate (model => self%model, trial => self%trial, &
         phase => self%model%phase(self%trial%phase), imbalance => self%system%problem%tool_residual)
-      verdict%tool = lost_tool(model, trial, contact)
+      verdict%tool = lost_tool(model, trial)
       verdict%cause = cause_lost_tool
       if (verdict%tool > 0) return
       verdict%node = self%residual%worst_node
@@ -369,7 +284,7 @@ contains
       if (self%changing() > 0) return
       verdict%cause = cause_residual
       verdict%value(1) = self%residual%worst
-      if (tool_weight*tool_imbalance(model, trial, self%system) < self%norm) return
+      if (tool_imbalance(model, trial, self%system) < self%scaled_norm) return
       verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
       if (verdict%tool == 0) return
       verdict%cause = cause_tool_force

@@ -25,18 +25,19 @@ module dd3_process_newton
 
   !> Problem F(u) = 0 with its trial solution u and the last step.
   type, abstract :: newton_problem_t
+    !> Norm of residual and step over their scale, which tells convergence, and norm of the residual
+    !> alone, at the trial solution.
+    real(wp) :: scaled_norm = 0.0_wp, residual_norm = 0.0_wp
   contains
     procedure(evaluate_interface), deferred :: evaluate
-    procedure(norm_interface), deferred :: scaled_norm
-    procedure(norm_interface), deferred :: residual_norm
     procedure(is_admissible_interface), deferred :: is_admissible
     procedure(linearise_interface), deferred :: linearise
     procedure(apply_interface), deferred :: apply
-    procedure(norm_interface), deferred :: correction_left
+    procedure(correction_left_interface), deferred :: correction_left
   end type newton_problem_t
 
   abstract interface
-    !> Evaluate the residual at the trial solution.
+    !> Evaluate the residual at the trial solution, and set the norms.
     subroutine evaluate_interface(self, with_stiffness, verdict)
       import :: newton_problem_t, verdict_t
       class(newton_problem_t), intent(inout) :: self
@@ -46,15 +47,13 @@ module dd3_process_newton
       type(verdict_t), intent(out) :: verdict
     end subroutine evaluate_interface
 
-    !> `scaled_norm`: return the norm of residual and step over their scale, which tells
-    !> convergence. `residual_norm`: return the norm of the residual alone. `correction_left`:
-    !> return the norm of the step that the last matrix assigns to the residual, over that of the
+    !> Return the norm of the step that the last matrix assigns to the residual, over that of the
     !> last step.
-    function norm_interface(self) result(norm)
+    function correction_left_interface(self) result(norm)
       import :: newton_problem_t, wp
       class(newton_problem_t), intent(inout) :: self
       real(wp) :: norm
-    end function norm_interface
+    end function correction_left_interface
 
     !> Whether the trial solution satisfies the conditions that are not in the norm.
     function is_admissible_interface(self) result(admissible)
@@ -126,8 +125,8 @@ contains
       course%outcome = newton_invalid
       call evaluate(problem, damping, before, course)
       if (course%verdict%outcome /= verdict_converged) return
-      course%norm = [course%norm, problem%scaled_norm()]
-      before = problem%residual_norm()
+      course%norm = [course%norm, problem%scaled_norm]
+      before = problem%residual_norm
       course%outcome = newton_converged
       if (j > 1 .and. course%norm(j) < tolerance) then
         if (problem%is_admissible()) return
@@ -173,7 +172,7 @@ contains
 
     overshoots = .false.
     if (iteration == 1) return
-    if (problem%residual_norm() <= before) return
+    if (problem%residual_norm <= before) return
     overshoots = problem%correction_left() > largest_ratio
   end function overshoots
 

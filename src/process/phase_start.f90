@@ -15,7 +15,7 @@ module dd3_process_phase_start
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
-  use dd3_process_external, only : evaluate_external
+  use dd3_process_forces, only : evaluate_external
   use dd3_process_phase_end, only : until_value
   use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   implicit none
@@ -270,7 +270,7 @@ contains
     real(wp) :: gap, facing
     integer :: k
 
-    if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
+    if (state%touches(tool)) return
     do k = 1, most_advances
       call gap_of_tool(model, tool, state, gap, facing)
       if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return

@@ -85,7 +85,7 @@ contains
     associate (phase => model%phase(state%phase))
       do tool = 1, model%n_tool
         if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
-        if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
+        if (state%touches(tool)) cycle
         call gap_of_tool(model, tool, state, gap, facing)
         if (facing > tangential .and. gap <= model%tolerance%touch) cycle
         text = "warning: in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &

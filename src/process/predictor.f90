@@ -12,13 +12,12 @@ module dd3_process_predictor
   use dd3_contact_operator, only : status_gap
   use dd3_element_work, only : element_work_t
   use dd3_model_contact_layer, only : offset_rate
-  use dd3_model_loads, only : fading_rate, nodal_forces
+  use dd3_model_loads, only : fading_rate
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
-  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
-  use dd3_process_external, only : unfaded_forces
+  use dd3_process_forces, only : applied_forces, unfaded_forces
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_drawbead, only : place_beads
@@ -123,10 +122,9 @@ contains
     faded = self%progress*fading_rate(committed%progress)
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
-      call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
-          faded*unfaded_forces(model, committed), problem%residual)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
-          -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
+      problem%residual = applied_forces(model, -factor*(start%load_end - start%load), &
+          -factor*(start%pressure_end - start%pressure), committed%x, &
+          faded*unfaded_forces(model, committed))
       call advance_layers(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)

@@ -5,8 +5,8 @@ module dd3_process_step_control
   use dd3_base_verdict, only : verdict_t
   use dd3_model_state, only : state_t
   use dd3_process_newton, only : newton_course_t
+  use dd3_process_norm, only : residual_t
   use dd3_process_open_edges, only : passage_t
-  use dd3_process_residual, only : residual_t
   use dd3_system_solve, only : solve_info_t
   implicit none
   private

@@ -4,9 +4,8 @@ module dd3_system_load_stiffness
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : position_of
   use dd3_linalg_tensor, only : identity
-  use dd3_model_loads, only : fading_factor, spring_stiffness
+  use dd3_model_loads, only : face_stiffness, fading_factor, spring_stiffness
   use dd3_model_model, only : model_t
-  use dd3_model_pressures, only : face_stiffness
   use dd3_model_state, only : state_t
   use dd3_system_drawbead, only : add_bead_stiffness
   use dd3_system_system, only : system_t
