@@ -23,10 +23,10 @@ module dd3_model_build
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
-  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
+  use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
+      rigid_motion_t
   use dd3_model_rim, only : set_rim
   use dd3_model_sheet_faces, only : new_sheet_faces
-  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
@@ -46,6 +46,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
+    integer :: i
 
     call set_title(model, case)
     call set_element(model, case, errors)
@@ -64,7 +65,10 @@ contains
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)
     if (errors%count > 0) return
-    call set_supports(model, case, mesh)
+    allocate (model%fixed(3, model%n_node), source=.false.)
+    do i = 1, size(case%boundary)
+      call mark_directions(model%fixed, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
+    end do
     call set_rim(model)
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
@@ -291,20 +295,6 @@ contains
     end do
   end function is_one_layer
 
-  !> Set the supports that hold in every phase.
-  subroutine set_supports(model, case, mesh)
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    type(mesh_t), intent(in) :: mesh
-
-    integer :: b
-
-    allocate (model%fixed(3, model%n_node), source=.false.)
-    do b = 1, size(case%boundary)
-      call mark_directions(model%fixed, mesh%nodes_of(case%boundary(b)%set), case%boundary(b)%fix)
-    end do
-  end subroutine set_supports
-
   !> Set the outputs and the node sets of history.csv.
   subroutine set_output(model, case, mesh)
     type(model_t), intent(inout) :: model
@@ -326,13 +316,8 @@ contains
     end select
     allocate (model%history(size(case%history)))
     do h = 1, size(case%history)
-      model%history(h)%name = case%history(h)%name
+      model%history(h)%history_spec_t = case%history(h)
       model%history(h)%node = mesh%nodes_of(case%history(h)%set)
-      model%history(h)%displacement = case%history(h)%displacement
-      model%history(h)%reaction = case%history(h)%reaction
-      model%history(h)%position = case%history(h)%position
-      model%history(h)%moment = case%history(h)%moment
-      model%history(h)%draw_in = case%history(h)%draw_in
     end do
   end subroutine set_output
 

@@ -72,6 +72,10 @@ contains
       end associate
     end do
     call move_alloc(candidate, model%candidate)
+    ! A point lies on the first of its faces.
+    do f = size(model%contact_face), 1, -1
+      model%contact_point(model%face_point(:, f))%element = model%face%element(model%contact_face(f))
+    end do
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)
   end subroutine set_contact_points
@@ -118,7 +122,6 @@ contains
     associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
       if (size(node) > 4) then
         face_point_number = model%candidate_of(node)
-        call set_missing(list%point%element, face_point_number, model%face%element(f))
         return
       end if
       number(0, 0) = model%candidate_of(corner(1))
@@ -139,7 +142,6 @@ contains
         end do
       end if
       face_point_number = reshape(number, [size(number)])
-      call set_missing(list%point%element, face_point_number, model%face%element(f))
     end associate
 
   contains
@@ -183,18 +185,6 @@ contains
     end subroutine add_edge
 
   end subroutine add_face
-
-  !> Set the element of the points that have none yet.
-  pure subroutine set_missing(of_point, number, element)
-    integer, intent(inout) :: of_point(:)
-    integer, intent(in) :: number(:), element
-
-    integer :: i
-
-    do i = 1, size(number)
-      if (of_point(number(i)) == 0) of_point(number(i)) = element
-    end do
-  end subroutine set_missing
 
   !> Set the nodes opposite to those of the contact faces, across their elements.
   subroutine set_opposites(model)
@@ -278,23 +268,6 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the nodes of a face with eight or nine of them, mm2: their weights, times
-  !> the Jacobian there.
-  pure function areas_of_many(weight, x) result(area)
-    real(wp), intent(in) :: weight(:)
-    !> Corners, mm.
-    real(wp), intent(in) :: x(3, 4)
-    real(wp) :: area(size(weight))
-
-    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1]
-    integer, parameter :: row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
-    real(wp) :: jacobian(0:2, 0:2)
-    integer :: i
-
-    jacobian = jacobians(2, x)
-    area = weight*[(jacobian(column(i), row(i)), i=1, size(weight))]
-  end function areas_of_many
-
   !> Return the areas of the contact points, `(n_contact)`, mm2; zero for a node without contact
   !> faces.
   pure function point_areas(model, x) result(area)
@@ -337,7 +310,8 @@ contains
     end do
   end function nodal_areas
 
-  !> Return the areas of the points of a contact face, in the order of `face_point`, mm2.
+  !> Return the areas of the points of a contact face, in the order of `face_point`, mm2: those of a
+  !> face with eight or nine nodes are their weights, times the Jacobian there.
   pure function areas_of_face(model, x, f, divisions) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
@@ -348,9 +322,16 @@ contains
     integer, intent(in) :: divisions
     real(wp), allocatable :: area(:)
 
+    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1]
+    integer, parameter :: row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
+    real(wp) :: jacobian(0:2, 0:2)
+    integer :: i
+
     associate (corner => x(:, model%face%corner(:, model%contact_face(f))))
       if (model%element%n_face_node > 4) then
-        area = areas_of_many(model%element%face_weight, corner)
+        jacobian = jacobians(2, corner)
+        area = model%element%face_weight &
+            *[(jacobian(column(i), row(i)), i=1, model%element%n_face_node)]
       else
         area = areas_of_parts(divisions, corner)
       end if

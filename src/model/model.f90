@@ -4,6 +4,7 @@ module dd3_model_model
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
+  use dd3_input_case, only : history_spec_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
   use dd3_model_contact_point, only : contact_point_t
@@ -17,14 +18,9 @@ module dd3_model_model
   private
   public :: model_t, history_set_t, output_t
 
-  !> Node set with quantities in history.csv.
-  type :: history_set_t
-    !> Name of the block, prefix of its columns.
-    character(len=:), allocatable :: name
+  !> Node set with quantities in history.csv; its name is the prefix of their columns.
+  type, extends(history_spec_t) :: history_set_t
     integer, allocatable :: node(:)
-    !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
-    logical :: draw_in = .false.
   end type history_set_t
 
   !> Output and its intervals.

@@ -97,21 +97,6 @@ contains
     if (allocated(phase%press_table)) deallocate (phase%press_table)
   end subroutine new_phase_after
 
-  !> Set the table of the forces on pressed tools; the force of the start is its first point.
-  pure subroutine set_press_table(pairs, phase)
-    !> Progress and factor on the force of `press`, in pairs.
-    real(wp), intent(in) :: pairs(:)
-    type(phase_t), intent(inout) :: phase
-
-    integer :: n
-
-    n = size(pairs)/2
-    allocate (phase%press_table(3, n + 1), source=0.0_wp)
-    phase%press_table(2, 1) = 1.0_wp
-    phase%press_table(1, 2:) = pairs(1::2)
-    phase%press_table(3, 2:) = pairs(2::2)
-  end subroutine set_press_table
-
   !> Set name, control, limits and end.
   subroutine set_settings(model, spec, phase)
     type(model_t), intent(in) :: model
@@ -124,7 +109,13 @@ contains
     phase%newton = spec%newton
     phase%until = spec%until
     if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
-    if (size(spec%press_table) > 0) call set_press_table(spec%press_table, phase)
+    if (size(spec%press_table) > 0) then
+      ! The force of the start is the first point.
+      allocate (phase%press_table(3, size(spec%press_table)/2 + 1), source=0.0_wp)
+      phase%press_table(2, 1) = 1.0_wp
+      phase%press_table(1, 2:) = spec%press_table(1::2)
+      phase%press_table(3, 2:) = spec%press_table(2::2)
+    end if
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%mixed = spec%contact%mixed
     phase%layer = spec%contact%layer
@@ -150,7 +141,8 @@ contains
       t = spec%move(i)%tool
       call stop_pressing(phase, t, .true.)
       phase%move(:, t) = spec%move(i)%vector
-      if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
+      if (norm2(phase%move(:, t)) > 0.0_wp) &
+          phase%direction(:, t) = phase%move(:, t)/norm2(phase%move(:, t))
     end do
     do i = 1, size(spec%gap)
       t = spec%gap(i)%tool
@@ -192,7 +184,7 @@ contains
     integer, intent(in) :: tool
     real(wp), intent(in) :: force(3)
 
-    if (norm2(force) > 0.0_wp) phase%direction(:, tool) = unit(force)
+    if (norm2(force) > 0.0_wp) phase%direction(:, tool) = force/norm2(force)
     phase%pressed(tool) = .true.
     phase%active(tool) = .true.
     phase%keeps_tool_load(tool) = .false.
@@ -267,26 +259,24 @@ contains
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    type(pressure_set_t), allocatable :: set(:)
+    type(pressure_set_t) :: set
     logical :: member(mesh%n_node), inside(model%face%n)
-    integer :: i, j, n, s, f
+    integer :: i, j, s, f
 
-    allocate (set(sum([(size(case%phase(i)%pressure), i=1, size(case%phase))])))
-    n = 0
+    allocate (model%pressure_set(0))
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%pressure)
         associate (name => case%phase(i)%pressure(j)%set)
-          if (any([(set(s)%name == name, s=1, n)])) cycle
-          n = n + 1
-          set(n)%name = name
+          if (any([(model%pressure_set(s)%name == name, s=1, size(model%pressure_set))])) cycle
+          set%name = name
           member = .false.
           member(mesh%nodes_of(name)) = .true.
           inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
-          set(n)%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
+          set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
+          model%pressure_set = [model%pressure_set, set]
         end associate
       end do
     end do
-    model%pressure_set = set(:n)
   end subroutine new_pressure_sets
 
   !> List the sets that carry a load in some phase, in the order of the phases.
@@ -295,24 +285,21 @@ contains
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    type(load_set_t), allocatable :: set(:)
-    integer :: i, j, n
+    type(load_set_t) :: set
+    integer :: i, j
 
-    allocate (set(sum([(size(case%phase(i)%load), i=1, size(case%phase))])))
-    n = 0
+    allocate (model%load_set(0))
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%load)
         associate (name => case%phase(i)%load(j)%set)
-          if (find_load_set(set(:n), name) > 0) cycle
-          n = n + 1
-          set(n)%name = name
-          set(n)%node = mesh%nodes_of(name)
-          call face_load_weights(model%element, model%connectivity, model%x0, set(n)%node, &
-              set(n)%weight)
+          if (find_load_set(model%load_set, name) > 0) cycle
+          set%name = name
+          set%node = mesh%nodes_of(name)
+          call face_load_weights(model%element, model%connectivity, model%x0, set%node, set%weight)
+          model%load_set = [model%load_set, set]
         end associate
       end do
     end do
-    model%load_set = set(:n)
   end subroutine new_load_sets
 
   !> Return the position of a set; 0 if it is not among them.
@@ -324,14 +311,6 @@ contains
       if (set(s)%name == name) return
     end do
   end function find_load_set
-
-  !> Return a vector scaled to length one.
-  pure function unit(vector)
-    real(wp), intent(in) :: vector(3)
-    real(wp) :: unit(3)
-
-    unit = vector/norm2(vector)
-  end function unit
 
   !> Set the displacements at which tools have the gaps of the input.
   subroutine set_gaps(model, case, errors)

@@ -7,7 +7,7 @@ module dd3_model_settings_report
   use dd3_input_case, only : limit_spec_t
   use dd3_model_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_model, only : model_t
-  use dd3_model_penalty, only : contact_penalty
+  use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_phase, only : phase_t
   implicit none
   private

@@ -249,8 +249,9 @@ contains
     type(face_t), intent(in) :: face
     integer, intent(in) :: tool, k
 
-    real(wp) :: point(3), depth
+    real(wp) :: point(3), normal(3), depth
     integer :: i, j
+    logical :: regular
 
     associate (patch => model%tool(tool)%surface%patch(k))
       do j = 0, n_sample
@@ -261,7 +262,8 @@ contains
           if (any(point < face%lower .or. point > face%upper)) cycle
           call locate(face, point, depth)
           if (depth <= self%depth .or. depth > face%search_depth) cycle
-          if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
+          call normal_at(patch, real(i, wp)/n_sample, real(j, wp)/n_sample, normal, regular)
+          if (.not. regular .or. dot_product(normal, face%normal) >= -facing) cycle
           if (depth > face%thickness) then
             if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
           end if
@@ -314,19 +316,6 @@ contains
       return
     end do
   end subroutine locate
-
-  !> Whether the tool faces the sheet at a point of a patch.
-  pure logical function enters(patch, face, uv)
-    type(patch_t), intent(in) :: patch
-    type(face_t), intent(in) :: face
-    !> Parameters of the point.
-    real(wp), intent(in) :: uv(2)
-
-    real(wp) :: normal(3)
-
-    call normal_at(patch, uv(1), uv(2), normal, enters)
-    enters = enters .and. dot_product(normal, face%normal) < -facing
-  end function enters
 
   !> Whether a point of a face is inside the tool: a part of the tool deeper than the thickness may
   !> be one behind the sheet.

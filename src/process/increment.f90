@@ -15,8 +15,7 @@ module dd3_process_increment
   use dd3_process_open_edges, only : find_passage, observe_passages
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
-  use dd3_process_step_control, only : attempt_t, set_next_r_cap
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
   use dd3_process_work, only : add_work
   use dd3_system_partition, only : share_state
   use dd3_system_linear_problem, only : linear_problem_t

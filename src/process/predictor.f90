@@ -10,7 +10,6 @@ module dd3_process_predictor
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
-  use dd3_element_work, only : element_work_t
   use dd3_model_contact_layer, only : offset_rate
   use dd3_model_loads, only : fading_rate
   use dd3_model_model, only : model_t
@@ -216,41 +215,30 @@ contains
     !> Provides the workspaces.
     type(system_t), intent(inout) :: system
 
+    type(verdict_t) :: verdict
     integer :: e, thread
 
-    !$omp parallel num_threads(model%element_threads()) private(e, thread)
+    !$omp parallel num_threads(model%element_threads()) private(e, thread, verdict)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     !$omp do
     do e = 1, model%n_element
       if (.not. system%partition%evaluated(e)) cycle
-      call element_increments(self, model, committed, e, system%element(thread))
+      associate (nodes => model%connectivity(:, e), element => model%element, &
+          work => system%element(thread))
+        work%x_committed(:, :) = committed%x(:, nodes)
+        work%enhanced(:) = self%step%enhanced(:, e)
+        work%x_initial(:, :) = model%x0(:, nodes)
+        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+        call element%evaluate_rate(element, self%step%x(:, nodes), &
+            committed%orientation(:, :, :, e), work)
+        self%strain(:, :, e) = work%strain_increment
+        self%rotation(:, e) = work%rotation_increment
+      end associate
     end do
     !$omp end do
     !$omp end parallel
   end subroutine point_increments
-
-  !> Evaluate those of one element.
-  subroutine element_increments(self, model, committed, e, work)
-    type(prediction_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    integer, intent(in) :: e
-    type(element_work_t), intent(inout) :: work
-
-    type(verdict_t) :: verdict
-
-    associate (nodes => model%connectivity(:, e), element => model%element)
-      work%x_committed(:, :) = committed%x(:, nodes)
-      work%enhanced(:) = self%step%enhanced(:, e)
-      work%x_initial(:, :) = model%x0(:, nodes)
-      call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
-      call element%evaluate_rate(element, self%step%x(:, nodes), &
-          committed%orientation(:, :, :, e), work)
-      self%strain(:, :, e) = work%strain_increment
-      self%rotation(:, e) = work%rotation_increment
-    end associate
-  end subroutine element_increments
 
   !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
   subroutine switch_unloading(self, model, committed, partition, switched)

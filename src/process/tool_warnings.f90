@@ -3,7 +3,7 @@
 !> points between nodes, crossed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : text_t, to_text
+  use dd3_base_text, only : append, text_t, to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_tool, only : find_on_tool
@@ -13,7 +13,7 @@ module dd3_process_tool_warnings
   use dd3_process_tool_crossing, only : crossing_t, find_crossing
   implicit none
   private
-  public :: tool_warnings
+  public :: add_tool_warnings
 
   !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
   !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
@@ -23,46 +23,42 @@ module dd3_process_tool_warnings
 
 contains
 
-  !> Return the warnings, one line each.
-  subroutine tool_warnings(model, state, ended, warnings)
+  !> Add the warnings, one line each.
+  subroutine add_tool_warnings(model, state, ended, warnings)
     type(model_t), intent(in) :: model
     !> Last state of the phase.
     type(state_t), intent(in) :: state
     !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
     logical, intent(in) :: ended
-    type(text_t), allocatable, intent(out) :: warnings(:)
+    type(text_t), allocatable, intent(inout) :: warnings(:)
 
     integer :: a, b
 
-    allocate (warnings(0))
     associate (active => model%phase(state%phase)%active)
       do a = 1, model%n_tool
         if (.not. active(a)) cycle
-        if (ended) call add(warnings, model, state, contact_warning(model, state, a))
-        call add(warnings, model, state, depth_warning(model, state, a))
-        call add(warnings, model, state, edge_warning(model, state, a))
+        if (ended) call add(contact_warning(model, state, a))
+        call add(depth_warning(model, state, a))
+        call add(edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (.not. active(b)) cycle
-          call add(warnings, model, state, crossing_warning(model, state, a, b))
-          call add(warnings, model, state, ironing_warning(model, state, a, b))
+          call add(crossing_warning(model, state, a, b))
+          call add(ironing_warning(model, state, a, b))
         end do
       end do
     end associate
-  end subroutine tool_warnings
 
-  !> Add a warning that is not empty.
-  subroutine add(warnings, model, state, message)
-    type(text_t), allocatable, intent(inout) :: warnings(:)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    character(len=*), intent(in) :: message
+  contains
 
-    type(text_t) :: warning
+    !> Add a warning that is not empty.
+    subroutine add(message)
+      character(len=*), intent(in) :: message
 
-    if (len(message) == 0) return
-    warning%s = "warning: in phase '"//model%phase(state%phase)%name//"' "//message
-    warnings = [warnings, warning]
-  end subroutine add
+      if (len(message) > 0) call append(warnings, &
+          "warning: in phase '"//model%phase(state%phase)%name//"' "//message)
+    end subroutine add
+
+  end subroutine add_tool_warnings
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
   function contact_warning(model, state, tool) result(text)

@@ -15,6 +15,7 @@ module dd3_system_point_rows
   use dd3_model_contact_point, only : contact_point_t, most_point_nodes
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
   use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_system, only : system_t
@@ -151,23 +152,22 @@ contains
   end subroutine eliminate
 
   !> Set the increments of the forces of the points.
-  pure subroutine set_point_forces(system, model, x, step)
+  pure subroutine set_point_forces(system, model, state, step)
     type(system_t), intent(in) :: system
     type(model_t), intent(in) :: model
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
+    type(state_t), intent(in) :: state
     !> Has the displacements.
     type(unknowns_t), intent(inout) :: step
 
     real(wp) :: weight(3, 3), stiffness(3, 3)
     integer :: c
 
-    step%lambda = -system%contact%lambda
+    step%lambda = -state%lambda
     do c = 1, model%n_contact
       if (system%contact%status(c) == status_gap) cycle
       call eliminate(system%contact, c, weight, stiffness)
       step%lambda(:, c) = matmul(weight, system%problem%contact_residual(:, c)) &
-          + matmul(stiffness, model%contact_point(c)%change(x, step%x) &
+          + matmul(stiffness, model%contact_point(c)%change(state%x, step%x) &
           - step%tool(:, system%contact%tool(c)))
     end do
   end subroutine set_point_forces

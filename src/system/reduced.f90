@@ -217,26 +217,26 @@ contains
         if (phase%pressed(tool)) step%tool(:, tool) = solution(row - 2:row)
       end do
       if (phase%mixed) then
-        call set_node_forces(system, model, phase, step)
+        call set_node_forces(system, model, state, step)
       else
-        call set_point_forces(system, model, state%x, step)
+        call set_point_forces(system, model, state, step)
       end if
     end associate
   end subroutine read_step
 
   !> Set the increments of the contact forces of the nodes: dlambda_A = -r_A - K_A du.
-  subroutine set_node_forces(system, model, phase, step)
+  subroutine set_node_forces(system, model, state, step)
     type(system_t), intent(in) :: system
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
     !> Has the displacements.
     type(unknowns_t), intent(inout) :: step
 
     real(wp) :: change(3)
     integer :: c, node, k
 
-    step%lambda = -system%contact%lambda
-    associate (stiffness => system%stiffness)
+    step%lambda = -state%lambda
+    associate (stiffness => system%stiffness, phase => model%phase(state%phase))
       do c = 1, model%n_contact
         node = model%contact_node(c)
         if (.not. holds_row(stiffness, node)) step%lambda(:, c) = 0.0_wp
