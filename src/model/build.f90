@@ -4,7 +4,8 @@ module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t, location_t
   use dd3_base_text, only : text_buffer_t, to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hit_t
+  use dd3_contact_placement, only : placement_t
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_work, only : element_work_t, new_element_work
@@ -16,7 +17,8 @@ module dd3_model_build
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
-  use dd3_model_contact_points, only : find_contact_faces, set_contact_points
+  use dd3_model_candidate_search, only : candidate_hits
+  use dd3_model_contact_points, only : set_contact_points
   use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
@@ -209,6 +211,7 @@ contains
 
     type(element_work_t) :: work
     type(verdict_t) :: verdict
+    type(location_t) :: at
     integer :: e, i
 
     model%n_node = mesh%n_node
@@ -229,20 +232,13 @@ contains
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
-      call errors%push_input(sheet_location(case), "element "//to_text(e)// &
+      if (size(case%blank) > 0) at = case%blank(1)%source%opened
+      if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
+      call errors%push_input(at, "element "//to_text(e)// &
           " has no volume", "a sheet whose node lines do not cross")
       return
     end do
   end subroutine set_mesh
-
-  !> Return where the sheet is defined.
-  function sheet_location(case) result(at)
-    type(case_t), intent(in) :: case
-    type(location_t) :: at
-
-    if (size(case%blank) > 0) at = case%blank(1)%source%opened
-    if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
-  end function sheet_location
 
   !> Number the contact candidates, and the block rows of the tools that are pressed in some phase.
   subroutine find_candidates(model, case, mesh, errors)
@@ -260,7 +256,6 @@ contains
     do t = 1, model%n_tool
       member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
     end do
-    call find_contact_faces(model, member)
     points = case%contact%points
     if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
         case%contact%points_at, "points between the nodes need a sheet of one layer of "// &
@@ -328,39 +323,30 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    real(wp) :: deepest, nearest
-    integer :: c, t, node, worst
+    type(hit_t), allocatable :: hit(:)
+    integer :: c, t, nearest, worst
 
     do t = 1, model%n_tool
-      deepest = -start_depth
-      nearest = model%tolerance%start_search
-      worst = 0
-      do c = 1, model%n_contact
-        if (.not. model%candidate(t, c)) cycle
-        node = model%contact_node(c)
-        hint = hint_t()
-        call find_contact(model%tool(t)%surface, model%point_position(c, model%x0) &
-            - model%tool(t)%position, hint, model%tolerance%start_search, &
-            model%tolerance%start_search, hit)
-        if (.not. hit%found) cycle
-        if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
-        if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth* &
-            model%thickness_at(node)) cycle
-        deepest = hit%distance
-        worst = node
-      end do
-      if (worst == 0 .and. nearest < -start_depth) then
+      associate (distance => model%tolerance%start_search)
+        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), model%x0, &
+            distance, distance)
+      end associate
+      nearest = minloc(abs(hit%distance), dim=1, mask=hit%found)
+      worst = minloc(hit%distance, dim=1, mask=hit%found .and. hit%distance < -start_depth &
+          .and. hit%distance >= [(-wrong_side_depth*model%thickness_at(model%contact_node(c)), &
+          c=1, model%n_contact)])
+      if (worst == 0) then
+        if (nearest == 0) cycle
+        if (hit(nearest)%distance >= -start_depth) cycle
         call errors%push_input(case%tool(t)%source%opened, "tool '" &
             //case%tool(t)%source%called()//"' turns away from the sheet, "// &
-            to_text(-nearest, 4)//" mm off", &
+            to_text(-hit(nearest)%distance, 4)//" mm off", &
             "patches whose normals (the cross product of their u and v) point to the sheet")
+        cycle
       end if
-      if (worst == 0) cycle
       call errors%push_input(case%tool(t)%source%opened, "tool '"//case%tool(t)%source%called()// &
-          "' starts inside the sheet: node "//to_text(worst)//" is "//to_text(-deepest, 4)// &
-          " mm deep in it", &
+          "' starts inside the sheet: node "//to_text(model%contact_node(worst))//" is "// &
+          to_text(-hit(worst)%distance, 4)//" mm deep in it", &
           "a start no deeper than 0.001 mm (see position), normals that point to the sheet")
     end do
   end subroutine check_start

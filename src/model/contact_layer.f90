@@ -1,7 +1,7 @@
 !> Contact layer of the tools in the compliant formulation, and penalty in the mixed one. A tool may
-!> start at the sheet, inside the height of its layer. So that the sheet starts without pressure, the
-!> layer begins behind its place by what is missing, and advances to it over the first part of the
-!> phase. The penalty of the augmented Lagrangian does not change the converged solution; it weighs
+!> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
+!> the layer begins behind its place by what is missing, and advances to it over the first part of
+!> the phase. The penalty of the augmented Lagrangian does not change the converged solution; it weighs
 !> gap and slip against forces where the contact status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
@@ -110,7 +110,7 @@ contains
       layer = layer_at(model, phase, c)
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, layer%height, &
+          model%contact_point(c)%position(state%x), hint, layer%height, &
           model%tolerance%committed_depth + state%layer_offset(tool), hit, &
           border=border_at(model, phase, c))
       if (.not. hit%found) cycle
@@ -151,7 +151,7 @@ contains
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = hint_t()
           call find_on_tool(model%tool(t), state%placement(t), &
-              model%point_position(c, state%x), hint, layer%height, &
+              model%contact_point(c)%position(state%x), hint, layer%height, &
               model%tolerance%committed_depth + state%layer_offset(t), hit, &
               border=border_at(model, phase, c))
           if (.not. hit%found) cycle

@@ -9,7 +9,7 @@ module dd3_model_contact_points
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: set_contact_points, find_contact_faces, point_areas, nodal_areas
+  public :: set_contact_points, point_areas, nodal_areas
 
   !> Points of a list, each once.
   type :: point_list_t
@@ -21,21 +21,9 @@ module dd3_model_contact_points
 
 contains
 
-  !> Find the faces of the sheet whose nodes are all candidates of the same tool.
-  subroutine find_contact_faces(model, member)
-    type(model_t), intent(inout) :: model
-    !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
-    logical, intent(in) :: member(:, :)
-
-    integer :: f
-
-    model%contact_face = pack([(f, f=1, model%face%n)], &
-        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
-  end subroutine find_contact_faces
-
-  !> Set the contact points with their areas, stiffnesses and tools.
+  !> Set the contact faces, whose nodes are all candidates of the same tool, and the contact points
+  !> with their areas, stiffnesses and tools.
   subroutine set_contact_points(model, member, divisions)
-    !> Has its contact faces.
     type(model_t), intent(inout) :: model
     !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
     logical, intent(in) :: member(:, :)
@@ -43,9 +31,10 @@ contains
     integer, intent(in) :: divisions
 
     type(point_list_t) :: list
-    logical, allocatable :: candidate(:, :)
     integer :: i, c, f, most
 
+    model%contact_face = pack([(f, f=1, model%face%n)], &
+        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
     most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
     allocate (list%point(most))
     allocate (list%next(most), list%first(model%n_node), source=0)
@@ -65,16 +54,17 @@ contains
     model%n_contact = list%n
     model%contact_point = list%point(:list%n)
     model%contact_node = model%contact_point%node(1)
-    allocate (candidate(model%n_tool, list%n))
+    allocate (model%candidate(model%n_tool, list%n))
     do c = 1, list%n
       associate (point => model%contact_point(c))
-        candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
+        model%candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
       end associate
     end do
-    call move_alloc(candidate, model%candidate)
     ! A point lies on the first of its faces.
     do f = size(model%contact_face), 1, -1
-      model%contact_point(model%face_point(:, f))%element = model%face%element(model%contact_face(f))
+      associate (element => model%face%element(model%contact_face(f)))
+        model%contact_point(model%face_point(:, f))%element = element
+      end associate
     end do
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)

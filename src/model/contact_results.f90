@@ -83,7 +83,7 @@ contains
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = state%hint(t, c)
           call find_on_tool(model%tool(t), state%placement(t), &
-              model%point_position(c, state%x), hint, &
+              model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
               + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)

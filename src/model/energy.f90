@@ -72,7 +72,7 @@ contains
       offset = max(state%layer_offset(tool), state%start%held_offset(c))
       hint = state%hint(tool, c)
       call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, layer%height, &
+          model%contact_point(c)%position(state%x), hint, layer%height, &
           model%tolerance%committed_depth + offset, hit, &
           border=border_at(model, model%phase(state%phase), c))
     end associate

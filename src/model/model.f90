@@ -109,7 +109,6 @@ module dd3_model_model
     type(output_t) :: output
   contains
     procedure :: thickness_at
-    procedure :: point_position
     procedure :: nodal_contact_forces
     procedure :: largest_thickness
     procedure :: least_shear
@@ -126,18 +125,6 @@ contains
     thickness_at = self%thickness
     if (allocated(self%node_thickness)) thickness_at = self%node_thickness(node)
   end function thickness_at
-
-  !> Return the position of a contact point, mm.
-  pure function point_position(self, c, x) result(position)
-    class(model_t), intent(in) :: self
-    !> Number of the contact point.
-    integer, intent(in) :: c
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    real(wp) :: position(3)
-
-    position = self%contact_point(c)%position(x)
-  end function point_position
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
   !> contact points.

@@ -22,6 +22,7 @@ module dd3_model_tool_report
   integer, parameter :: most_faces = 500
   !> Least |m.n| of the normals of sheet and tool at which one faces the other.
   real(wp), parameter :: facing = 0.5_wp
+  real(wp), parameter :: degree = pi/180.0_wp
 
 contains
 
@@ -54,7 +55,7 @@ contains
           counted(n_t, "T-junction", "T-junctions")
       if (n_t > 0) text = text//" ("//lines(patch(report%t_patch(:, 1))%line)//")"
       text = text//", "//counted(report%n_kink, "kink", "kinks")
-      if (report%n_kink > 0) text = text//" (up to "//to_text(report%largest_kink/(pi/180.0_wp), 3)// &
+      if (report%n_kink > 0) text = text//" (up to "//to_text(report%largest_kink/degree, 3)// &
           " degrees, "//lines(patch(report%kink_patch)%line)//")"
       text = text//", "//counted(report%n_pole, "pole", "poles")
     end associate

@@ -156,25 +156,14 @@ contains
       call problem%evaluate(course%iterations == 1, course%verdict)
       if (.not. damping .or. k == most_halvings) return
       if (course%verdict%outcome == verdict_converged) then
-        if (.not. overshoots(problem, course%iterations, before)) return
+        ! The step to the first iteration has no matrix.
+        if (course%iterations == 1 .or. problem%residual_norm <= before) return
+        if (problem%correction_left() <= largest_ratio) return
       end if
       course%halved = course%halved + 1
       call problem%apply(0.5_wp**(k + 1))
     end do
   end subroutine evaluate
-
-  !> Whether the last step overshoots. That to the first iteration has no matrix.
-  logical function overshoots(problem, iteration, before)
-    class(newton_problem_t), intent(inout) :: problem
-    integer, intent(in) :: iteration
-    !> Norm of the residual before the step.
-    real(wp), intent(in) :: before
-
-    overshoots = .false.
-    if (iteration == 1) return
-    if (problem%residual_norm <= before) return
-    overshoots = problem%correction_left() > largest_ratio
-  end function overshoots
 
   !> Whether the iterations do not approach a solution: far from it for long, without contraction.
   pure logical function is_lost(norm)

@@ -51,7 +51,7 @@ contains
     end associate
   end subroutine start_notes
 
-  !> Return the notes and warnings on the running phase at its end, or where the run stops within it.
+  !> Return the notes and warnings on the running phase at its end, or where the run stops in it.
   subroutine end_notes(model, state, ended, notes)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -151,8 +151,8 @@ contains
         text = body%free_motion()
         if (len(text) == 0) cycle
         text = "warning: at the start of phase '"//phase%name//"' nothing holds "// &
-            part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool in "// &
-            "contact from the start"
+            part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool "// &
+            "in contact from the start"
         return
       end do
     end associate
@@ -175,7 +175,7 @@ contains
 
     do c = 1, model%n_contact
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
-      associate (x => model%point_position(c, state%x), phase => model%phase(state%phase))
+      associate (x => model%contact_point(c)%position(state%x), phase => model%phase(state%phase))
         hint = hint_t()
         call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
             model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &

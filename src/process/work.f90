@@ -95,8 +95,9 @@ contains
       if (tool == 0) cycle
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
       tool_motion = point_displacement(old%placement(tool), new%placement(tool), &
-          model%point_position(c, new%x))
-      slip = model%point_position(c, new%x) - model%point_position(c, old%x) - tool_motion
+          model%contact_point(c)%position(new%x))
+      slip = model%contact_point(c)%position(new%x) - model%contact_point(c)%position(old%x) &
+          - tool_motion
       normal = contact%normal(:, c)
       if (contact%committed_tool(c) == tool) then
         ! The chord along which a point slides over a radius is at right angles to the mean normal.

@@ -65,7 +65,7 @@ contains
     integer :: tool
 
     hint = trial%hint(:, c)
-    x = model%point_position(c, trial%x)
+    x = model%contact_point(c)%position(trial%x)
     call find_nearest_tool(self, model, committed, trial, c, x, hint, hit)
     tool = self%tool(c)
     trial%contact_tool(c) = tool
@@ -196,7 +196,7 @@ contains
     logical :: leaving
 
     hint = committed%hint(:, c)
-    self%committed_x(:, c) = model%point_position(c, committed%x)
+    self%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     call find_nearest_tool(self, model, committed, committed, c, self%committed_x(:, c), hint, hit)
     tool = self%tool(c)
     self%status(c) = committed%status(c)
@@ -206,20 +206,26 @@ contains
       return
     end if
     self%normal(:, c) = hit%normal
-    friction = model%tool(tool)%friction
     self%committed_tool(c) = committed%contact_tool(c)
     self%committed_normal(:, c) = hit%normal
     self%committed_force(:, c) = committed%lambda(:, c)
     associate (phase => model%phase(committed%phase))
       if (.not. phase%mixed) then
-        call predict_layer(self, model, committed, c, layer_at(model, phase, c), hit, touching(tool))
+        call predict_layer(self, model, committed, c, layer_at(model, phase, c), hit, &
+            touching(tool))
         return
       end if
       call place(self, c, hit%distance, 0.0_wp)
+      friction = model%tool(tool)%friction
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
-      call set_predictor_status(self%status(c), friction, leaving, touching(tool), hit, &
-          model%tolerance%touch)
+      if (.not. touching(tool)) then
+        self%status(c) = status_gap
+        if (hit%distance <= model%tolerance%touch .and. .not. leaving) self%status(c) = status_stick
+      else if (self%status(c) == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
+        self%status(c) = status_slip
+        friction = 0.0_wp
+      end if
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           committed%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal), &
           friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
@@ -253,29 +259,6 @@ contains
         committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine predict_layer
-
-  !> Set the status of a candidate in the predictor.
-  pure subroutine set_predictor_status(status, friction, leaving, touching, hit, touch)
-    !> Committed on entry.
-    integer, intent(inout) :: status
-    !> Gets the coefficient of friction: 0 if the committed state has no contact force.
-    real(wp), intent(inout) :: friction
-    !> Whether the tool moves away from the candidate.
-    logical, intent(in) :: leaving
-    !> Whether any candidate is in contact with the tool.
-    logical, intent(in) :: touching
-    type(hit_t), intent(in) :: hit
-    !> Distance within which a tool without contact is touched, mm.
-    real(wp), intent(in) :: touch
-
-    if (.not. touching) then
-      status = status_gap
-      if (hit%distance <= touch .and. .not. leaving) status = status_stick
-    else if (status == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
-      status = status_slip
-      friction = 0.0_wp
-    end if
-  end subroutine set_predictor_status
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
