@@ -11,14 +11,14 @@ module dd3_model_build
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
+  use dd3_input_case, only : case_t
   use dd3_input_known_name, only : check_known_name
   use dd3_linalg_solver_registry, only : missing_package, solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
-  use dd3_model_candidate_search, only : candidate_hits
   use dd3_model_contact_points, only : set_contact_points
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
@@ -56,7 +56,10 @@ contains
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) then
-      call check_mesh_file(model, case, errors)
+      ! The mesh file of an input with errors is read to report its errors with the others.
+      if (model%element%n_node == 0 .or. size(case%mesh) /= 1) return
+      if (case%mesh(1)%source%has("file")) &
+          call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
       return
     end if
     call new_variables(model%internal_variable, model%material)
@@ -124,21 +127,6 @@ contains
     end subroutine set_from
 
   end subroutine set_element
-
-  !> Read the mesh file of an input with errors, to report its errors with the others.
-  subroutine check_mesh_file(model, case, errors)
-    !> With its element, if that is known.
-    type(model_t), intent(in) :: model
-    type(case_t), intent(in) :: case
-    type(error_list_t), intent(inout) :: errors
-
-    type(mesh_t) :: mesh
-
-    if (model%element%n_node == 0) return
-    if (size(case%mesh) /= 1) return
-    if (.not. case%mesh(1)%source%has("file")) return
-    call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
-  end subroutine check_mesh_file
 
   !> Report a linear solver that is not in the registry or not in this build.
   subroutine check_solver(case, errors)
@@ -298,17 +286,7 @@ contains
 
     integer :: h
 
-    model%output%history_every = case%output%history
-    model%output%restart = case%output%restart
-    model%output%restart_every = case%output%restart_every
-    select case (case%output%fields)
-    case (fields_every)
-      model%output%fields_every = case%output%fields_value(1)
-    case (fields_at)
-      model%output%fields_at = case%output%fields_value
-    case (fields_increments)
-      model%output%fields_increments = nint(case%output%fields_value(1))
-    end select
+    model%output = case%output
     allocate (model%history(size(case%history)))
     do h = 1, size(case%history)
       model%history(h)%history_spec_t = case%history(h)

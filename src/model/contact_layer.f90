@@ -1,8 +1,8 @@
 !> Contact layer of the tools in the compliant formulation, and penalty in the mixed one. A tool may
 !> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
 !> the layer begins behind its place by what is missing, and advances to it over the first part of
-!> the phase. The penalty of the augmented Lagrangian does not change the converged solution; it weighs
-!> gap and slip against forces where the contact status is decided.
+!> the phase. The penalty of the augmented Lagrangian does not change the converged solution; it
+!> weighs gap and slip against forces where the contact status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : border_t, hint_t, hit_t

@@ -4,7 +4,8 @@ module dd3_model_model
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
-  use dd3_input_case, only : history_spec_t
+  use dd3_input_case, only : fields_at, fields_every, fields_increments, history_spec_t, &
+      output_spec_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
   use dd3_model_contact_point, only : contact_point_t
@@ -16,28 +17,14 @@ module dd3_model_model
   use dd3_model_tolerances, only : tolerances_t
   implicit none
   private
-  public :: model_t, history_set_t, output_t
+  public :: model_t, history_set_t
+  !> For the outputs of the model.
+  public :: fields_at, fields_every, fields_increments, output_spec_t
 
   !> Node set with quantities in history.csv; its name is the prefix of their columns.
   type, extends(history_spec_t) :: history_set_t
     integer, allocatable :: node(:)
   end type history_set_t
-
-  !> Output and its intervals.
-  type :: output_t
-    !> Interval of the rows of history.csv, in increments.
-    integer :: history_every = 0
-    !> Interval of the fields in the travel within a phase, mm; 0: off.
-    real(wp) :: fields_every = 0.0_wp
-    !> Travels within a phase at which fields are written, mm, ascending.
-    real(wp), allocatable :: fields_at(:)
-    !> Interval of the fields, in increments; 0: off.
-    integer :: fields_increments = 0
-    !> Whether restart.h5 is written at the end of each phase and when a run stops, and the interval
-    !> between, in increments; 0: off.
-    logical :: restart = .true.
-    integer :: restart_every = 0
-  end type output_t
 
   !> Model of a job.
   type :: model_t
@@ -106,7 +93,8 @@ module dd3_model_model
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
-    type(output_t) :: output
+    !> What is written, and when.
+    type(output_spec_t) :: output
   contains
     procedure :: thickness_at
     procedure :: nodal_contact_forces

@@ -141,8 +141,7 @@ contains
       t = spec%move(i)%tool
       call stop_pressing(phase, t, .true.)
       phase%move(:, t) = spec%move(i)%vector
-      if (norm2(phase%move(:, t)) > 0.0_wp) &
-          phase%direction(:, t) = phase%move(:, t)/norm2(phase%move(:, t))
+      call set_line(phase, t, spec%move(i)%vector)
     end do
     do i = 1, size(spec%gap)
       t = spec%gap(i)%tool
@@ -151,7 +150,12 @@ contains
       phase%direction(:, t) = [0.0_wp, 0.0_wp, 1.0_wp]
     end do
     do i = 1, size(spec%press)
-      call press(phase, spec%press(i)%tool, spec%press(i)%vector)
+      t = spec%press(i)%tool
+      phase%pressed(t) = .true.
+      phase%active(t) = .true.
+      phase%keeps_tool_load(t) = .false.
+      phase%tool_load_end(:, t) = spec%press(i)%vector
+      call set_line(phase, t, spec%press(i)%vector)
     end do
     do i = 1, size(spec%release)
       call stop_pressing(phase, spec%release(i)%tool, .false.)
@@ -166,6 +170,15 @@ contains
     if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
   end subroutine set_tools
 
+  !> Set the line along which a tool moves; a vector of zero leaves it unchanged.
+  subroutine set_line(phase, tool, vector)
+    type(phase_t), intent(inout) :: phase
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: vector(3)
+
+    if (norm2(vector) > 0.0_wp) phase%direction(:, tool) = vector/norm2(vector)
+  end subroutine set_line
+
   !> Remove the force from a tool that is held, moved or released.
   subroutine stop_pressing(phase, tool, active)
     type(phase_t), intent(inout) :: phase
@@ -177,19 +190,6 @@ contains
     phase%pressed(tool) = .false.
     phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
-
-  !> Press a tool; a force of zero leaves the line of its motion unchanged.
-  subroutine press(phase, tool, force)
-    type(phase_t), intent(inout) :: phase
-    integer, intent(in) :: tool
-    real(wp), intent(in) :: force(3)
-
-    if (norm2(force) > 0.0_wp) phase%direction(:, tool) = force/norm2(force)
-    phase%pressed(tool) = .true.
-    phase%active(tool) = .true.
-    phase%keeps_tool_load(tool) = .false.
-    phase%tool_load_end(:, tool) = force
-  end subroutine press
 
   !> Set the prescribed directions. For a sheet unloaded by this phase or an earlier one, supports
   !> are added that stop the rigid motions left free.
@@ -240,9 +240,11 @@ contains
     integer :: i, s
 
     do i = 1, size(spec%load)
-      s = find_load_set(model%load_set, spec%load(i)%set)
-      phase%load_end(:, s) = spec%load(i)%force
-      phase%keeps_load(s) = .false.
+      do s = 1, size(model%load_set)
+        if (model%load_set(s)%name /= spec%load(i)%set) cycle
+        phase%load_end(:, s) = spec%load(i)%force
+        phase%keeps_load(s) = .false.
+      end do
     end do
     do i = 1, size(spec%pressure)
       do s = 1, size(model%pressure_set)
@@ -286,13 +288,13 @@ contains
     type(mesh_t), intent(in) :: mesh
 
     type(load_set_t) :: set
-    integer :: i, j
+    integer :: i, j, s
 
     allocate (model%load_set(0))
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%load)
         associate (name => case%phase(i)%load(j)%set)
-          if (find_load_set(model%load_set, name) > 0) cycle
+          if (any([(model%load_set(s)%name == name, s=1, size(model%load_set))])) cycle
           set%name = name
           set%node = mesh%nodes_of(name)
           call face_load_weights(model%element, model%connectivity, model%x0, set%node, set%weight)
@@ -301,16 +303,6 @@ contains
       end do
     end do
   end subroutine new_load_sets
-
-  !> Return the position of a set; 0 if it is not among them.
-  pure integer function find_load_set(set, name) result(s)
-    type(load_set_t), intent(in) :: set(:)
-    character(len=*), intent(in) :: name
-
-    do s = size(set), 1, -1
-      if (set(s)%name == name) return
-    end do
-  end function find_load_set
 
   !> Set the displacements at which tools have the gaps of the input.
   subroutine set_gaps(model, case, errors)

@@ -12,8 +12,8 @@ module dd3_model_tool_surface
 
 contains
 
-  !> Read the surface of a tool from its file; valid only if no error was added. Patches are built in
-  !> their place, and the points of the file are given up one by one, to save memory.
+  !> Read the surface of a tool from its file; valid only if no error was added. Patches are built
+  !> in their place, and the points of the file are given up one by one, to save memory.
   subroutine read_tool_surface(surface, file, location, errors)
     type(surface_t), intent(out) :: surface
     character(len=*), intent(in) :: file

@@ -140,7 +140,7 @@ contains
       if (allocated(error)) return
       state%history_increment = self%increment
     end if
-    due = mod(state%increment, model%output%history_every) == 0 &
+    due = mod(state%increment, model%output%history) == 0 &
           .or. state%progress >= 1.0_wp
     self%increment = state%increment
     self%phase = state%phase

@@ -9,7 +9,6 @@ module dd3_process_forces
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_contact, only : evaluate_contact
-  use dd3_system_contact_work, only : contact_work_t
   use dd3_system_drawbead, only : evaluate_beads
   use dd3_system_system, only : system_t
   implicit none
@@ -119,25 +118,14 @@ contains
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
             trial%tool_load(:, tool) + force(:, tool))
-        problem%tool_prescribed(:, tool) = motion_to_contact(contact, model, trial, tool)
+        ! A pressed tool that has lost the sheet moves back to contact.
+        problem%tool_prescribed(:, tool) = 0.0_wp
+        if (is_lost(model, trial, tool) .and. any(contact%tool == tool)) &
+            problem%tool_prescribed(:, tool) = phase%direction(:, tool) &
+            *(minval(contact%distance, mask=contact%tool == tool) + model%tolerance%touch)
       end do
     end associate
   end subroutine evaluate_forces
-
-  !> Return the displacement of a pressed tool that has lost the sheet back to contact, mm; zero for
-  !> the others.
-  pure function motion_to_contact(contact, model, trial, tool) result(motion)
-    type(contact_work_t), intent(in) :: contact
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: trial
-    integer, intent(in) :: tool
-    real(wp) :: motion(3)
-
-    motion = 0.0_wp
-    if (.not. is_lost(model, trial, tool) .or. .not. any(contact%tool == tool)) return
-    motion = model%phase(trial%phase)%direction(:, tool) &
-        *(minval(contact%distance, mask=contact%tool == tool) + model%tolerance%touch)
-  end function motion_to_contact
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.
   pure integer function lost_tool(model, trial)

@@ -119,7 +119,6 @@ contains
     problem%target = trial%x
     problem%missed = .false.
     associate (phase => model%phase(trial%phase))
-      if (.not. allocated(phase%motion)) return
       problem%missed = size(phase%motion) > 0
       do i = 1, size(phase%motion)
         associate (node => phase%motion(i)%node)

@@ -6,9 +6,9 @@
 !> Round-off: a node's position is the multiple of `spacing` nearest to the solution, and the
 !> stiffness turns that difference into a force that no iteration removes. Tisseur 2001, Newton's
 !> method in floating point arithmetic, SIAM J. Matrix Anal. Appl. 22, 1038-1057: the residual of
-!> Newton's method stalls at u |J| |x|, u the unit round-off and J the Jacobian. Here the differences
-!> are random, uniform in the interval of rounding, so that their variance is spacing**2/12 and the
-!> squares of their forces add.
+!> Newton's method stalls at u |J| |x|, u the unit round-off and J the Jacobian. Here the
+!> differences are random, uniform in the interval of rounding, so that their variance is
+!> spacing**2/12 and the squares of their forces add.
 module dd3_process_norm
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
@@ -35,11 +35,11 @@ module dd3_process_norm
     real(wp) :: worst = 0.0_wp
   end type residual_t
 
-  !> Largest tolerance of the norm when all tools are released: the residual stresses, by which it is
-  !> scaled, are far larger than those that bend a slender sheet. Smaller: a more accurate shape for
-  !> more iterations; a strip drawn by 30 mm and released ends 0.06 mm elsewhere with 1e-2, 0.01 mm
-  !> with 1e-3. It bounds the tolerance and does not weigh the norm, whose value tells the corrector
-  !> how far from the solution a state is.
+  !> Largest tolerance of the norm when all tools are released: the residual stresses, by which it
+  !> is scaled, are far larger than those that bend a slender sheet. Smaller: a more accurate shape
+  !> for more iterations; a strip drawn by 30 mm and released ends 0.06 mm elsewhere with 1e-2,
+  !> 0.01 mm with 1e-3. It bounds the tolerance and does not weigh the norm, whose value tells the
+  !> corrector how far from the solution a state is.
   real(wp), parameter :: free_tolerance = 1.0e-5_wp
   !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
   !> sheet at rest all forces are round-off. Larger: smaller forces count as zero.
@@ -72,8 +72,8 @@ contains
         tolerance = min(tolerance, free_tolerance)
   end function convergence_tolerance
 
-  !> Evaluate the norm: eq. (19), or the imbalance of a pressed tool if that is larger and the former
-  !> has met the tolerance.
+  !> Evaluate the norm: eq. (19), or the imbalance of a pressed tool if that is larger and the
+  !> former has met the tolerance.
   subroutine evaluate_norm(model, committed, trial, system, step, balance, residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed

@@ -7,7 +7,7 @@ module dd3_process_phase_start
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
-  use dd3_model_candidate_search, only : candidate_hits
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
   use dd3_model_model, only : model_t

@@ -172,7 +172,6 @@ contains
     real(wp) :: here, ahead(3, model%n_node), behind(3, model%n_node)
     integer :: i
 
-    if (.not. allocated(phase%motion)) return
     if (size(phase%motion) == 0) return
     here = phase%factor(committed%progress)
     ahead = 0.0_wp

@@ -6,7 +6,7 @@ module dd3_process_tool_warnings
   use dd3_base_text, only : append, text_t, to_text
   use dd3_contact_closest, only : hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_model_candidate_search, only : candidate_hits
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name

@@ -82,7 +82,8 @@ contains
               model%tool(tool)%friction)
         else
           penalty = candidate_penalty(model, phase, c, hit%normal)
-          call place(self, c, hit%distance, 0.0_wp)
+          self%onset(c) = 0.0_wp
+          self%distance(c) = hit%distance
           self%status(c) = contact_status(hit%normal, self%distance(c), trial%lambda(:, c), slip, &
               penalty, model%tool(tool)%friction)
           call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), &
@@ -132,22 +133,12 @@ contains
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
-    call place(self, c, gap, layer%height)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
     self%status(c) = status_gap
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%lambda(:, c), committed, &
         slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine evaluate_layer
-
-  !> Set the gap of a point and the one at the onset of contact.
-  pure subroutine place(self, c, gap, onset)
-    type(contact_work_t), intent(inout) :: self
-    integer, intent(in) :: c
-    !> mm.
-    real(wp), intent(in) :: gap, onset
-
-    self%onset(c) = onset
-    self%distance(c) = gap - onset
-  end subroutine place
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
@@ -215,7 +206,8 @@ contains
             touching(tool))
         return
       end if
-      call place(self, c, hit%distance, 0.0_wp)
+      self%onset(c) = 0.0_wp
+      self%distance(c) = hit%distance
       friction = model%tool(tool)%friction
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
@@ -250,7 +242,8 @@ contains
     real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset_at(state, self%tool(c), c)
-    call place(self, c, gap, layer%height)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
         min(gap, at_onset*layer%height)
     committed = 0.0_wp

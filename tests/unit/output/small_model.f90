@@ -89,7 +89,7 @@ contains
     model%phase(2)%name = "draw"
     model%phase(2)%control = 1
     allocate (model%load_set(0))
-    model%output%history_every = 1
+    model%output%history = 1
     model%axes = reshape(identity, [3, 3, 1])
     call new_state(state, model)
   end subroutine make_small_model
