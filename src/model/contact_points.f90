@@ -269,7 +269,6 @@ contains
     integer :: f, divisions
 
     allocate (area(model%n_contact), source=0.0_wp)
-    if (.not. allocated(model%contact_face)) return
     divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
     do f = 1, size(model%contact_face)
       associate (point => model%face_point(:, f))
@@ -288,7 +287,6 @@ contains
     integer :: f
 
     allocate (area(model%n_node), source=0.0_wp)
-    if (.not. allocated(model%contact_face)) return
     do f = 1, size(model%contact_face)
       associate (node => model%face%node(:, model%contact_face(f)))
         if (size(node) > 4) then

@@ -106,7 +106,6 @@ contains
 
     associate (phase => model%phase(state%phase))
       allocate (gap(model%n_contact_node), source=phase%search_distance)
-      if (.not. allocated(model%contact_face)) return
       outward = outward_normals(model, state%x)
       do c = 1, model%n_contact_node
         do t = 1, model%n_tool

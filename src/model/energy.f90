@@ -49,7 +49,6 @@ contains
     integer :: c
 
     contact_energy = 0.0_wp
-    if (.not. allocated(model%contact_face)) return
     if (model%phase(state%phase)%mixed) return
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
