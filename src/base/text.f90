@@ -4,9 +4,12 @@ module dd3_base_text
   implicit none
   private
   public :: text_t, text_buffer_t, newline, to_text, lower_case, upper_case, same_name, &
-      nearest_name, suggestion, join, slice
+      nearest_name, suggestion, join, slice, append, axis_name
 
   character(len=1), parameter :: newline = achar(10)
+
+  !> Names of the axes and of components along them.
+  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
 
   !> A string of any length, for lists of strings.
   type :: text_t
@@ -244,6 +247,14 @@ contains
 
     slice = text(first:last)
   end function slice
+
+  !> Append a text that is not empty to a list.
+  subroutine append(list, text)
+    type(text_t), allocatable, intent(inout) :: list(:)
+    character(len=*), intent(in) :: text
+
+    if (len(text) > 0) list = [list, text_t(text)]
+  end subroutine append
 
   !> Return the words joined by a separator, without trailing blanks.
   pure function join(words, separator) result(text)

@@ -1,9 +1,9 @@
 !> What the input says about the tools: the joints of their surfaces as text, and warnings of edges
 !> that nearly coincide and of candidates on the wrong face of the sheet.
 module dd3_model_tool_report
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
   use dd3_base_error, only : location_t
-  use dd3_base_text, only : text_t, newline, to_text
+  use dd3_base_text, only : append, text_t, newline, to_text
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_joints, only : near_miss_t, new_surface_report, surface_report_t
   use dd3_input_case, only : case_t
@@ -22,7 +22,7 @@ module dd3_model_tool_report
   integer, parameter :: most_faces = 500
   !> Least |m.n| of the normals of sheet and tool at which one faces the other.
   real(wp), parameter :: facing = 0.5_wp
-  real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
+  real(wp), parameter :: degree = pi/180.0_wp
 
 contains
 
@@ -91,26 +91,14 @@ contains
     do i = 1, model%n_tool
       call new_surface_report(report, model%tool(i)%surface, near_gap*model%thickness)
       do k = 1, min(size(report%near_miss), most_named)
-        call add(warnings, gap_warning(case, model, i, report%near_miss(k)))
+        call append(warnings, gap_warning(case, model, i, report%near_miss(k)))
       end do
-      if (k <= size(report%near_miss)) call add(warnings, "warning: "// &
+      if (k <= size(report%near_miss)) call append(warnings, "warning: "// &
           to_text(size(report%near_miss) - most_named)//" more pairs of edges of tool '"// &
           model%tool(i)%name//"' nearly coincide without being joined")
-      call add(warnings, face_warning(case, model, i))
+      call append(warnings, face_warning(case, model, i))
     end do
   end subroutine tool_warnings
-
-  !> Add a warning that is not empty.
-  subroutine add(warnings, line)
-    type(text_t), allocatable, intent(inout) :: warnings(:)
-    character(len=*), intent(in) :: line
-
-    type(text_t) :: warning
-
-    if (len(line) == 0) return
-    warning%s = line
-    warnings = [warnings, warning]
-  end subroutine add
 
   !> Return the warning of two edges that nearly coincide.
   function gap_warning(case, model, tool, near_miss) result(text)

@@ -24,13 +24,9 @@ module dd3_process_run
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
       until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns
-  use dd3_process_phase_warnings, only : gap_note, kept_note, press_warning, release_warning, &
-      support_warning, until_warning
+  use dd3_process_phase_warnings, only : end_notes, start_notes
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
-  use dd3_process_stepper, only : stepper_t
-  use dd3_process_tool_warnings, only : tool_warnings
-  use dd3_process_unload_report, only : imbalance_warning, reaction_note, unload_note
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system, system_t
   implicit none
@@ -165,15 +161,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(error_t), allocatable :: late
-    type(text_t), allocatable :: warnings(:)
+    type(text_t), allocatable :: notes(:)
     real(wp) :: next_output
     logical :: ended
-    integer :: done, i
+    integer :: done
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
-        call start_phase(model, number, committed, log, error)
+        call check_returns(model, number, committed, error)
         if (allocated(error)) return
+        call begin_phase(model, number, committed)
+        call start_notes(model, committed, notes)
+        call say_all(log, notes)
       end if
       do while (.not. phase_is_over(model, committed))
         next_output = next_output_progress(model%output, phase, committed)
@@ -190,16 +189,8 @@ contains
         exit
       end do
       ended = .not. allocated(error)
-      if (ended) then
-        call say_if_any(log, until_warning(phase, committed))
-        call say_if_any(log, release_warning(phase, committed))
-        call say_if_any(log, reaction_note(model, committed))
-        call say_if_any(log, gap_note(model, committed))
-      end if
-      call tool_warnings(model, committed, ended, warnings)
-      do i = 1, size(warnings)
-        call log%say(warnings(i)%s)
-      end do
+      call end_notes(model, committed, ended, notes)
+      call say_all(log, notes)
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
@@ -215,37 +206,17 @@ contains
     system%threads%news = ""
   end subroutine note_choices
 
-  !> Begin a phase, with notes and warnings.
-  subroutine start_phase(model, number, committed, log, error)
-    type(model_t), intent(in) :: model
-    !> Number of the phase.
-    integer, intent(in) :: number
-    type(state_t), intent(inout) :: committed
+  !> Log lines of text.
+  subroutine say_all(log, lines)
     type(log_t), intent(inout) :: log
-    !> Set if a tool that was released would start inside the sheet.
-    type(error_t), allocatable, intent(out) :: error
+    type(text_t), intent(in) :: lines(:)
 
-    call check_returns(model, number, committed, error)
-    if (allocated(error)) return
-    call begin_phase(model, number, committed)
-    associate (phase => model%phase(number))
-      call say_if_any(log, kept_note(phase))
-      call say_if_any(log, press_warning(model, committed))
-      call say_if_any(log, support_warning(model, committed))
-      call say_if_any(log, unload_note(model, committed))
-      call say_if_any(log, imbalance_warning(model, committed))
-      if (phase_is_over(model, committed)) call log%say("phase '"//phase%name &
-          //"' has no increment: the condition of its early end holds at its start")
-    end associate
-  end subroutine start_phase
+    integer :: i
 
-  !> Log a text that is not empty.
-  subroutine say_if_any(log, text)
-    type(log_t), intent(inout) :: log
-    character(len=*), intent(in) :: text
-
-    if (len(text) > 0) call log%say(text)
-  end subroutine say_if_any
+    do i = 1, size(lines)
+      call log%say(lines(i)%s)
+    end do
+  end subroutine say_all
 
   !> Make one increment in as many attempts as allowed. A converged one is accepted even if its row
   !> of status.csv cannot be written.

@@ -3,12 +3,11 @@
 module dd3_process_unload_report
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_model_loads, only : nodal_forces
-  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_model, only : model_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
+  use dd3_process_forces, only : applied_forces
   implicit none
   private
   public :: imbalance_warning, reaction_note, unload_note
@@ -68,24 +67,20 @@ contains
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    real(wp) :: force(3, model%n_node), fading(3, model%n_node), resultant
+    real(wp) :: force(3, model%n_node), resultant
 
     text = ""
     associate (phase => model%phase(state%phase), start => state%start)
       if (size(phase%support, 2) == 0) return
-      fading = 0.0_wp
-      call nodal_forces(model%load_set, start%load_end, fading, force)
-      if (size(start%pressure_end) > 0) call add_pressure_forces(model%element, &
-          model%pressure_set, start%pressure_end, state%x, force)
+      force = applied_forces(model, start%load_end, start%pressure_end, state%x, &
+          0.0_wp*start%fading)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
         text = "warning: the loads on the sheet are not in equilibrium in phase '"//phase%name// &
             "': the chosen supports carry "//to_text(resultant, 3)//" N of them"
         return
       end if
-      call nodal_forces(model%load_set, start%load, start%fading, force)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
-          start%pressure, state%x, force)
+      force = applied_forces(model, start%load, start%pressure, state%x, start%fading)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
           "warning: the forces that fade in phase '"//phase%name// &
