@@ -11,18 +11,31 @@ punch force is the root mean square of the difference over that of the reference
 deviation is given.
 """
 import argparse
-import pathlib
 import re
 from dataclasses import dataclass, field
 
-from envelope import DRAW_BENDING, ENVELOPE, Job, Results, deviation, draw_in, forces, make, mean_forces, measure, \
-    shown, studies, thinnest
-from problems import BENDING, ROOT, of_file, without
-
 import draw_bending  # the paths are set by envelope
 import numpy as np
-from results import find_program, made_folder
-from scripts import put_table, run
+from envelope import (
+    DRAW_BENDING,
+    ENVELOPE,
+    Job,
+    Results,
+    deviation,
+    draw_in,
+    forces,
+    make,
+    mean_forces,
+    measure,
+    shown,
+    studies,
+    thinnest,
+)
+from problems import BENDING, ROOT, of_file, without
+
+from dd3.errors import run
+from dd3.pages import put_table
+from dd3.programs import find_program, made_folder
 
 REPORT = ROOT / "docs" / "reports" / "increments.md"
 LEVELS = ("draft", "standard", "fine")

@@ -10,7 +10,6 @@ import shutil
 import subprocess
 
 import h5py
-
 from runs import ROOT, Deck, Runner, call_tests, check, fresh
 
 DIE = ROOT / "input_files" / "bending" / "die.bez"
