@@ -10,8 +10,10 @@ points node sets. Mirrored elements are turned.
 """
 import itertools
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import h5py
 
@@ -33,16 +35,16 @@ INP_HEXAHEDRA = re.compile(r"(?:C3D(?:8|20|27)|SC8|CSS8)[A-Z]*$")
 class Mesh:
     """Nodes and hexahedra by label; sets of labels."""
 
-    nodes: dict = field(default_factory=dict)
-    elements: dict = field(default_factory=dict)
-    node_sets: dict = field(default_factory=dict)
-    element_sets: dict = field(default_factory=dict)
-    left_out: dict = field(default_factory=dict)  # kind: number
+    nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    elements: dict[int, list[int]] = field(default_factory=dict)
+    node_sets: dict[str, Any] = field(default_factory=dict)
+    element_sets: dict[str, Any] = field(default_factory=dict)
+    left_out: dict[str, int] = field(default_factory=dict)  # kind: number
 
 
 # ---- readers ---------------------------------------------------------------------------------------------------------
 
-def gmsh_groups(gmsh, mesh):
+def gmsh_groups(gmsh: Any, mesh: Mesh) -> None:
     """Take the physical groups as sets."""
     for dimension, tag in gmsh.model.getPhysicalGroups():
         name = gmsh.model.getPhysicalName(dimension, tag) or f"{KINDS[dimension]}{tag}"
@@ -55,7 +57,7 @@ def gmsh_groups(gmsh, mesh):
                 mesh.element_sets.setdefault(name, set()).update(int(element) for element in tags)
 
 
-def read_gmsh(path):
+def read_gmsh(path: Path) -> Mesh:
     """Read what Gmsh reads; a geometry is meshed."""
     import gmsh
     gmsh.initialize()
@@ -86,7 +88,7 @@ def read_gmsh(path):
         gmsh.finalize()
 
 
-def read_run(path):
+def read_run(path: Path) -> Mesh:
     """Read the initial mesh of a run."""
     try:
         with h5py.File(path, "r", locking=False) as file:
@@ -108,7 +110,7 @@ def read_run(path):
     return mesh
 
 
-def inp_lines(path, depth=0):
+def inp_lines(path: Path, depth: int = 0) -> Iterator[tuple[Path, int, str]]:
     """Yield the lines of an .inp file as (file, number, text), with those of included files."""
     if depth > 10:
         raise Problem(f"{path}: includes nest too deeply")
@@ -123,9 +125,10 @@ def inp_lines(path, depth=0):
             yield path, number, text
 
 
-def inp_blocks(path):
+def inp_blocks(path: Path) -> Iterator[list[Any]]:
     """Yield keyword, parameters, place and lists of words of the data lines; `part` is a parameter."""
-    block, part, instances = None, "", {}
+    block: list[Any] = []
+    part, instances = "", dict[str, str]()
     for file, number, text in inp_lines(path):
         if not text.startswith("*"):
             if block:
@@ -153,9 +156,9 @@ def inp_blocks(path):
         yield block
 
 
-def inp_members(rows, generate, known):
+def inp_members(rows: list[Any], generate: bool, known: dict[str, set[int]]) -> set[int]:
     """Return the members of a set; names stand for sets above."""
-    members = set()
+    members: set[int] = set()
     for *words, _ in rows:
         if generate:
             first, last, *step = (int(word) for word in words)
@@ -166,7 +169,7 @@ def inp_members(rows, generate, known):
     return members
 
 
-def inp_elements(rows, count, place):
+def inp_elements(rows: list[Any], count: int, place: str) -> Iterator[tuple[int, list[int]]]:
     """Yield label and nodes of the elements of a block; a line that ends with a comma goes on in the next one."""
     waiting = []
     for *words, goes_on in rows:
@@ -179,9 +182,9 @@ def inp_elements(rows, count, place):
         waiting = []
 
 
-def read_inp(path, wanted):
+def read_inp(path: Path, wanted: str | None) -> Mesh:
     """Read the mesh of a model of Abaqus or CalculiX; of several parts the one wanted."""
-    parts = {}
+    parts: dict[str, Mesh] = {}
     for keyword, options, place, rows in inp_blocks(path):
         mesh = parts.setdefault(options["part"], Mesh())
         try:
@@ -196,7 +199,7 @@ def read_inp(path, wanted):
                 if not INP_HEXAHEDRA.match(kind):
                     mesh.left_out[kind] = mesh.left_out.get(kind, 0) + len(rows)
                     continue
-                count = int(re.search(r"20|27|8", kind)[0])
+                count = next(size for size in (20, 27, 8) if str(size) in kind)
                 elements = dict(inp_elements(rows, count, place))
                 mesh.elements.update(elements)
                 if "ELSET" in options:
@@ -217,7 +220,7 @@ def read_inp(path, wanted):
 
 # ---- repair and output -----------------------------------------------------------------------------------------------
 
-def volume_sign(points):
+def volume_sign(points: Sequence[Sequence[float]]) -> float:
     """Return the triple product of the mean edges of a hexahedron."""
     axes = []
     for axis in range(3):
@@ -226,7 +229,7 @@ def volume_sign(points):
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
-def turn_mirrored(mesh):
+def turn_mirrored(mesh: Mesh) -> int:
     """Exchange the bottom and top of mirrored elements; return their number."""
     count, turned = 0, {}
     for label, nodes in mesh.elements.items():
@@ -240,9 +243,10 @@ def turn_mirrored(mesh):
     return count
 
 
-def merge_nodes(mesh, tolerance):
+def merge_nodes(mesh: Mesh, tolerance: float) -> int:
     """Replace nodes within a tolerance of an earlier one; return their number."""
-    cells, same = {}, {}
+    cells: dict[tuple[int, ...], list[int]] = {}
+    same: dict[int, int] = {}
     for label, point in mesh.nodes.items():
         cell = tuple(int(value // tolerance) for value in point)
         near = (other for shift in itertools.product((-1, 0, 1), repeat=3)
@@ -258,7 +262,7 @@ def merge_nodes(mesh, tolerance):
     return len(same)
 
 
-def renumber(mesh):
+def renumber(mesh: Mesh) -> None:
     """Number nodes and elements from 1; nodes without elements are left out, and empty sets."""
     used = set(itertools.chain.from_iterable(mesh.elements.values()))
     unknown = used - mesh.nodes.keys()
@@ -277,13 +281,13 @@ def renumber(mesh):
                 sets[name] = members
 
 
-def set_name(name):
+def set_name(name: str) -> str:
     """Return the name of a set as a word of an input file."""
     word = re.sub(r"[^a-z0-9_.-]+", "_", name.lower()).strip("_")
     return word if word[:1].isalpha() else f"set_{word}"
 
 
-def write_inp(path, mesh, source):
+def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
     """Write the file."""
     counts = {len(nodes) for nodes in mesh.elements.values()}
     if len(counts) != 1:
@@ -302,7 +306,7 @@ def write_inp(path, mesh, source):
                 file.writelines(", ".join(map(str, members[i:i + 14])) + "\n" for i in range(0, len(members), 14))
 
 
-def report(path, mesh, merged, mirrored):
+def report(path: Path, mesh: Mesh, merged: int, mirrored: int) -> None:
     """Say what was written and what was changed."""
     print(f"{path}: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements")
     for what, sets in ("node sets", mesh.node_sets), ("element sets", mesh.element_sets):
@@ -316,7 +320,7 @@ def report(path, mesh, merged, mirrored):
         print(f"left out: {kind}: {count}")
 
 
-def main(words=None):
+def main(words: Sequence[str] | None = None) -> None:
     """Read, repair, write."""
     parser = new_parser("mesh", __doc__)
     parser.add_argument("source", type=Path, help="mesh, model or field file")

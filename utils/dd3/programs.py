@@ -88,13 +88,18 @@ def launch(words: Sequence[str | Path], timeout: float | None = None, folder: st
         for stream in (output, errors):
             stream.seek(0)
             said.append(stream.read().decode("utf-8", errors="replace"))
-    return Finished(child.returncode, *said, wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+    return Finished(child.returncode, said[0], said[1], wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
 def wait(child: "subprocess.Popen[bytes]", timeout: float | None) -> resource.struct_rusage:
     """Wait for a process and return its use of resources; kill it after `timeout` seconds or on an interrupt."""
-    late = threading.Event()
-    timer = threading.Timer(timeout or 0, lambda: (late.set(), os.kill(child.pid, signal.SIGKILL)))
+    late, shown = threading.Event(), " ".join(map(str, child.args)) if isinstance(child.args, list) else str(child.args)
+
+    def kill() -> None:
+        late.set()
+        os.kill(child.pid, signal.SIGKILL)
+
+    timer = threading.Timer(timeout or 0, kill)
     if timeout:
         timer.start()
     try:
@@ -107,7 +112,7 @@ def wait(child: "subprocess.Popen[bytes]", timeout: float | None) -> resource.st
         timer.cancel()
     child.returncode = os.waitstatus_to_exitcode(status)
     if late.is_set():
-        raise Problem(f"{' '.join(map(str, child.args))}: not finished after {timeout} s")
+        raise Problem(f"{shown}: not finished after {timeout} s")
     return usage
 
 

@@ -184,7 +184,7 @@ def add_force(report: Report) -> None:
 
 def add_beads(report: Report) -> None:
     """Add the restraining forces of the draw-beads over the travel, and their lengths on the sheet."""
-    beads = [name.removesuffix("_restraint") for name in report.history if name.endswith("_restraint")]
+    beads = [name.removesuffix("_restraint") for name in map(str, report.history) if name.endswith("_restraint")]
     if not beads:
         return
     along = "travel" if np.ptp(report.column("travel")) > 0 else "increment"

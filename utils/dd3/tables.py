@@ -4,6 +4,7 @@ import csv
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from dd3.errors import Problem
 
@@ -77,9 +78,9 @@ def read_points(run: str | Path) -> dict[str, list[dict[str, float]]]:
     return points
 
 
-def tools_in(columns: Iterable[str]) -> list[str]:
+def tools_in(columns: Iterable[Any]) -> list[str]:
     """Return the tools of a history, given its columns."""
-    return [name.removesuffix("_contacts") for name in columns if name.endswith("_contacts")]
+    return [name.removesuffix("_contacts") for name in columns if str(name).endswith("_contacts")]
 
 
 def interpolate(places: Sequence[float], values: Sequence[float], place: float) -> float | None:

@@ -10,8 +10,11 @@ CAD faces become quadrilateral patches whose nodes lie on the CAD, finer until t
 estimate. Shapes are exact; docs/tools.md describes their file. The report tells what was found; a surface with folds,
 edges of more than two patches, free edges that nearly coincide, or a missed tolerance is refused: exit code 2.
 """
+import argparse
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,17 +24,19 @@ from dd3.progress import Progress
 from dd3.tools import cad, facets, moved, report, sides
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
-from dd3.tools.joints import find_joints, turn
+from dd3.tools.facet_files import Facets
+from dd3.tools.joints import Joints, find_joints, turn
 from dd3.tools.limits import supervised
 from dd3.tools.mend import turn_facets
 from dd3.tools.shapes import read_shapes
-from dd3.tools.surface import turned, write
+from dd3.tools.surface import Surface, turned, write
 
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
 
-def from_shapes(options, _):
+def from_shapes(options: argparse.Namespace, _: Progress
+               ) -> tuple[Surface, int, list[tuple[str, str]], list[Any]]:
     """Return the surface of a shape file, the number of its parts and the lines of the report."""
     if options.part:
         raise Problem(f"{options.source}: a shape file has no parts")
@@ -49,7 +54,8 @@ def from_shapes(options, _):
     return surface, 0, [("distance", "0: exact")], []
 
 
-def from_cad(options, progress):
+def from_cad(options: argparse.Namespace, progress: Progress
+            ) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
     """Return the surface of a CAD file, the number of its parts and the lines of the report."""
     with cad.session() as gmsh:
         model = cad.read_cad(gmsh, options.source, options, progress)
@@ -72,7 +78,8 @@ def from_cad(options, progress):
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
-def from_facets(options, progress):
+def from_facets(options: argparse.Namespace, progress: Progress
+               ) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
     """Return the surface of a file of facets, the number of its parts and the lines of the report."""
     mesh = facets.load(options)
     progress(0.3)
@@ -83,7 +90,7 @@ def from_facets(options, progress):
     return surface, len(np.unique(mesh.part)), lines, errors
 
 
-def face_facets(mesh, options):
+def face_facets(mesh: Facets, options: argparse.Namespace) -> None:
     """Turn the facets of a mesh to the sheet and leave out those that face away."""
     area, centre, region, sign, body, is_open, twisted = facets.sides_of(mesh)
     sign, kept, _, notes = sides.settle(area, centre, region, sign, body, is_open, direction(options))
@@ -102,19 +109,20 @@ def face_facets(mesh, options):
     mesh.notes += notes
 
 
-def direction(options):
+def direction(options: argparse.Namespace) -> np.ndarray | None:
     """Return the unit vector of --toward in the axes of the file, or None."""
     if options.toward is None:
         return None
     return moved.rotation(options.rotate).T @ np.array(options.toward) / np.linalg.norm(options.toward)
 
 
-def nothing_faces(options):
+def nothing_faces(options: argparse.Namespace) -> Problem:
     """Return the Problem of a --toward that no face has."""
     return Problem(f"{options.source}: no face looks towards {' '.join(f'{value:g}' for value in options.toward)}")
 
 
-def judge_distance(surface, distance, options, how):
+def judge_distance(surface: Surface, distance: np.ndarray, options: argparse.Namespace, how: str
+                  ) -> tuple[list[tuple[str, str]], list[str]]:
     """Return the line of the report on the distance of each face, and an error if one misses the tolerance."""
     used = np.unique(surface.face)
     largest = distance[used].max()
@@ -130,7 +138,8 @@ def judge_distance(surface, distance, options, how):
                    f"--tolerance {report.up(distance[order[0]]):g} accepts it"]
 
 
-def face_sheet(surface, joints, options):
+def face_sheet(surface: Surface, joints: Joints, options: argparse.Namespace
+              ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Return the signs of the patches, which are kept, and lines for the report."""
     sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options))
     if not kept.any():
@@ -148,7 +157,7 @@ def face_sheet(surface, joints, options):
     return sign, kept, notes
 
 
-def reader_of(path):
+def reader_of(path: Path) -> tuple[str, Callable[..., Any]]:
     """Return the kind of a source by its ending."""
     ending = path.suffix.lower()
     if ending in CAD:
@@ -160,7 +169,7 @@ def reader_of(path):
     raise Problem(f"{path}: unknown kind of file; expected one of {' '.join((*CAD, *FACETS))} .shape")
 
 
-def command_line():
+def command_line() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = new_parser("tool", __doc__)
     parser.add_argument("source", type=Path, help="CAD, mesh or shape file")
@@ -186,7 +195,7 @@ def command_line():
     return parser
 
 
-def arguments(words=None):
+def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     """Return the options after their checks."""
     parser = command_line()
     options = parser.parse_args(words)
@@ -210,7 +219,7 @@ def arguments(words=None):
     return options
 
 
-def convert(words):
+def convert(words: Sequence[str]) -> None:
     """Read, judge, write, report."""
     options = arguments(words)
     progress = Progress(options.source.name)
@@ -238,7 +247,7 @@ def convert(words):
         sys.exit(2)
 
 
-def main(words=None):
+def main(words: Sequence[str] | None = None) -> None:
     """Convert the file of the command line, in a process of its own."""
     words = sys.argv[1:] if words is None else words
     supervised(lambda: run(lambda: convert(words)), "the file is damaged: a fault in the library that reads it")

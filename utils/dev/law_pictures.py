@@ -17,12 +17,13 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
 from dd3.errors import Problem, run
 from dd3.plot import point as pp
 from dd3.progress import each
 from dd3.tools.blocks import read_blocks
-from matplotlib.figure import Figure
-from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input_files" / "laws"

@@ -193,7 +193,10 @@ def on_surface(d: Datum) -> tuple[float, float] | None:
 
 def identify(options: argparse.Namespace, yields: str = "von_mises") -> None:
     """Identify the parameters of a criterion, without one of the hardening beside a given criterion; write the file."""
-    points, table, notes, data, curve = Points(options.program, options.young, options.poisson), [], [], [], None
+    points = Points(options.program, options.young, options.poisson)
+    table: list[str] = []
+    notes: list[str] = []
+    data, curve = list[Datum](), None
     hardens = [f"hardening = {options.hardening or UNIT}"]
     try:
         if options.criterion:
@@ -209,6 +212,7 @@ def identify(options: argparse.Namespace, yields: str = "von_mises") -> None:
     text = block(options, yields, hardens, table, notes)
     code, said, _ = points.run(text + f"*POINT p\n  material = {options.name}\n  control = {TENSION}\n"
                                "  target = 1e-6 0 0 0 0 0 steps=1\n")
+    points.bar.close()
     if code != 0:
         raise Problem(said.strip())
     path = Path(options.output or f"{options.name}.dat")

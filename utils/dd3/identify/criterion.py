@@ -1,9 +1,12 @@
 """Identification of a yield criterion from measured r-values and yield stresses."""
 
+import argparse
+from typing import Any
+
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.identify.least_squares import PULL, UNIT, Fit, law_text, report, rounded
+from dd3.identify.least_squares import PULL, UNIT, Fit, LoadPath, Points, law_text, report, rounded
 from dd3.identify.measurements import Datum
 
 MISSED = 0.1  # difference from a measured value, over the value or 1, that is noted
@@ -11,7 +14,7 @@ MISSED = 0.1  # difference from a measured value, over the value or 1, that is n
 # Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the least
 # number of measured values.
 NORMAL, SHEAR = ("12", "13", "21", "23", "31", "32"), ("66",)
-CRITERIA = {
+CRITERIA: dict[str, tuple[dict[str, tuple[float, float, float]], dict[str, float], int]] = {
     "hill48": ({"F": (0.5, -1, 5), "G": (0.5, -1, 5), "H": (0.5, -1, 5), "N": (1.5, 0.05, 10)}, {}, 3),
     "hosford": ({"m": (6, 2, 100)}, {}, 1),
     "yld91": (dict.fromkeys("abch", (1, -3, 4)), {"m": 8}, 3),
@@ -27,7 +30,8 @@ CRITERIA = {
 }
 
 
-def sought_parameters(options, data):
+def sought_parameters(options: argparse.Namespace, data: list[Datum]
+                     ) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
     """Return the parameters to identify, with start and bounds, and those that are given."""
     sought, fixed, least = CRITERIA[options.criterion]
     sought, fixed = dict(sought), dict(fixed)
@@ -53,21 +57,22 @@ def sought_parameters(options, data):
     return sought, fixed
 
 
-def test_paths(data):
+def test_paths(data: list[Datum]) -> dict[tuple[str, float], LoadPath]:
     """Return the paths of the tests of the data, each once, by test."""
     paths = {d.same_test(): d.path() for d in data}
     return {test: (control, angle, [(values, 1) for values in targets])
             for test, (control, angle, targets) in paths.items()}
 
 
-def criterion_table(data, values):
+def criterion_table(data: list[Datum], values: np.ndarray) -> list[str]:
     """Return the lines that compare measured and identified values."""
     return [f"{d.label():<32}{'-' if d.value is None else f'{d.value:.4f}':>10}{value:>12.4f}"
             + (f"{value - d.value:>12.4f}{d.weight:>8g}" if d.value is not None else "")
             for d, value in zip(data, values)]
 
 
-def criterion(options, points, data):
+def criterion(options: argparse.Namespace, points: Points, data: list[Datum]
+             ) -> tuple[str, list[str], list[str]]:
     """Identify a criterion; return its text, the table of values and notes."""
     sought, fixed = sought_parameters(options, data)
     if not any(d.same_test() == ("tension", 0) and d.quantity == "stress" for d in data):
@@ -77,12 +82,12 @@ def criterion(options, points, data):
     paths = test_paths(data + extra)
     place = {test: i for i, test in enumerate(paths)}
 
-    def compute(texts):
+    def compute(texts: list[str]) -> list[Any]:
         found = points.rows([(f"yield = {text}", f"hardening = {UNIT}") for text in texts], list(paths.values()))
         return [None if rows is None else np.array([d.computed(rows[place[d.same_test()]]) for d in data + extra])
                 for rows in found]
 
-    def evaluate(sets):
+    def evaluate(sets: list[dict[str, float]]) -> list[Any]:
         return [None if values is None or values[ratio] <= 0 else values[:len(data)]
                 for values in compute([law_text(options.criterion, {**one, **fixed}) for one in sets])]
 
@@ -100,7 +105,7 @@ def criterion(options, points, data):
     return text, criterion_table(data + extra, values), notes + fit.at_ends(point) + missed(data, values)
 
 
-def missed(data, values):
+def missed(data: list[Datum], values: np.ndarray) -> list[str]:
     """Return notes on the measured values that the criterion does not fit."""
     far = [f"{d.label()} is {value:.4g} in place of {d.value:.4g}" for d, value in zip(data, values)
            if d.weight and abs(value - d.value) > MISSED * max(d.value, 1)]

@@ -1,9 +1,12 @@
 """Identification of a hardening law, with back-stresses, from a tension curve."""
 
+import argparse
+from typing import Any
+
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.identify.least_squares import Fit, law_text, report, rounded
+from dd3.identify.least_squares import Fit, LoadPath, Points, law_text, report, rounded
 from dd3.identify.measurements import TENSION, read_curve
 
 MISSED_CURVE = 0.01  # root mean square of the difference, over the largest stress, that is noted
@@ -11,19 +14,21 @@ LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "ta
 BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
 
 
-def law_start(name, plastic, stress):
+def law_start(name: str, plastic: np.ndarray, stress: np.ndarray) -> dict[Any, float]:
     """Return the starting values of a hardening law's parameters."""
     first, last, end = stress[0], stress.max(), max(plastic.max(), 1e-3)
     rise = max(last - first, 0.05 * last)
     swift = {"K": last / (0.01 + end) ** 0.2, "e0": 0.01, "n": 0.2}
     voce = {"Y0": first, "Rsat": rise, "CR": 2 / end}
-    return {"linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
-            "ludwik": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
-            "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
-            "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress)}[name]
+    laws: dict[str, dict[Any, float]] = {
+        "linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
+        "ludwik": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
+        "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
+        "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress)}
+    return laws[name]
 
 
-def table_start(plastic, stress):
+def table_start(plastic: np.ndarray, stress: np.ndarray) -> dict[float, float]:
     """Return the start of a table: the initial flow stress and its rise from each knot to the next."""
     count = min(8, len(plastic) - 1)
     knots = [float(f"{value:.4g}") for value in plastic.max() * np.linspace(0, 1, count) ** 2]
@@ -33,7 +38,7 @@ def table_start(plastic, stress):
     return {knots[0]: values[0], **dict(zip(knots[1:], rises))}
 
 
-def hardening_lines(name, values, digits=10):
+def hardening_lines(name: str, values: dict[Any, float], digits: int = 10) -> list[str]:
     """Return the input lines of the hardening and of the back-stresses, whose keys are (law, number, parameter)."""
     own = {key: value for key, value in values.items() if not isinstance(key, tuple)}
     if name == "table":
@@ -47,7 +52,7 @@ def hardening_lines(name, values, digits=10):
     return lines
 
 
-def measured_curve(options):
+def measured_curve(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return at most 60 strains and stresses beyond the first elastic range, and the turning points."""
     strain, stress = read_curve(options.curve, bool(options.backstress))
     if options.plastic_strain:
@@ -72,7 +77,8 @@ def measured_curve(options):
     return strain, stress, turns
 
 
-def hardening_start(options, strain, stress, turns):
+def hardening_start(options: argparse.Namespace, strain: np.ndarray, stress: np.ndarray, turns: np.ndarray
+                   ) -> dict[Any, tuple[float, float, float]]:
     """Return the logarithms of the parameters to identify, with start and bounds."""
     forward = slice(0, turns[0] + 1 if len(turns) else None)
     plastic = strain[forward] - stress[forward] / options.young
@@ -86,28 +92,29 @@ def hardening_start(options, strain, stress, turns):
             for name, value in start.items()}
 
 
-def curve_table(strain, stress, values, missed_by):
+def curve_table(strain: np.ndarray, stress: np.ndarray, values: np.ndarray, missed_by: float) -> list[str]:
     """Return the lines that compare eight rows of the curve, and the root mean square of the difference (MPa)."""
     some = np.unique(np.linspace(0, len(strain) - 1, 8).astype(int))
     return [*(f"{f'strain {strain[i]:.4f}, MPa':<32}{stress[i]:>10.2f}{values[i]:>12.2f}{values[i] - stress[i]:>12.2f}"
               for i in some), f"root mean square over {len(strain)} rows: {missed_by:.2f} MPa"]
 
 
-def hardening(options, points, yields):
+def hardening(options: argparse.Namespace, points: Points, yields: str
+             ) -> tuple[list[str], list[str], list[str], tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain, both stresses."""
     strain, stress, turns = measured_curve(options)
     sought = hardening_start(options, strain, stress, turns)
     counts = np.ones(len(strain), int)
     if options.backstress:  # the law of the back-stress is integrated step by step
         counts = np.maximum(1, np.ceil(np.abs(np.diff(strain, prepend=0)) / 0.002)).astype(int)
-    path = (TENSION, 0, [([value, 0, 0, 0, 0, 0], count) for value, count in zip(strain, counts)])
+    path: LoadPath = (TENSION, 0, [([value, 0, 0, 0, 0, 0], count) for value, count in zip(strain, counts)])
     ends = np.cumsum(counts)
 
-    def compute(laws):
+    def compute(laws: list[list[str]]) -> list[Any]:
         found = points.rows([(f"yield = {yields}", *lines) for lines in laws], [path])
         return [None if rows is None else np.array([rows[0][i]["s11"] for i in ends]) for rows in found]
 
-    def evaluate(sets):
+    def evaluate(sets: list[dict[Any, float]]) -> list[Any]:
         return compute([hardening_lines(options.hardening, {key: np.exp(value) for key, value in one.items()})
                         for one in sets])
 

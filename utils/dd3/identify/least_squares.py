@@ -1,12 +1,16 @@
 """Least squares of what the program computes at single points, from trial parameters of a law."""
 
 import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.optimize import differential_evolution, least_squares
 
 from dd3.errors import Problem
 from dd3.programs import POINTS, run_points
+from dd3.progress import counter
 
 UNIT = "perfect Y0=100"  # hardening law of the trial runs of criteria
 REFUSED = 1e3  # residual of a set that the program refuses
@@ -17,8 +21,11 @@ EVALUATIONS = 60  # at most, in a descent
 STEP = 1e-4  # of the differences, over the size of the parameter
 END = 3e-3  # fraction of a range: a note if a parameter is nearer to its end
 
+# Control, angle to the rolling direction, targets with their steps.
+LoadPath = tuple[str, float, list[tuple[Sequence[float], int]]]
 
-def law_text(name, values, digits=10):
+
+def law_text(name: str, values: dict[str, float], digits: int = 10) -> str:
     """Return a law with its parameters in the form of the input."""
     return " ".join([name, *(f"{key}={value:.{digits}g}" for key, value in values.items())])
 
@@ -26,11 +33,12 @@ def law_text(name, values, digits=10):
 class Points:
     """Runs of the program with materials at single points, along given paths."""
 
-    def __init__(self, program, young, poisson):
+    def __init__(self, program: str | Path, young: float, poisson: float) -> None:
         self.program, self.elastic, self.runs = program, f"  young = {young:g}\n  poisson = {poisson:g}", 0
-        self.refusal = ""
+        self.refusal, self.bar = "", counter("identification", "runs")
 
-    def deck(self, materials, paths):
+    def deck(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]
+            ) -> tuple[str, list[int]]:
         """Return the input, and the number of the material to which each of its lines belongs."""
         lines, owner = [], []
         for i, laws in enumerate(materials):
@@ -44,15 +52,18 @@ class Points:
             owner += [i] * len(block)
         return "\n".join(lines) + "\n", owner
 
-    def run(self, text):
+    def run(self, text: str) -> tuple[int, str, dict[str, list[Any]]]:
         """Return exit code, messages and rows by point of one run."""
         self.runs += 1
+        self.bar.update()
         done, points = run_points(self.program, text)
         return done.code, done.errors, points
 
-    def rows(self, materials, paths):
+    def rows(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]
+            ) -> list[Any]:
         """Return the rows of each path for each material; None for a material that the program refuses."""
-        result, left = [None] * len(materials), list(range(len(materials)))
+        result: list[Any] = [None] * len(materials)
+        left = list(range(len(materials)))
         while left:
             text, owner = self.deck([materials[i] for i in left], paths)
             code, said, points = self.run(text)
@@ -62,7 +73,7 @@ class Points:
                 break
             refused = {owner[int(line) - 1] for line in re.findall(re.escape(POINTS) + r":(\d+): error", said)}
             if code == 2 and refused:
-                self.refusal = re.search(r": error: (.*)", said).group(1)
+                self.refusal = said.partition(": error: ")[2].partition("\n")[0]
                 left = [number for i, number in enumerate(left) if i not in refused]
             elif code == 2:
                 raise Problem(said.strip())
@@ -82,20 +93,21 @@ class NoStart(Exception):
 class Fit:
     """Least squares of values that the program computes from trial parameters."""
 
-    def __init__(self, evaluate, sought, measured, weights, pull):
+    def __init__(self, evaluate: Callable[..., Any], sought: dict[Any, tuple[float, float, float]],
+                 measured: Any, weights: Any, pull: float) -> None:
         self.evaluate, self.names = evaluate, list(sought)
         self.start, self.low, self.high = (np.array([row[i] for row in sought.values()], float) for i in range(3))
         self.measured, self.weights, self.pull = np.array(measured), np.array(weights), pull
-        self.known = {}
+        self.known: dict[bytes, tuple[np.ndarray, np.ndarray, bool]] = {}
 
-    def residuals(self, points):
+    def residuals(self, points: list[np.ndarray]) -> list[np.ndarray | None]:
         """Return the residuals at several points, from one run; None for those that the program refuses."""
         found = self.evaluate([dict(zip(self.names, point)) for point in points])
         return [None if values is None or not np.all(np.isfinite(values)) else np.concatenate(
             [self.weights * (values - self.measured), self.pull * (point - self.start)])
             for values, point in zip(found, points)]
 
-    def at(self, point):
+    def at(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
         """Return residuals at a point, their derivatives by differences, and whether a set nearby is refused."""
         key = point.tobytes()
         if key not in self.known:
@@ -114,14 +126,14 @@ class Fit:
             self.known[key] = here, np.array([(one - here) / step for one, step in zip(near, steps)]).T, bool(refused)
         return self.known[key]
 
-    def descend(self, first):
+    def descend(self, first: np.ndarray) -> Any:
         """Minimise the squares from a point."""
         return least_squares(lambda point: self.at(point)[0], first, jac=lambda point: self.at(point)[1],
                              bounds=(self.low, self.high), xtol=1e-8, ftol=1e-5, gtol=1e-9, max_nfev=EVALUATIONS)
 
-    def along_border(self, first, seed):
+    def along_border(self, first: np.ndarray, seed: int) -> np.ndarray:
         """Continue from a point next to refused sets, where least squares fail, by differential evolution."""
-        def costs(points):
+        def costs(points: np.ndarray) -> np.ndarray:
             found = self.residuals(list(points.T))
             return np.array([np.inf if one is None else one @ one / 2 for one in found])
 
@@ -133,7 +145,7 @@ class Fit:
             tol=1e-4, rng=seed)
         return found.x if found.fun < costs(first[:, None])[0] else first
 
-    def best(self, starts, spread, seed):
+    def best(self, starts: int, spread: float, seed: int) -> tuple[np.ndarray, list[float]]:
         """Return the parameters of the best of several starts, and the root of the cost of each start."""
         random, best, costs = np.random.default_rng(seed), None, []
         scale = spread * np.maximum(np.abs(self.start), 0.5)
@@ -155,10 +167,10 @@ class Fit:
         point = best.x
         if self.at(point)[2]:
             point = self.descend(self.along_border(point, seed)).x
-            costs.append(np.linalg.norm(self.at(point)[0]))
+            costs.append(float(np.linalg.norm(self.at(point)[0])))
         return point, costs
 
-    def left_open(self, point, none, rest):
+    def left_open(self, point: np.ndarray, none: str, rest: str) -> list[str]:
         """Return notes on what the data do not determine; `none` and `rest` say what value those parameters have."""
         slope = self.at(point)[1][:len(self.measured)]
         size = np.linalg.norm(slope, axis=0)
@@ -172,19 +184,19 @@ class Fit:
                          f"{rest}")
         return notes
 
-    def at_ends(self, point):
+    def at_ends(self, point: np.ndarray) -> list[str]:
         """Return notes on the parameters at the end of their range."""
         ends = np.minimum(point - self.low, self.high - point) < END * (self.high - self.low)
         return [f"{name_of(name)} is at the end of its range: another law may fit the data better"
                 for name, end in zip(self.names, ends) if end]
 
 
-def name_of(name):
+def name_of(name: str) -> str:
     """Return the name of a parameter in the input."""
     return name[-1] if isinstance(name, tuple) else name
 
 
-def rounded(trial, compute):
+def rounded(trial: Callable[[int], Any], compute: Callable[[list[Any]], list[Any]]) -> tuple[Any, np.ndarray]:
     """Return the law with the fewest digits that the program accepts, six or more, and its values."""
     texts = [trial(digits) for digits in (6, 8, 10)]
     for text, values in zip(texts, compute(texts)):
@@ -193,6 +205,6 @@ def rounded(trial, compute):
     raise Problem("the program refuses the rounded parameters: " + texts[-1])
 
 
-def report(name, costs):
+def report(name: str, costs: list[float]) -> None:
     """Print the result of each start."""
     print(f"{name}: root of the sum of squares from each start: " + " ".join(f"{cost:.3g}" for cost in costs))

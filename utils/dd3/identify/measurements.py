@@ -1,9 +1,11 @@
 """Measured values of tests on sheets, and curves. Errors name the file, the line and the word."""
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -25,9 +27,10 @@ RANGES = {"r": (0, 20, "an r-value, 0 to 20: the strain in width over the strain
 FALL = 0.95  # a curve that ends below this fraction of its largest stress is not one of true stresses
 
 
-def every(parts):
+def every(parts: Sequence[Callable[[], Any]]) -> list[Any]:
     """Call all parts and return their results; if some fail, raise a Problem with the first 20 messages."""
-    results, said = [], []
+    results: list[Any] = []
+    said = []
     for part in parts:
         try:
             results.append(part())
@@ -45,21 +48,21 @@ class Line:
     where: str
     text: str
 
-    def words(self, pattern):
+    def words(self, pattern: str) -> list[tuple[str, int]]:
         """Return its words, each with its column; a comment after # is left out."""
         return [(found.group(), found.start()) for found in re.finditer(pattern, self.text.partition("#")[0])]
 
-    def problem(self, word, message, expected):
+    def problem(self, word: tuple[str, int], message: str, expected: str) -> Problem:
         """Return a Problem that points at a word (text and column)."""
         text, start = word
         return Problem(f"{self.where}: error: {message}\n  {self.text}\n  {' ' * start}{'^' * max(len(text), 1)}\n"
                        f"  expected: {expected}")
 
-    def end(self):
+    def end(self) -> tuple[str, int]:
         """Return the position behind the last character."""
         return "", len(self.text.rstrip())
 
-    def number(self, word, name, low, high, expected):
+    def number(self, word: tuple[str, int], name: str, low: float, high: float, expected: str) -> float:
         """Return a word as a number between low and high."""
         try:
             value = float(word[0])
@@ -73,19 +76,20 @@ class Line:
 class Datum:
     """A measured value: kind of test, angle, quantity, value, weight. Without a value it is only computed."""
 
-    def __init__(self, key, angle=0.0, value=None, weight=None):
+    def __init__(self, key: str, angle: float = 0.0, value: float | None = None, weight: float | None = None) -> None:
         self.kind, self.quantity, usual, self.angled = KEYS[key]
-        self.angle, self.value, self.weight = angle, value, usual if weight is None else weight
+        self.value: Any = value
+        self.angle, self.weight = angle, usual if weight is None else weight
 
-    def label(self):
+    def label(self) -> str:
         """Return its name in the table."""
         return f"{self.kind}{f' {self.angle:g}' if self.angled else ''}, {self.quantity}"
 
-    def same_test(self):
+    def same_test(self) -> tuple[str, float]:
         """Return the identity of the test: kind and angle."""
         return self.kind, self.angle
 
-    def path(self):
+    def path(self) -> tuple[str, float, list[list[float]]]:
         """Return control, angle and targets; equibiaxial tension is compression in thickness plus pressure."""
         sign = -1 if self.kind in ("compression", "equibiaxial") else 1
         place = 2 if self.kind.startswith("equibiaxial") else 0
@@ -93,7 +97,7 @@ class Datum:
         strains = (0.01, 0.02, 0.03, 0.04, 0.041) if self.kind == "plane strain" else (0.01, 0.011)
         return control, self.angle, [[sign * strain if i == place else 0.0 for i in range(6)] for strain in strains]
 
-    def computed(self, rows):
+    def computed(self, rows: list[dict[str, float]]) -> float:
         """Return its value from the rows of its path; the strain between the last two is plastic."""
         through = self.kind.startswith("equibiaxial")
         if self.quantity == "stress":
@@ -102,7 +106,7 @@ class Datum:
         return width / other
 
 
-def datum(key, line, words):
+def datum(key: str, line: Line, words: list[tuple[str, int]]) -> Datum:
     """Return the datum of the words of its values."""
     _, quantity, _, angled = KEYS[key]
     expected = f"{'angle, ' if angled else ''}value and, if wanted, weight; {RANGES[quantity][2]}"
@@ -111,19 +115,20 @@ def datum(key, line, words):
         place = line.end() if len(words) < least else words[-1]
         raise line.problem(place, f"{key} has too {'few' if len(words) < least else 'many'} numbers", expected)
     low, high, meant = RANGES[quantity]
-    asked = [("angle", 0, 90, "an angle to the rolling direction, 0 to 90 degrees")] * angled
-    asked += [(quantity, low, high, meant), ("weight", 0, 1e6, "a weight, 0 or more")]
+    angle = ("angle", 0, 90, "an angle to the rolling direction, 0 to 90 degrees")
+    asked: list[tuple[str, float, float, str]] = [*[angle] * angled, (quantity, low, high, meant),
+                                                  ("weight", 0, 1e6, "a weight, 0 or more")]
     values = every([partial(line.number, word, *one) for word, one in zip(words, asked)])
     return Datum(key, *([0.0] * (not angled) + values))
 
 
-def from_argument(key, text):
+def from_argument(key: str, text: str) -> list[Datum]:
     """Return the datum of an argument of the command line: angle:value:weight."""
     line = Line(f"--{key.replace('_', '-')}", text)
     return [datum(key, line, line.words(r"[^:]+"))]
 
 
-def lines_of(path):
+def lines_of(path: str) -> list[Line]:
     """Return the lines of a file. Headings may have any encoding."""
     try:
         text = read_text(path)
@@ -132,7 +137,7 @@ def lines_of(path):
     return [Line(f"{path}:{i}", line) for i, line in enumerate(text.splitlines(), 1)]
 
 
-def read_data(path):
+def read_data(path: str) -> list[Datum]:
     """Return the data of a file with a key and its numbers in each line."""
     lines = [(line, data_words(line)) for line in lines_of(path)]
     data = every([partial(data_line, line, words) for line, words in lines if words])
@@ -141,20 +146,20 @@ def read_data(path):
     return data
 
 
-def data_words(line):
+def data_words(line: Line) -> list[tuple[str, int]]:
     """Return the words of a line; a comma inside a word is kept if blanks separate words, as a wrong decimal point."""
     others = re.search(r"\S[\s;]+\S", line.text.partition("#")[0])
     return line.words(r"[^\s;:=]*[^\s,;:=]" if others else r"[^\s,;:=]+")
 
 
-def data_line(line, words):
+def data_line(line: Line, words: list[tuple[str, int]]) -> Datum:
     """Return the datum of a line."""
     if words[0][0] not in KEYS:
         raise line.problem(words[0], f"unknown key '{words[0][0]}'", "one of: " + " ".join(KEYS))
     return datum(words[0][0], line, words[1:])
 
 
-def read_curve(path, reversed_too):
+def read_curve(path: str, reversed_too: bool) -> np.ndarray:
     """Return strains and stresses of a table with two columns; lines before the first number are a header."""
     lines = [(line, words) for line in lines_of(path) if (words := line.words(r"[^\s,;]+"))]
     first = next((i for i, (_, words) in enumerate(lines) if re.match(r"[-+.\d]", words[0][0])), len(lines))
@@ -165,7 +170,7 @@ def read_curve(path, reversed_too):
     return np.array([row[2:] for row in rows]).T
 
 
-def curve_row(line, words):
+def curve_row(line: Line, words: list[tuple[str, int]]) -> tuple[Line, list[tuple[str, int]], float, float]:
     """Return a row of a curve: its line, its words, strain and stress."""
     if len(words) < 2:
         raise line.problem(line.end(), "a number is missing", "strain and stress")
@@ -177,7 +182,7 @@ def curve_row(line, words):
         partial(line.number, words[1], "stress", -1e4, 1e4, "a true stress in MPa")])
 
 
-def check_curve(rows, reversed_too):
+def check_curve(rows: list[tuple[Line, list[Any], float, float]], reversed_too: bool) -> None:
     """Check that a curve can be one of a tension test."""
     for (_, _, last, _), (line, words, strain, _) in pairwise(rows):
         if strain == last or (strain < last and not reversed_too):

@@ -1,6 +1,7 @@
 """Lines of draw-beads on the sheet, for pictures."""
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -20,7 +21,7 @@ def draped(line: np.ndarray, nodes: np.ndarray) -> pv.PolyData:
     return pv.lines_from_points(np.column_stack([plan, nodes[nearest, 2].max(axis=1)]))
 
 
-def draw_beads(plotter: pv.Plotter, lines: Iterable[np.ndarray], nodes: np.ndarray, shift: np.ndarray,
+def draw_beads(plotter: Any, lines: Iterable[np.ndarray], nodes: np.ndarray, shift: np.ndarray,
                images: Callable[[pv.PolyData], list[pv.PolyData]]) -> None:
     """Draw lines on the sheet, moved by `shift` towards the eye; `images` adds the mirror images of a mesh."""
     for line in lines:

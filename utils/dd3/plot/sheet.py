@@ -134,10 +134,10 @@ def tool_surface(patches: Patches, shift: np.ndarray) -> tuple[pv.PolyData, pv.P
         for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
             lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
         first += total.size
-    points, faces, lines = map(np.concatenate, (points, faces, lines))
-    skin = pv.PolyData(points, np.insert(faces, 0, 4, axis=1))
+    xyz, cells, edges = map(np.concatenate, (points, faces, lines))
+    skin = pv.PolyData(xyz, np.insert(cells, 0, 4, axis=1))
     if len(patches) <= MANY_PATCHES:
-        return skin, pv.PolyData(points, lines=np.insert(lines, 0, 2, axis=1))
+        return skin, pv.PolyData(xyz, lines=np.insert(edges, 0, 2, axis=1))
     joined = skin.clean(tolerance=1e-6)
     return skin, joined.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
                                               non_manifold_edges=False, feature_angle=30)
@@ -152,7 +152,7 @@ def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
     return parts
 
 
-def draw(plotter: pv.Plotter, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
+def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
          limits: Sequence[float], box: Box) -> None:
     """Draw one picture."""
     mesh = run.mesh(step, options.field, options.cells)[0]
@@ -181,7 +181,7 @@ def draw(plotter: pv.Plotter, run: Run, step: int, options: argparse.Namespace, 
     text.prop.SetBackgroundOpacity(1)
 
 
-def draw_bar(plotter: pv.Plotter, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
+def draw_bar(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
     """Draw the colour bar in a strip below the pictures."""
     table = pv.LookupTable(options.colours, scalar_range=limits)
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
@@ -215,7 +215,7 @@ def eye(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
     return np.array(place) / np.linalg.norm(place), np.array(up)
 
 
-def aim(plotter: pv.Plotter, box: Box, options: argparse.Namespace) -> None:
+def aim(plotter: Any, box: Box, options: argparse.Namespace) -> None:
     """Point the camera at the sheet."""
     (place, up), (low, high) = eye(options), box
     centre = np.array(options.focus) if options.focus else (low + high) / 2
@@ -346,13 +346,13 @@ def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Se
     return [low, high]
 
 
-def new_plotter(options: argparse.Namespace, count: int) -> pv.Plotter:
+def new_plotter(options: argparse.Namespace, count: int) -> Any:
     """Return the plotter of `count` pictures and the strip of the colour bar."""
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     pv.OFF_SCREEN = True
     window = [options.size[0], options.size[1] * count]
     bar = min(BAR_HEIGHT, window[1] / 2)
-    plotter = pv.Plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
+    plotter: Any = pv.Plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
                          off_screen=True, border=False, window_size=window)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")

@@ -5,20 +5,24 @@ is one patch of degree 2 x 2, so the surface has no gaps however the faces are t
 regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
 below the tolerance.
 """
+import argparse
 import os
 import re
 import sys
 import time
 from collections import defaultdict
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.progress import Progress
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
 from dd3.tools.division import Division
@@ -62,7 +66,7 @@ class Model:
 
 
 @contextmanager
-def silence():
+def silence() -> Iterator[None]:
     """Discard what OpenCASCADE prints on the standard output."""
     sys.stdout.flush()
     kept = os.dup(1)
@@ -76,7 +80,7 @@ def silence():
 
 
 @contextmanager
-def session():
+def session() -> Iterator[Any]:
     """Give Gmsh, without its messages."""
     import gmsh
     gmsh.initialize(interruptible=False)
@@ -91,7 +95,7 @@ def session():
         gmsh.finalize()
 
 
-def load(gmsh, path):
+def load(gmsh: Any, path: Path) -> None:
     """Read the shapes of a file."""
     gmsh.clear()
     refuse_cut(path)
@@ -108,12 +112,12 @@ def load(gmsh, path):
         raise Problem(f"{path}: no faces; the file holds {kind}")
 
 
-def allowed(seconds, path):
+def allowed(seconds: float, path: Path) -> float:
     """Return the processor time for the file, s."""
     return seconds + TIME_PER_MB * path.stat().st_size / 1e6
 
 
-def refuse_cut(path):
+def refuse_cut(path: Path) -> None:
     """Refuse BREP and IGES texts without their end: OpenCASCADE does not end reading the one, and takes the part of the
     other that is there."""
     data = path.read_bytes()
@@ -128,13 +132,13 @@ def refuse_cut(path):
         raise Problem(f"{path}: the file is cut off")
 
 
-def free_edges(gmsh):
+def free_edges(gmsh: Any) -> list[int]:
     """Return the edges with one face, those without length and seams left out."""
     single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
     return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
 
 
-def refuse_gaps(gmsh, path, sewn):
+def refuse_gaps(gmsh: Any, path: Path, sewn: float | None) -> None:
     """Refuse free edges that run beside each other: the faces were not joined, or not sewn within `sewn` mm."""
     single = free_edges(gmsh)
     if not single:
@@ -160,14 +164,14 @@ def refuse_gaps(gmsh, path, sewn):
                          else "their courses differ, so --sew does not join them; mend the CAD"))
 
 
-def is_seam(gmsh, edge):
+def is_seam(gmsh: Any, edge: int) -> bool:
     """Tell whether the only face of an edge has it on both sides."""
     up = gmsh.model.getAdjacencies(1, edge)[0]
     both = [abs(tag) for _, tag in gmsh.model.getBoundary([(2, up[0])], combined=False, oriented=True)]
     return both.count(edge) > 1
 
 
-def sew(gmsh, path, tolerance, wanted):
+def sew(gmsh: Any, path: Path, tolerance: float, wanted: bool) -> list[str]:
     """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
     before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
     if not before:
@@ -191,7 +195,7 @@ def sew(gmsh, path, tolerance, wanted):
     return [f"sewn: {before - after} of {before} free edges of the CAD, within {tolerance:g} mm"]
 
 
-def part_names(gmsh):
+def part_names(gmsh: Any) -> list[tuple[str, set[int]]]:
     """Return the parts of the model: the name and the faces of each solid, or of each set of connected faces."""
     parts = []
     for number, (_, tag) in enumerate(gmsh.model.getEntities(3), 1):
@@ -220,7 +224,7 @@ def part_names(gmsh):
     return parts
 
 
-def choose(path, parts, wanted):
+def choose(path: Path, parts: list[tuple[str, set[int]]], wanted: list[str] | None) -> list[int]:
     """Return the tags of the faces of the parts wanted, by name or number; all by default."""
     if not wanted:
         return sorted(set().union(*(faces for _, faces in parts)))
@@ -235,7 +239,7 @@ def choose(path, parts, wanted):
     return sorted(chosen)
 
 
-def doubled(gmsh, tags):
+def doubled(gmsh: Any, tags: list[int]) -> list[tuple[int, int]]:
     """Return the faces that lie on an earlier one: same area, centre and box."""
     box = np.array([gmsh.model.getBoundingBox(2, tag) for tag in tags]).reshape(-1, 6)
     centre = np.array([gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags]).reshape(-1, 3)
@@ -251,7 +255,7 @@ def doubled(gmsh, tags):
     return list(result.items())
 
 
-def collect(gmsh, model):
+def collect(gmsh: Any, model: Model) -> None:
     """Take the quadrilaterals of the mesh."""
     label, xyz, _ = gmsh.model.mesh.getNodes()
     place = np.zeros(int(label.max()) + 1, int)
@@ -274,7 +278,7 @@ def collect(gmsh, model):
     model.nodes = xyz[place[model.labels]]
 
 
-def measure(gmsh, model, net, shift=0.0):
+def measure(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.ndarray:
     """Return the largest distance of the patches from the CAD for each face, mm.
 
     With a shift, the distance from the surface at that distance along the patches' normals.
@@ -295,7 +299,7 @@ def measure(gmsh, model, net, shift=0.0):
     return distance
 
 
-def normals(gmsh, model):
+def normals(gmsh: Any, model: Model) -> np.ndarray:
     """Return the unit normals of the CAD at the nodes (patch, v, u, 3)."""
     result = np.zeros_like(model.nodes)
     for index, tag in enumerate(model.tags):
@@ -308,13 +312,13 @@ def normals(gmsh, model):
     return result
 
 
-def middle_normals(model):
+def middle_normals(model: Model) -> np.ndarray:
     """Return normals in the middle of the patches, not of unit length."""
     nodes = model.nodes
     return np.cross(nodes[:, 1, 2] - nodes[:, 1, 0], nodes[:, 2, 1] - nodes[:, 0, 1])
 
 
-def worst_kinks(net, face, count):
+def worst_kinks(net: np.ndarray, face: np.ndarray, count: int) -> np.ndarray:
     """Return the largest kink inside each face, degrees."""
     joints = find_joints(net)
     angle = kinks(net, joints)
@@ -324,7 +328,7 @@ def worst_kinks(net, face, count):
     return result
 
 
-def mesh_within(gmsh, path, model, tolerance, progress):
+def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, progress: Progress) -> None:
     """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
     division = Division(gmsh, model.tags)
     best, start = None, time.process_time()
@@ -350,7 +354,7 @@ def mesh_within(gmsh, path, model, tolerance, progress):
     _, model.nodes, model.uv, model.labels, model.face, model.distance = best
 
 
-def mesh_once(gmsh, path, model, division):
+def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[Any]:
     """Mesh the faces and measure their distance; return the faces where that failed."""
     with limited(MESH_TIME, f"{path}: the faces are not meshed in {MESH_TIME:.0f} s of processor time: leave out "
                             "what the sheet does not touch, in the CAD program or by --part"):
@@ -361,7 +365,7 @@ def mesh_once(gmsh, path, model, division):
     return failed
 
 
-def faults(model, rounds):
+def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
     """Return the largest kink inside each face, degrees, 0 after the first rounds; and the faces with folds."""
     net = from_nodes(model.nodes)
     count = len(model.tags)
@@ -369,7 +373,7 @@ def faults(model, rounds):
     return kink, set(model.face[folded(net)].tolist())
 
 
-def read_cad(gmsh, path, options, progress):
+def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
     """Return the model of a CAD file, meshed within the tolerance."""
     model = Model()
     load(gmsh, path)
@@ -405,7 +409,8 @@ def read_cad(gmsh, path, options, progress):
     return model
 
 
-def cut_closed(gmsh, path, model, closed, planes):
+def cut_closed(gmsh: Any, path: Path, model: Model, closed: list[int], planes: list[tuple[np.ndarray, np.ndarray]]
+              ) -> None:
     """Cut faces, all by planes, as some close in themselves; the parts keep the names."""
     gmsh.model.mesh.clear()
     with silence(), limited(allowed(SEW_TIME, path), f"{path}: faces that close in themselves are not cut in "
@@ -418,6 +423,6 @@ def cut_closed(gmsh, path, model, closed, planes):
     model.tags = [tag for part in parts for tag in part]
 
 
-def surface_of(model, nodes=None):
+def surface_of(model: Model, nodes: np.ndarray | None = None) -> Surface:
     """Return the surface of a model, or with its nodes moved."""
     return Surface(from_nodes(model.nodes if nodes is None else nodes), model.face, model.names, list(model.notes))

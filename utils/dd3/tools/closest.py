@@ -1,4 +1,6 @@
 """Closest points of a CAD face, from the parameters of the patches' nodes by Newton's method."""
+from typing import Any
+
 import numpy as np
 
 from dd3.tools.surface import grid
@@ -8,7 +10,8 @@ STEPS = 6
 SETTLED = 1e-5
 
 
-def closest(gmsh, tag, points, uv, at_nodes=False):
+def closest(gmsh: Any, tag: int, points: np.ndarray, uv: np.ndarray, at_nodes: bool = False
+           ) -> tuple[np.ndarray, np.ndarray]:
     """Return the closest points (patch, k, 3) and their parameters (patch, k, 2).
 
     points (patch, k, 3) on a regular grid of a patch each; uv (patch, 3, 3, 2): the parameters of its nodes, NaN where
@@ -29,14 +32,14 @@ def closest(gmsh, tag, points, uv, at_nodes=False):
     return foot, found
 
 
-def interpolated(uv, side):
+def interpolated(uv: np.ndarray, side: int) -> np.ndarray:
     """Return the parameters at the points of a grid, by the quadratics through the nodes."""
     u, v = grid(side)
     along = [np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)], axis=-1) for t in (u, v)]
     return np.einsum("kj,ki,nijc->nkc", *along, uv)
 
 
-def iterate(gmsh, tag, points, uv):
+def iterate(gmsh: Any, tag: int, points: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return parameters, points and which patches have settled, after steps of Gauss and Newton."""
     size = np.ptp(points, axis=1).max(axis=1)
     uv = uv.copy()

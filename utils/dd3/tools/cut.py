@@ -1,5 +1,7 @@
 """Cuts of CAD faces that close in themselves, as a fillet or a bead around a whole tool: their parts have four edges,
 and so a regular mesh."""
+from typing import Any
+
 import numpy as np
 
 from dd3.tools.parameters import pole_parameters
@@ -10,7 +12,7 @@ SAME_PLANE = 0.02
 CIRCLE_POINTS = 16
 
 
-def is_closed(gmsh, tag):
+def is_closed(gmsh: Any, tag: int) -> bool:
     """Tell whether a curved face has an edge that ends where it begins."""
     if gmsh.model.getType(2, tag) == "Plane":
         return False
@@ -19,7 +21,7 @@ def is_closed(gmsh, tag):
                and gmsh.model.occ.getMass(1, edge) > 1e-9 for edge in edges)
 
 
-def planes_through_pole(gmsh, tag):
+def planes_through_pole(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return two planes, perpendicular, through the axis of a face that goes all around a pole, (point, normal), one
     of them through its seam; none for other faces, and for spheres and cones, on which Gmsh does not fail."""
     if gmsh.model.getType(2, tag) in ("Plane", "Sphere", "Cone"):
@@ -41,13 +43,13 @@ def planes_through_pole(gmsh, tag):
     return [(point, normal / np.linalg.norm(normal)) for normal in (first, np.cross(axis, first))]
 
 
-def planes_through(boxes):
+def planes_through(boxes: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return planes as (point, normal): two through the middle of each box along its shortest side."""
     return [((low + high) / 2, np.eye(3)[axis]) for low, high in boxes
             for axis in range(3) if axis != int(np.argmin(high - low))]
 
 
-def different(planes, size):
+def different(planes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return planes without those that nearly coincide with an earlier one."""
     kept = []
     for point, normal in planes:
@@ -57,7 +59,7 @@ def different(planes, size):
     return kept
 
 
-def add_square(occ, centre, normal, half):
+def add_square(occ: Any, centre: np.ndarray, normal: np.ndarray, half: float) -> int:
     """Add a square face, its half side given; return its tag."""
     along = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     along /= np.linalg.norm(along)
@@ -68,7 +70,7 @@ def add_square(occ, centre, normal, half):
     return occ.addPlaneSurface([occ.addCurveLoop(lines)])
 
 
-def cut(gmsh, tags, planes):
+def cut(gmsh: Any, tags: list[int], planes: list[tuple[np.ndarray, np.ndarray]]) -> list[list[int]]:
     """Cut all faces by planes, (point, normal); return the parts of each face. Solids go."""
     occ = gmsh.model.occ
     low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))

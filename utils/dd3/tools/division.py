@@ -1,5 +1,6 @@
 """Division of CAD faces into quadrilaterals: how often each edge is divided, and which faces have a regular mesh."""
 from collections import defaultdict
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ OPTIONS = {"Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 1, "Mesh.Subdi
            "Mesh.ElementOrder": 1, "Mesh.HighOrderOptimize": 0, "Mesh.MeshSizeFromPoints": 0}
 
 
-def turning(vectors):
+def turning(vectors: np.ndarray) -> float:
     """Return the sum of the angles between consecutive vectors, degrees."""
     a, b = vectors[:-1], vectors[1:]
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)).sum())
@@ -26,7 +27,7 @@ def turning(vectors):
 class Division:
     """Numbers of divisions of the edges; a factor on them for each face, which `refine` raises."""
 
-    def __init__(self, gmsh, tags):
+    def __init__(self, gmsh: Any, tags: list[int]) -> None:
         self.tags = tags
         self.factor = dict.fromkeys(tags, 1.0)
         self.last = {}  # the distance of a face when it was divided further
@@ -44,12 +45,12 @@ class Division:
         self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}
 
     @staticmethod
-    def loop(gmsh, tag):
+    def loop(gmsh: Any, tag: int) -> list[int]:
         """Return the edges of a face, signed."""
         return [edge for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
 
     @staticmethod
-    def edge_turn(gmsh, edge, tag):
+    def edge_turn(gmsh: Any, edge: int, tag: int) -> float:
         """Return the turn of the tangent or of the face's normal along an edge, the larger one, degrees."""
         low, high = gmsh.model.getParametrizationBounds(1, edge)
         t = np.linspace(low[0], high[0], SAMPLES)
@@ -61,7 +62,7 @@ class Division:
             normal = np.zeros((1, 3))
         return max(turning(tangent), turning(normal))
 
-    def corners_of(self, gmsh, loop):
+    def corners_of(self, gmsh: Any, loop: list[int]) -> list[int]:
         """Return the corners of a face with a regular mesh: of four different edges, or of three that end at a pole,
         an edge without length, which is the first corner. They meet at clear angles; else there are no corners."""
         lengths = [self.length[abs(edge)] > 1e-9 * self.size for edge in loop]
@@ -80,7 +81,7 @@ class Division:
         return [gmsh.model.getBoundary([(1, edge)], combined=False)[0][1] for edge in edges]
 
     @staticmethod
-    def ends_of(gmsh, edge):
+    def ends_of(gmsh: Any, edge: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the points and tangents at the start and the end of a signed edge."""
         low, high = gmsh.model.getParametrizationBounds(1, abs(edge))
         place = np.array([low[0], high[0]])
@@ -88,7 +89,7 @@ class Division:
         point = np.reshape(gmsh.model.getValue(1, abs(edge), place), (2, 3))
         return (point, tangent) if edge > 0 else (point[::-1], -tangent[::-1])
 
-    def counts(self):
+    def counts(self) -> dict[int, int]:
         """Return the divisions of each edge; opposite edges of regular faces have the same."""
         need = defaultdict(lambda: 1)
         for (edge, tag), turn in self.turn.items():
@@ -105,7 +106,7 @@ class Division:
             need[edge] = max(need[edge], int(np.ceil(count * self.factor[tag])))
         group = {edge: edge for edge, _ in self.turn}
 
-        def leader(edge):
+        def leader(edge: int) -> int:
             while group[edge] != edge:
                 edge = group[edge]
             return edge
@@ -120,7 +121,7 @@ class Division:
             largest[leader(edge)] = max(largest[leader(edge)], need[edge])
         return {edge: largest[leader(edge)] for edge in group}
 
-    def mesh(self, gmsh):
+    def mesh(self, gmsh: Any) -> list[Any]:
         """Make the mesh of second order; return the faces where that failed, divided further for another try."""
         gmsh.model.mesh.clear()
         gmsh.model.mesh.removeConstraints()
@@ -147,7 +148,7 @@ class Division:
         gmsh.model.mesh.setOrder(2)
         return []
 
-    def refine(self, distance, kink, folded):
+    def refine(self, distance: np.ndarray, kink: np.ndarray, folded: set[int]) -> bool:
         """Raise the factors of faces whose relative distance or kink exceeds 1, or that have folded patches; return
         whether any changed."""
         changed = False

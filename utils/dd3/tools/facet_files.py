@@ -1,8 +1,10 @@
 """Readers of facets: STL, Gmsh, Abaqus, LS-DYNA and VTK files as nodes and triangles or quadrilaterals."""
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +33,7 @@ class Facets:
     notes: list = field(default_factory=list)
 
 
-def read_facets(path):
+def read_facets(path: Path) -> Facets:
     """Return the facets of a file."""
     ending = path.suffix.lower()
     if ending == ".stl":
@@ -45,7 +47,7 @@ def read_facets(path):
     return read_vtk(path)
 
 
-def read_stl(path):
+def read_stl(path: Path) -> Facets:
     """Read an STL file, binary or text; equal points become one node."""
     data = path.read_bytes()
     count = int(np.frombuffer(data[80:84], "<u4")[0]) if len(data) >= 84 else -1
@@ -63,7 +65,7 @@ def read_stl(path):
     return Facets(nodes, facets, part, names)
 
 
-def stl_text(path, data):
+def stl_text(path: Path, data: bytes) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Return the points, the part of each facet and the parts' names of a text."""
     text = data.decode("utf-8-sig", errors="replace")
     if not text.lstrip().lower().startswith("solid") or "facet" not in text.lower():
@@ -91,7 +93,8 @@ def stl_text(path, data):
     return np.array(points, float).reshape(-1, 3, 3), np.array(part, int), names
 
 
-def from_cells(path, nodes, cells):
+def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
+               cells: list[tuple[Any, int, tuple[int, ...]]]) -> Facets:
     """Return facets from cells, tuples of part, dimension and node labels; solids give the faces that they do not
     share. `nodes` are the coordinates by label."""
     facets, part, names, outer = [], [], {}, {}
@@ -123,7 +126,7 @@ def from_cells(path, nodes, cells):
     return Facets(points, place, np.array(part), list(names), notes)
 
 
-def read_inp(path):
+def read_inp(path: Path) -> Facets:
     """Read the shells and solids of a model of Abaqus or CalculiX; parts are its *PARTs or element sets."""
     nodes, cells, base = {}, [], {}
     for keyword, options, place, rows in inp_blocks(path):
@@ -148,7 +151,7 @@ def read_inp(path):
     return from_cells(path, nodes, cells)
 
 
-def dyna_lines(path, depth=0):
+def dyna_lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
     """Yield the lines of a keyword file and of those that it includes, as (place, text)."""
     if depth > 10:
         raise Problem(f"{path}: includes nest too deeply")
@@ -168,7 +171,7 @@ def dyna_lines(path, depth=0):
         yield f"{path}:{number}", line
 
 
-def fields(line, widths, count):
+def fields(line: str, widths: list[int], count: int) -> list[str]:
     """Return the words of a line of fixed columns, or separated by commas."""
     if "," in line:
         return [word.strip() for word in line.split(",")][:count]
@@ -176,7 +179,7 @@ def fields(line, widths, count):
     return [line[a:b].strip() for a, b in pairwise(ends)][:count]
 
 
-def read_dyna(path):
+def read_dyna(path: Path) -> Facets:
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
     nodes, cells, titles, keyword, options, row = {}, [], {}, "", "", 0
     wide, part = False, None
@@ -221,7 +224,7 @@ def read_dyna(path):
     return result
 
 
-def solid_of(labels):
+def solid_of(labels: list[int]) -> tuple[int, ...]:
     """Return the corners of a solid of LS-DYNA, a hexahedron whose other shapes repeat nodes."""
     corners = tuple(dict.fromkeys(label for label in labels[:8] if label > 0))
     if len(corners) == 6 and labels[4] == labels[5]:  # a wedge whose triangles are the faces 1 2 5 and 4 3 6
@@ -229,12 +232,12 @@ def solid_of(labels):
     return corners
 
 
-def corners_of(labels):
+def corners_of(labels: list[int]) -> tuple[int, ...]:
     """Return the corners of a shell: a triangle repeats its last node, or has 0."""
     return tuple(label for label in dict.fromkeys(labels) if label > 0)
 
 
-def read_msh(path):
+def read_msh(path: Path) -> Facets:
     """Read the facets and solids of a Gmsh mesh; parts are its physical groups."""
     import gmsh
     gmsh.initialize(interruptible=False)
@@ -261,7 +264,7 @@ def read_msh(path):
         gmsh.finalize()
 
 
-def read_vtk(path):
+def read_vtk(path: Path) -> Facets:
     """Read what pyvista reads; parts are numbered by connection."""
     import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkLogger, vtkObject

@@ -1,9 +1,13 @@
 """Facets to patches: reading, mending, parts, sides, offset."""
+import argparse
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 
 from dd3.errors import Problem
 from dd3.tools import moved
-from dd3.tools.facet_files import read_facets
+from dd3.tools.facet_files import Facets, read_facets
 from dd3.tools.joints import find_joints, kinks
 from dd3.tools.mend import (
     SAME_NODE,
@@ -28,7 +32,7 @@ FARTHEST = 1e9
 __all__ = ["keep", "load", "patches", "sides_of", "turned_number"]
 
 
-def load(options):
+def load(options: argparse.Namespace) -> Facets:
     """Return the mended facets of a file, of the parts wanted."""
     path = options.source
     mesh = read_facets(path)
@@ -51,7 +55,7 @@ def load(options):
     return mesh
 
 
-def diagonal(path, mesh):
+def diagonal(path: Path, mesh: Facets) -> float:
     """Return the diagonal of the box of the facets, mm; refuse damaged coordinates, and nodes that span no surface."""
     if not np.isfinite(mesh.nodes).all():
         raise Problem(f"{path}: a coordinate is not a number")
@@ -64,7 +68,7 @@ def diagonal(path, mesh):
     return size
 
 
-def refuse_gaps(path, mesh, inside):
+def refuse_gaps(path: Path, mesh: Facets, inside: list[Any]) -> None:
     """Refuse facets with cracks, or with nodes inside the edges of others."""
     pairs, distance = gaps(mesh, REACH)
     if len(pairs):
@@ -77,7 +81,7 @@ def refuse_gaps(path, mesh, inside):
                       f"x y z = {where(mesh.nodes[inside[0]])}; mend the mesh so that facets meet in whole edges")
 
 
-def choose(path, mesh, wanted):
+def choose(path: Path, mesh: Facets, wanted: list[str] | None) -> None:
     """Keep the facets of the parts wanted, by name or number; all by default."""
     if not wanted:
         return
@@ -94,7 +98,8 @@ def choose(path, mesh, wanted):
     keep(mesh, chosen)
 
 
-def sides_of(mesh):
+def sides_of(mesh: Facets) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray,
+                                    np.ndarray]:
     """Return area vectors, centres, regions between sharp edges, signs, bodies, which are open, and facets that
     cannot have a side."""
     sign, body, is_open, twisted = consistent(mesh)
@@ -110,14 +115,14 @@ def sides_of(mesh):
     return area, centre, region, sign, body, is_open, twisted
 
 
-def turned_number(sign, body):
+def turned_number(sign: np.ndarray, body: np.ndarray) -> int:
     """Return how many facets have not the sign of the greater part of their body."""
     total = np.bincount(body)
     negative = np.bincount(body, weights=sign < 0)
     return int(np.minimum(negative, total - negative).sum())
 
 
-def patches(mesh, distance):
+def patches(mesh: Facets, distance: float) -> tuple[Surface, np.ndarray, float]:
     """Return the surface of facets, moved by a distance along the normals; the estimated distance from the true
     surface for each of its faces, and the largest angle at a smooth edge, degrees."""
     net = estimate_normals(mesh)
@@ -143,7 +148,7 @@ def patches(mesh, distance):
     return Surface(control, face, names, notes), largest, net.angle.max() if len(net.angle) else 0.0
 
 
-def raise_by_kinks(estimate, net, face):
+def raise_by_kinks(estimate: np.ndarray, net: np.ndarray, face: np.ndarray) -> None:
     """Raise the estimated distance of faces to an eighth of the kink times the length of the edge at a smooth joint:
     the error of the normals shows there."""
     joints = find_joints(net)

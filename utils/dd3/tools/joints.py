@@ -36,13 +36,13 @@ class Joints:
     size: float  # diagonal of the box, mm
 
 
-def box_of(net):
+def box_of(net: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the lower and upper corners of the box of the control points."""
     points = net[..., :3] / net[..., 3:]
     return points.min(axis=(0, 1, 2)), points.max(axis=(0, 1, 2))
 
 
-def find_joints(net):
+def find_joints(net: np.ndarray) -> Joints:
     """Return the joints of the patches."""
     low, high = box_of(net)
     size = float(np.linalg.norm(high - low))
@@ -62,7 +62,8 @@ def find_joints(net):
                   np.flatnonzero(count > 1), np.flatnonzero(pole), points, size)
 
 
-def signs(count, first, second, agree):
+def signs(count: int, first: np.ndarray, second: np.ndarray, agree: np.ndarray
+         ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return signs of items that make the pairs agree, the component of each item, and the pairs that cannot.
 
     `agree` is True for a pair that needs equal signs. The first item of a component has the sign 1.
@@ -83,12 +84,12 @@ def signs(count, first, second, agree):
     return sign, component, twisted
 
 
-def orient(net, joints):
+def orient(net: np.ndarray, joints: Joints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return signs that give joined patches the same orientation, the body of each, and the joints that cannot."""
     return signs(len(net), joints.first // 4, joints.second // 4, joints.opposed)
 
 
-def normals_along(net, edge, t):
+def normals_along(net: np.ndarray, edge: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Return the unit normals at the parameters t of the edges, (edge, t, 3), zero where there is none."""
     result = np.zeros((len(edge), len(t), 3))
     for k, place in enumerate(EDGES):
@@ -99,7 +100,7 @@ def normals_along(net, edge, t):
     return result
 
 
-def kinks(net, joints):
+def kinks(net: np.ndarray, joints: Joints) -> np.ndarray:
     """Return the largest angle between the normals on both sides of each joint, degrees."""
     t = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
     a = normals_along(net, joints.first, t)
@@ -110,7 +111,7 @@ def kinks(net, joints):
     return np.degrees(angle.max(axis=1)) if len(angle) else np.zeros(0)
 
 
-def folded(net):
+def folded(net: np.ndarray) -> np.ndarray:
     """Return the patches whose normal turns by more than 90 degrees within them or vanishes in the middle."""
     place = np.linspace(0.02, 0.98, 7)
     u, v = (part.ravel() for part in np.meshgrid(place, place))
@@ -121,7 +122,7 @@ def folded(net):
     return np.flatnonzero(np.concatenate(result)) if result else np.zeros(0, int)
 
 
-def near_misses(net, joints, reach):
+def near_misses(net: np.ndarray, joints: Joints, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs of free edges that run beside each other, (edge, edge, distance in mm).
 
     They count if the points at 1/4, 1/2 and 3/4 of one lie within `reach`, and a quarter of its length, of the other.
@@ -152,7 +153,7 @@ def near_misses(net, joints, reach):
     return pairs, np.array(list(found.values()))
 
 
-def to_chords(point, line):
+def to_chords(point: np.ndarray, line: np.ndarray) -> float:
     """Return the distance of a point from a line of chords."""
     start, along = line[:-1], np.diff(line, axis=0)
     square = np.maximum((along**2).sum(axis=1), 1e-300)
@@ -160,6 +161,6 @@ def to_chords(point, line):
     return np.linalg.norm(start + t[:, None] * along - point, axis=1).min()
 
 
-def turn(net, sign):
+def turn(net: np.ndarray, sign: np.ndarray) -> np.ndarray:
     """Return the patches, those of negative sign turned."""
     return np.where((sign < 0)[:, None, None, None], turned(net), net)

@@ -3,17 +3,19 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 INTERVAL = 0.2  # between looks at the clock, s
 
 
 @contextmanager
-def limited(seconds, message):
+def limited(seconds: float, message: str) -> Iterator[None]:
     """End the program with exit code 2 and a message if the body takes longer, in processor time of the process, s."""
     done, stop = threading.Event(), time.process_time() + seconds
 
-    def watch():
+    def watch() -> None:
         while not done.wait(INTERVAL):
             if time.process_time() > stop:
                 print(f"error: {message}", file=sys.stderr, flush=True)
@@ -28,7 +30,7 @@ def limited(seconds, message):
         watcher.join()
 
 
-def supervised(body, message):
+def supervised(body: Callable[..., Any], message: str) -> None:
     """Call a function in a child process; end the program with its exit code, or with 2 and a message if a fault ended
     it."""
     if not hasattr(os, "fork"):
@@ -46,7 +48,7 @@ def supervised(body, message):
     sys.exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 128 + os.WTERMSIG(status))
 
 
-def wait_for(child):
+def wait_for(child: int) -> int:
     """Return the status of a child, which gets the interrupts too."""
     while True:
         try:

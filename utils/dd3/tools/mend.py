@@ -1,9 +1,13 @@
 """Mending of facets: nodes merged, facets without area and doubled ones removed, sides made consistent."""
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from dd3.tools.facet_files import Facets
 from dd3.tools.joints import signs
 
 # Distance of nodes that are one, relative to the diagonal of the box.
@@ -15,7 +19,7 @@ MOST_PASSES = 8
 MOST_DIVISIONS = 40
 
 
-def merged(mesh, distance):
+def merged(mesh: Facets, distance: float) -> int:
     """Replace nodes within a distance by one; return their number."""
     pairs = cKDTree(mesh.nodes).query_pairs(distance, output_type="ndarray")
     if not len(pairs):
@@ -28,7 +32,7 @@ def merged(mesh, distance):
     return len(mesh.nodes) - count
 
 
-def without_repeats(mesh):
+def without_repeats(mesh: Facets) -> int:
     """Remove repeated nodes of facets: a quadrilateral with one becomes a triangle, others go; return their number."""
     rows, kept = [], []
     for index in np.flatnonzero(has_repeat(mesh.facets)):
@@ -44,18 +48,18 @@ def without_repeats(mesh):
     return int(bad.sum())
 
 
-def has_repeat(facets):
+def has_repeat(facets: np.ndarray) -> np.ndarray:
     """Tell which facets have a node twice."""
     ordered = np.sort(facets, axis=1)
     return (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
 
 
-def keep(mesh, chosen):
+def keep(mesh: Facets, chosen: np.ndarray) -> None:
     """Keep some facets."""
     mesh.facets, mesh.part = mesh.facets[chosen], mesh.part[chosen]
 
 
-def without_doubles(mesh):
+def without_doubles(mesh: Facets) -> int:
     """Remove facets on the nodes of an earlier one; return their number."""
     first = np.unique(np.sort(mesh.facets, axis=1), axis=0, return_index=True)[1]
     chosen = np.zeros(len(mesh.facets), bool)
@@ -64,7 +68,7 @@ def without_doubles(mesh):
     return int((~chosen).sum())
 
 
-def without_slivers(mesh):
+def without_slivers(mesh: Facets) -> int:
     """Remove triangles without area: the neighbour at the longest edge is divided at the third node; return their
     number."""
     removed = 0
@@ -98,7 +102,7 @@ def without_slivers(mesh):
     return removed
 
 
-def find_slivers(mesh):
+def find_slivers(mesh: Facets) -> list[Any]:
     """Return index and nodes of the triangles without area: ends of the longest edge, third node."""
     triangle = np.flatnonzero(mesh.facets[:, 3] < 0)
     ring = mesh.facets[triangle, :3]
@@ -113,13 +117,13 @@ def find_slivers(mesh):
     return result
 
 
-def ring_edges(row):
+def ring_edges(row: Sequence[int]) -> list[tuple[int, int]]:
     """Return the edges of a facet, pairs of nodes."""
     ring = [node for node in row if node >= 0]
     return [(ring[k - 1], ring[k]) for k in range(len(ring))]
 
 
-def divided(row, a, b, middle):
+def divided(row: list[int], a: int, b: int, middle: int) -> list[list[int]]:
     """Return the triangles of a facet whose edge between a and b gets a node in the middle."""
     ring = [node for node in row if node >= 0]
     start = next(k for k in range(len(ring)) if {ring[k - 1], ring[k]} == {a, b})
@@ -127,7 +131,7 @@ def divided(row, a, b, middle):
     return [[middle, ring[k], ring[k + 1], -1] for k in range(len(ring) - 1)]
 
 
-def edge_table(facets):
+def edge_table(facets: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return the edges as (first node, second node, facet, corner of the first node), in the facets' order."""
     count = np.where(facets[:, 3] < 0, 3, 4)
     facet = np.repeat(np.arange(len(facets)), count)
@@ -136,7 +140,7 @@ def edge_table(facets):
     return facets[facet, corner], facets[facet, after], facet, corner
 
 
-def pairs_of(facets):
+def pairs_of(facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs of rows of the edge table that are one edge, and the rows without a partner or with several."""
     a, b, _, _ = edge_table(facets)
     key = np.stack([np.minimum(a, b), np.maximum(a, b)], axis=1)
@@ -147,7 +151,7 @@ def pairs_of(facets):
     return rows.reshape(-1, 2), np.flatnonzero(count[inverse] != 2)
 
 
-def consistent(mesh):
+def consistent(mesh: Facets) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return signs of the facets that agree across edges, their bodies, which bodies are open, and the number of
     pairs that cannot agree."""
     a, _, facet, _ = edge_table(mesh.facets)
@@ -159,7 +163,7 @@ def consistent(mesh):
     return sign, body, is_open, facet[pairs[twisted]].ravel()
 
 
-def turn_facets(mesh, sign):
+def turn_facets(mesh: Facets, sign: np.ndarray) -> None:
     """Reverse the facets of negative sign."""
     triangle = mesh.facets[:, 3] < 0
     reverse = mesh.facets.copy()
@@ -168,7 +172,7 @@ def turn_facets(mesh, sign):
     mesh.facets = np.where((sign < 0)[:, None], reverse, mesh.facets)
 
 
-def gaps(mesh, reach):
+def gaps(mesh: Facets, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes of free edges that lie near another one, (n, 2), and their distances, mm.
 
     They count within `reach` and a quarter of the free edges at either.
@@ -188,7 +192,7 @@ def gaps(mesh, reach):
     return pairs[near], distance[near]
 
 
-def with_whole_edges(mesh, reach):
+def with_whole_edges(mesh: Facets, reach: float) -> tuple[int, list[Any]]:
     """Divide facets with nodes of others inside their edges, so that facets meet in whole edges; return the number of
     nodes that were inserted and those that are left."""
     inserted = 0
@@ -207,7 +211,7 @@ def with_whole_edges(mesh, reach):
     return inserted, [middle for _, _, middle in nodes_inside_edges(mesh, reach).values()]
 
 
-def nodes_inside_edges(mesh, reach):
+def nodes_inside_edges(mesh: Facets, reach: float) -> dict[int, tuple[int, int, int]]:
     """Return the facets with nodes of free edges inside one of their free edges: the ends of this edge and the node in
     the middle of those inside, by facet.
 

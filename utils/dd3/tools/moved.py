@@ -1,4 +1,6 @@
 """Surfaces at another place: rotated and moved, or at a distance along their normals."""
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -6,7 +8,7 @@ from scipy.spatial.transform import Rotation
 ONE_NORMAL = np.cos(np.radians(3.0))
 
 
-def shift_of(labels, normals, distance):
+def shift_of(labels: np.ndarray, normals: np.ndarray, distance: float) -> np.ndarray:
     """Return the displacement of each entry: `labels` (n,) of nodes, `normals` (n, 3) there, n of all the entries that
     share a node may differ.
 
@@ -28,7 +30,7 @@ def shift_of(labels, normals, distance):
     return shift[inverse]
 
 
-def rotation(turns):
+def rotation(turns: Sequence[Sequence[float]]) -> np.ndarray:
     """Return the matrix of rotations (x, y, z of the axis, angle in degrees), one after the other."""
     matrix = np.eye(3)
     for *axis, angle in turns:
@@ -36,6 +38,6 @@ def rotation(turns):
     return matrix
 
 
-def placed(net, matrix, move):
+def placed(net: np.ndarray, matrix: np.ndarray, move: Sequence[float]) -> np.ndarray:
     """Return patches in homogeneous coordinates after a rotation and a translation."""
     return np.concatenate([net[..., :3] @ matrix.T + net[..., 3:] * np.array(move), net[..., 3:]], axis=-1)

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from dd3.tools.facet_files import Facets
 from dd3.tools.joints import OPPOSITE, find_joints, folded, kinks
 from dd3.tools.mend import edge_table, pairs_of
 from dd3.tools.surface import from_triangles, homogeneous, quarters
@@ -42,13 +43,13 @@ class Net:
     estimate: np.ndarray = None  # of the distance of the facets' edges from a smooth surface, mm
 
 
-def groups(count, first, second):
+def groups(count: int, first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return the components of items joined in pairs."""
     graph = coo_array((np.ones(len(first), np.int8), (first, second)), shape=(count, count))
     return connected_components(graph, directed=False)[1]
 
 
-def corner_areas(nodes, facets):
+def corner_areas(nodes: np.ndarray, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return the cross products of the edges at the corners (facet, 4, 3), the lengths of both edges, and the angle
     between them."""
     count = np.where(facets[:, 3] < 0, 3, 4)[:, None]
@@ -64,18 +65,18 @@ def corner_areas(nodes, facets):
     return area, np.linalg.norm(a, axis=2), np.linalg.norm(b, axis=2), angle
 
 
-def unit(vectors):
+def unit(vectors: np.ndarray) -> np.ndarray:
     """Return vectors of length 1; zero stays zero."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
 
 
-def facet_areas(nodes, facets):
+def facet_areas(nodes: np.ndarray, facets: np.ndarray) -> np.ndarray:
     """Return the area vectors of the facets."""
     area = corner_areas(nodes, facets)[0].sum(axis=1)
     return area / np.where(facets[:, 3] < 0, 6, 4)[:, None]
 
 
-def estimate_normals(mesh):
+def estimate_normals(mesh: Facets) -> Net:
     """Return the net of a mesh with consistent facets."""
     nodes, facets = mesh.nodes, mesh.facets
     vectors = facet_areas(nodes, facets)
@@ -114,7 +115,7 @@ def estimate_normals(mesh):
     return Net(facets, unit(total)[fan].reshape(-1, 4, 3), region, angle[smooth])
 
 
-def neighbours(count, first, second):
+def neighbours(count: int, first: np.ndarray, second: np.ndarray) -> list[list[int]]:
     """Return the facets joined with each one."""
     result = [[] for _ in range(count)]
     for a, b in zip(first.tolist(), second.tolist()):
@@ -123,7 +124,8 @@ def neighbours(count, first, second):
     return result
 
 
-def reaches(nodes, facets, near, facet, ends, distance):
+def reaches(nodes: np.ndarray, facets: np.ndarray, near: list[list[int]], facet: int,
+            ends: tuple[np.ndarray, np.ndarray], distance: float) -> bool:
     """Tell whether a flat region extends this far from an edge of one of its facets, in a band of twice its length.
 
     A ring around an axis does not, however large its area is.
@@ -145,7 +147,8 @@ def reaches(nodes, facets, near, facet, ends, distance):
     return False
 
 
-def corner_vectors(nodes, facets, group, inner, length):
+def corner_vectors(nodes: np.ndarray, facets: np.ndarray, group: np.ndarray, inner: np.ndarray, length: np.ndarray
+                  ) -> np.ndarray:
     """Return the weighted normals of the corners (4 * facet, 3): Max's weights sin(angle)/(a b), with the edges a and b
     of the corner.
 
@@ -170,7 +173,7 @@ def corner_vectors(nodes, facets, group, inner, length):
     return vector
 
 
-def edge_controls(nodes, net):
+def edge_controls(nodes: np.ndarray, net: Net) -> np.ndarray:
     """Return the middle control points of the edges of each facet (facet, 4, 3), from a corner to the next; set the
     net's estimates."""
     a, b, facet, corner = edge_table(net.facets)
@@ -204,7 +207,7 @@ def edge_controls(nodes, net):
     return result
 
 
-def unfolded_patches(nodes, net):
+def unfolded_patches(nodes: np.ndarray, net: Net) -> tuple[np.ndarray, np.ndarray]:
     """Return the patches of a net and the facet of each, the edges of facets kept straight whose patches are folded or
     turn back upon others."""
     control, facet = patches_of(nodes, net)
@@ -220,7 +223,7 @@ def unfolded_patches(nodes, net):
     return control, facet
 
 
-def patches_of(nodes, net):
+def patches_of(nodes: np.ndarray, net: Net) -> tuple[np.ndarray, np.ndarray]:
     """Return the patches of a net and the facet of each: three of a triangle and four of a quadrilateral, or one if
     there are no triangles."""
     middle = edge_controls(nodes, net)

@@ -1,4 +1,6 @@
 """Parameters of the nodes on their CAD faces, from where the search of the closest point starts."""
+from typing import Any
+
 import numpy as np
 
 # Surfaces whose first parameter is an angle.
@@ -7,7 +9,7 @@ ROUND = "Cylinder", "Cone", "Sphere", "Torus", "Surface of Revolution"
 FEWEST = 4
 
 
-def parameters_of(gmsh, tag, count):
+def parameters_of(gmsh: Any, tag: int, count: int) -> np.ndarray:
     """Return the parameters of the nodes on a face, by label; NaN for other nodes, for those on a seam, and for the
     parameter along a pole."""
     table = np.full((count, 2), np.nan)
@@ -28,14 +30,14 @@ def parameters_of(gmsh, tag, count):
     return within_turn(gmsh, tag, table)
 
 
-def pole_parameters(gmsh, edge, tag):
+def pole_parameters(gmsh: Any, edge: int, tag: int) -> np.ndarray:
     """Return the parameters of an edge without length on a face, NaN for the one that varies along it."""
     bounds = np.ravel(gmsh.model.getParametrizationBounds(1, edge))
     first, last = np.reshape(gmsh.model.reparametrizeOnSurface(1, edge, bounds, tag), (2, 2))
     return np.where(np.abs(last - first) > 1e-9, np.nan, first)
 
 
-def within_turn(gmsh, tag, table):
+def within_turn(gmsh: Any, tag: int, table: np.ndarray) -> np.ndarray:
     """Return the parameters of a face with angles within the face's bounds; NaN for those that are not."""
     low, high = (np.array(bound) for bound in gmsh.model.getParametrizationBounds(2, tag))
     if gmsh.model.getType(2, tag) in ROUND:
@@ -45,7 +47,7 @@ def within_turn(gmsh, tag, table):
     return table
 
 
-def filled(uv):
+def filled(uv: np.ndarray) -> np.ndarray:
     """Return the parameters (patch, 3, 3, 2) with those unknown as the mean of their patch; NaN for a patch with few
     known ones."""
     known = ~np.isnan(uv)

@@ -1,9 +1,12 @@
 """Picture of a tool's patches with their normals. No display is needed."""
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.tools.joints import EDGES, box_of
-from dd3.tools.surface import areas_at, grid, points_at
+from dd3.tools.joints import EDGES, Joints, box_of
+from dd3.tools.surface import Surface, areas_at, grid, points_at
 
 MOST_ARROWS = 1500
 POINTS = 5  # on a side of a patch
@@ -11,7 +14,7 @@ COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6", "#a68d93", "#8da6a1"]
 MULTIPLE, FREE, JOINED = "#d62728", "#1f3fb4", "#555555"
 
 
-def quads(net):
+def quads(net: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the points and the cells of a flat-faced copy of the patches."""
     points = points_at(net, *grid(POINTS)).reshape(-1, 3)
     corner = np.add.outer(np.arange(POINTS - 1) * POINTS, np.arange(POINTS - 1)).ravel()
@@ -20,7 +23,7 @@ def quads(net):
     return points, np.insert(cells, 0, 4, axis=1).ravel()
 
 
-def lines(pv, net, edge):
+def lines(pv: Any, net: np.ndarray, edge: np.ndarray) -> Any:
     """Return edges, given by number, as lines."""
     t = np.linspace(0, 1, POINTS)
     points = np.zeros((len(edge), POINTS, 3))
@@ -31,7 +34,7 @@ def lines(pv, net, edge):
     return pv.PolyData(points.reshape(-1, 3), lines=cells.ravel())
 
 
-def arrows(pv, net, size):
+def arrows(pv: Any, net: np.ndarray, size: float) -> Any:
     """Return the normals in the middle of the patches, of every n-th of many."""
     net = net[::len(net) // MOST_ARROWS + 1]
     half = np.array([0.5])
@@ -43,7 +46,7 @@ def arrows(pv, net, size):
     return cloud.glyph(orient="normal", scale=False, factor=0.03 * size, geom=arrow)
 
 
-def draw(surface, joints, path):
+def draw(surface: Surface, joints: Joints, path: Path) -> None:
     """Write the picture: faces in colours, free edges blue, those of more than two patches red, normals as arrows."""
     import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkLogger

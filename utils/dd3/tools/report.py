@@ -1,10 +1,12 @@
 """Report on a tool's surface: what it is made of, warnings, and errors that name the faces."""
+import argparse
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from dd3.tools.joints import OPPOSITE, find_joints, folded, kinks, near_misses, normals_along, signs
-from dd3.tools.surface import grid, points_at
+from dd3.tools.joints import OPPOSITE, Joints, find_joints, folded, kinks, near_misses, normals_along, signs
+from dd3.tools.surface import Surface, grid, points_at
 
 SMALLEST, LARGEST = 5.0, 1e4  # boxes beyond these have other units, mm
 REACH = 1.0  # largest distance of free edges that count as a near miss, mm
@@ -21,34 +23,34 @@ class Report:
     warnings: list = field(default_factory=list)
     errors: list = field(default_factory=list)
 
-    def add(self, title, text):
+    def add(self, title: str, text: str) -> None:
         """Add a line."""
         self.lines.append(f"  {title:<10} {text}")
 
 
-def plural(count, word):
+def plural(count: int, word: str) -> str:
     """Return a number with its noun."""
     many = word[:-1] + "ies" if word.endswith("dy") else word + ("es" if word.endswith("ch") else "s")
     return f"{count} {word if count == 1 else many}"
 
 
-def named(surface, faces):
+def named(surface: Surface, faces: Iterable[int]) -> str:
     """Return the names of faces, the first few of many."""
     names = list(dict.fromkeys(surface.names[face] for face in faces))
     return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
 
 
-def where(point):
+def where(point: np.ndarray) -> str:
     """Return a point as a text."""
     return " ".join(f"{value:.4g}" for value in point + 0.0)
 
 
-def place_of(joints, edge):
+def place_of(joints: Joints, edge: int) -> str:
     """Return the middle of an edge as a text."""
     return "x y z = " + where(joints.points[edge, 2])
 
 
-def judge(surface, options, parts):
+def judge(surface: Surface, options: argparse.Namespace, parts: int) -> tuple[Report, Joints]:
     """Return the report on a surface, and its joints. `options` has tolerance and sew."""
     report, joints = Report(), find_joints(surface.net)
     bodies = bodies_of(surface, joints)
@@ -61,7 +63,7 @@ def judge(surface, options, parts):
     return report, joints
 
 
-def say_box(report, surface):
+def say_box(report: Report, surface: Surface) -> None:
     """Add the box and warn of wrong units."""
     low, high = extent(surface.net)
     low, high = (np.where(np.abs(end) < 1e-9 * (high - low).max(), 0.0, end) for end in (low, high))
@@ -74,7 +76,7 @@ def say_box(report, surface):
         report.warnings.append(f"the tool is {size:.3g} mm large; in micrometres --scale 0.001")
 
 
-def extent(net):
+def extent(net: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the smallest and the largest coordinates of the patches."""
     places = np.stack(grid(5))
     points = points_at(net, *places).reshape(-1, 3)
@@ -84,7 +86,7 @@ def extent(net):
                  for sign, ends in ((-1, low), (1, high)))
 
 
-def extreme(net, axis, sign, place):
+def extreme(net: np.ndarray, axis: int, sign: int, place: np.ndarray) -> float:
     """Return the smallest (sign -1) or largest (1) coordinate of a patch, searched from a place (u, v) of grid(5)."""
     around, step = np.stack(grid(3)) - 0.5, 0.25
     while step > 1e-9:
@@ -94,7 +96,7 @@ def extreme(net, axis, sign, place):
     return values[(sign * values).argmax()]
 
 
-def say_edges(report, surface, joints, options):
+def say_edges(report: Report, surface: Surface, joints: Joints, options: argparse.Namespace) -> None:
     """Add the joined, free and multiple edges; errors for multiple ones and near misses."""
     report.add("edges", f"{len(joints.first)} joined, {len(joints.free)} free, {len(joints.multiple)} of more than two "
                f"patches, {plural(len(joints.pole), 'pole')}")
@@ -113,13 +115,13 @@ def say_edges(report, surface, joints, options):
                else "they overlap or are divided differently; mend the file"))
 
 
-def up(value):
+def up(value: float) -> float:
     """Return a round number a little above a value."""
     step = 10.0**np.floor(np.log10(max(value, 1e-6)))
     return float(f"{np.ceil(1.1 * value / step * 2) / 2 * step:.3g}")
 
 
-def say_folds(report, surface):
+def say_folds(report: Report, surface: Surface) -> None:
     """Add an error for folded patches and for smooth faces that lie upon themselves."""
     bent = folded(surface.net)
     report.add("folds", str(len(bent)))
@@ -129,7 +131,7 @@ def say_folds(report, surface):
                              f"{named(surface, surface.face[bent])}")
 
 
-def say_kinks(report, surface, joints):
+def say_kinks(report: Report, surface: Surface, joints: Joints) -> None:
     """Add the largest kink of smooth joints and the sharp edges; an error for opposite normals."""
     angle = kinks(surface.net, joints)
     smooth = angle[angle <= SHARP]
@@ -154,7 +156,7 @@ def say_kinks(report, surface, joints):
             f"{named(surface, surface.face[joints.first[convex] // 4])}")
 
 
-def is_convex(net, joints, chosen):
+def is_convex(net: np.ndarray, joints: Joints, chosen: np.ndarray) -> np.ndarray:
     """Tell at which joints the surface turns away from its normals."""
     t = np.array([0.5])
     normal = normals_along(net, joints.first[chosen], t)[:, 0]
@@ -162,6 +164,6 @@ def is_convex(net, joints, chosen):
     return ((middle - joints.points[joints.first[chosen], 2]) * normal).sum(axis=1) < 0
 
 
-def bodies_of(surface, joints):
+def bodies_of(surface: Surface, joints: Joints) -> int:
     """Return the number of connected bodies of a surface."""
     return int(signs(len(surface.net), joints.first // 4, joints.second // 4, joints.opposed)[1].max()) + 1

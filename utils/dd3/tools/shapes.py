@@ -23,13 +23,15 @@ A shape file has blocks like an input file, and the parameters of *PARAMETER:
       flange = 40           # width of the flat face around the opening
       quarter = 5           # x and y > -5 only
 """
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.tools.blocks import read_blocks
+from dd3.tools.blocks import Block, read_blocks
 from dd3.tools.joints import find_joints, orient, turn
 from dd3.tools.surface import Surface, homogeneous, joined, turned
 
@@ -50,7 +52,7 @@ class Segment:
     centre: np.ndarray = None
     angle: float = 0.0
 
-    def direction(self, at_end):
+    def direction(self, at_end: bool) -> np.ndarray:
         """Return the unit tangent at one of the ends."""
         if self.centre is None:
             along = self.end - self.start
@@ -59,17 +61,17 @@ class Segment:
         return along / np.linalg.norm(along)
 
 
-def perpendicular(vector):
+def perpendicular(vector: np.ndarray) -> np.ndarray:
     """Return the vector turned by 90 degrees anticlockwise."""
     return np.array([-vector[1], vector[0]])
 
 
-def cross(a, b):
+def cross(a: np.ndarray, b: np.ndarray) -> float:
     """Return the third component of the product of two plane vectors."""
     return a[0] * b[1] - a[1] * b[0]
 
 
-def arc(start, end, centre, place):
+def arc(start: np.ndarray, end: np.ndarray, centre: np.ndarray, place: str) -> Segment:
     """Return the arc between two points about a centre, the shorter way."""
     a, b = start - centre, end - centre
     radius = np.linalg.norm(a)
@@ -81,7 +83,8 @@ def arc(start, end, centre, place):
     return Segment(start, end, centre, angle)
 
 
-def rounded(before, corner, after, radius, place):
+def rounded(before: np.ndarray, corner: np.ndarray, after: np.ndarray, radius: float, place: str
+           ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the ends and the centre of the arc that rounds a corner of a polygon."""
     a, b = before - corner, after - corner
     lengths = np.linalg.norm(a), np.linalg.norm(b)
@@ -99,7 +102,7 @@ def rounded(before, corner, after, radius, place):
     return corner + back * a, corner + back * b, corner + radius / np.sin(half) * middle
 
 
-def segments(steps):
+def segments(steps: Sequence[tuple[str, Sequence[float], str]]) -> list[Segment]:
     """Return the segments of a profile: steps are keyword, numbers and place in the file."""
     if not steps or steps[0][0] != "start":
         raise Problem(f"{steps[0][2] if steps else 'profile'}: a profile begins with start")
@@ -131,7 +134,7 @@ def segments(steps):
     return result
 
 
-def offset(profile, distance, place):
+def offset(profile: list[Segment], distance: float, place: str) -> list[Segment]:
     """Return the profile at a distance to its left; a gap at a convex corner is closed by an arc."""
     result = []
     for piece in profile:
@@ -148,7 +151,7 @@ def offset(profile, distance, place):
     return result
 
 
-def close(result, moved, corner, distance, place):
+def close(result: list[Segment], moved: Segment, corner: np.ndarray, distance: float, place: str) -> None:
     """Join a segment of an offset profile to the ones before it."""
     before = result[-1]
     gap = np.linalg.norm(moved.start - before.end)
@@ -160,7 +163,7 @@ def close(result, moved, corner, distance, place):
         result.append(arc(before.end, moved.start, corner, place))
 
 
-def curve(profile):
+def curve(profile: list[Segment]) -> np.ndarray:
     """Return the quadratic rational pieces (n, 3, 3) of a profile, homogeneous in the plane; arcs of 90 degrees at
     most."""
     pieces = []
@@ -182,7 +185,7 @@ def curve(profile):
     return np.array(pieces)
 
 
-def extruded(pieces, axes, start, end):
+def extruded(pieces: np.ndarray, axes: Sequence[str], start: float, end: float) -> np.ndarray:
     """Return the patches of pieces (n, 3, 3) moved along the third axis; u along the profile."""
     first, second = (AXES.index(axis) for axis in axes)
     net = np.zeros((len(pieces), 3, 3, 4))
@@ -193,7 +196,8 @@ def extruded(pieces, axes, start, end):
     return net
 
 
-def revolved(pieces, axes, start, end, centre=(0.0, 0.0)):
+def revolved(pieces: np.ndarray, axes: Sequence[str], start: float, end: float, centre: Sequence[float] = (0.0, 0.0)
+             ) -> np.ndarray:
     """Return the patches of pieces revolved about the second axis from one angle to another (degrees, from the first
     axis to the third); `centre` is the place of the axis."""
     first, second = (AXES.index(axis) for axis in axes)
@@ -215,7 +219,7 @@ def revolved(pieces, axes, start, end, centre=(0.0, 0.0)):
     return np.concatenate(nets)
 
 
-def rectangle(low, high, height):
+def rectangle(low: np.ndarray, high: np.ndarray, height: float) -> np.ndarray:
     """Return the flat patch between two corners in plan."""
     x, y = (np.linspace(a, b, 3) for a, b in zip(low, high))
     points = np.zeros((3, 3, 3))
@@ -223,7 +227,7 @@ def rectangle(low, high, height):
     return homogeneous(points)[None]
 
 
-def led_around(pieces, core, beyond):
+def led_around(pieces: np.ndarray, core: np.ndarray, beyond: float | None) -> np.ndarray:
     """Return the patches of a profile (distance outwards, height) led around a rectangle with half sizes `core`, its
     corners by arcs. With `beyond`, only the part x, y > -beyond."""
     a, b = core
@@ -242,7 +246,7 @@ def led_around(pieces, core, beyond):
     return np.concatenate(nets)
 
 
-def box_profile(kind, box, place):
+def box_profile(kind: str, box: dict[str, float], place: str) -> list[tuple[str, tuple[float, ...], str]]:
     """Return the steps of the profile of a box's tool: distance from the centre of the corners, height."""
     corner, radius = box["corner"], box["radius"]
     if kind == "punch":
@@ -255,7 +259,7 @@ def box_profile(kind, box, place):
     return [("start", (corner, 0.0), place), ("line", (corner + box["flange"], 0.0), place)]
 
 
-def numbers(block, key, count, place, default=None):
+def numbers(block: Block, key: str, count: int, place: str, default: Sequence[float] | None = None) -> list[float]:
     """Return the numbers of a key."""
     text = block.value(key)
     if text is None:
@@ -265,7 +269,7 @@ def numbers(block, key, count, place, default=None):
     return parsed(text, count, f"{place}, {key}")
 
 
-def parsed(text, count, place):
+def parsed(text: str, count: int, place: str) -> list[float]:
     """Return a text's numbers."""
     try:
         values = [float(word) for word in text.split()]
@@ -276,7 +280,7 @@ def parsed(text, count, place):
     return values
 
 
-def make_profile(block, place, distance):
+def make_profile(block: Block, place: str, distance: float) -> np.ndarray:
     """Return the surface of a *PROFILE."""
     axes = (block.value("axes") or "x z").split()
     if len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(AXES):
@@ -309,7 +313,7 @@ def make_profile(block, place, distance):
     return revolved(pieces, axes, start, end, numbers(block, "centre", 2, place, [0, 0]))
 
 
-def make_box(block, place, distance):
+def make_box(block: Block, place: str, distance: float) -> np.ndarray:
     """Return the surface of a *ROUNDED_BOX."""
     kind = (block.value("kind") or "").lower()
     if kind not in KINDS:
@@ -342,7 +346,7 @@ def make_box(block, place, distance):
     return net if kind == "die" else turned(net)
 
 
-def read_shapes(path, distances=None):
+def read_shapes(path: Path, distances: Sequence[float] | None = None) -> Surface:
     """Return the surface of a shape file, a face for each block.
 
     Normals point to the left of a profile, and to the sheet for a box. With `distances`, a number for each face, the

@@ -1,14 +1,16 @@
 """Which side of a surface faces the sheet: turning of bodies, and faces that face away from the sheet."""
+
 import numpy as np
 
-from dd3.tools.joints import orient, turn
-from dd3.tools.surface import area_vectors, points_at
+from dd3.tools.joints import Joints, orient, turn
+from dd3.tools.surface import Surface, area_vectors, points_at
 
 # Cosine of the angle between a normal and --toward below which a patch faces away; walls are kept.
 AWAY = -0.05
 
 
-def settle(area, centre, face, sign, body, is_open, toward):
+def settle(area: np.ndarray, centre: np.ndarray, face: np.ndarray, sign: np.ndarray, body: np.ndarray,
+           is_open: np.ndarray, toward: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, list[int], list[str]]:
     """Return the signs of the items, which are kept, and lines for the report.
 
     The items (patches or facets) have area vectors, centres, faces, signs that make their bodies consistent, and
@@ -48,7 +50,8 @@ def settle(area, centre, face, sign, body, is_open, toward):
     return sign, kept, sorted(turned_faces), notes
 
 
-def faced(surface, joints, toward):
+def faced(surface: Surface, joints: Joints, toward: np.ndarray | None
+          ) -> tuple[np.ndarray, np.ndarray, list[int], list[str], np.ndarray, np.ndarray]:
     """Return signs, kept patches, turned faces, notes, bodies and twisted joints of a surface."""
     sign, body, twisted = orient(surface.net, joints)
     is_open = np.zeros(body.max() + 1, bool)
@@ -60,7 +63,7 @@ def faced(surface, joints, toward):
     return sign, kept, turned_faces, notes, body, twisted
 
 
-def apply(surface, sign, kept):
+def apply(surface: Surface, sign: np.ndarray, kept: np.ndarray) -> Surface:
     """Return the surface turned by the signs, without the patches that are not kept."""
     surface.net = turn(surface.net, sign)
     return surface.select(kept)

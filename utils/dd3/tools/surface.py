@@ -3,7 +3,11 @@
 Planes, cylinders and all else of a lower degree are raised to degree 2 exactly, so that one array holds a surface;
 `write` lowers the degree again where that is exact.
 """
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,12 +30,12 @@ class Surface:
     names: list
     notes: list = field(default_factory=list)  # lines of the report
 
-    def select(self, chosen):
+    def select(self, chosen: np.ndarray) -> Surface:
         """Return the surface of some patches."""
         return Surface(self.net[chosen], self.face[chosen], self.names, self.notes)
 
 
-def joined(surfaces):
+def joined(surfaces: list[Surface]) -> Surface:
     """Return several surfaces as one."""
     start = np.cumsum([0] + [len(surface.names) for surface in surfaces])
     return Surface(np.concatenate([surface.net for surface in surfaces]),
@@ -40,37 +44,37 @@ def joined(surfaces):
                    [note for surface in surfaces for note in surface.notes])
 
 
-def homogeneous(points, weights=None):
+def homogeneous(points: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
     """Return points (..., 3) and weights (...) as homogeneous coordinates (..., 4)."""
     weights = np.ones(np.shape(points)[:-1]) if weights is None else np.asarray(weights, float)
     return np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
 
 
-def bernstein(t):
+def bernstein(t: np.ndarray) -> np.ndarray:
     """Return the quadratic Bernstein polynomials (..., 3) at t."""
     t = np.asarray(t, float)
     return np.stack([(1 - t)**2, 2 * t * (1 - t), t**2], axis=-1)
 
 
-def bernstein_slope(t):
+def bernstein_slope(t: np.ndarray) -> np.ndarray:
     """Return their derivatives."""
     t = np.asarray(t, float)
     return np.stack([2 * t - 2, 2 - 4 * t, 2 * t], axis=-1)
 
 
-def combined(in_v, in_u, net):
+def combined(in_v: np.ndarray, in_u: np.ndarray, net: np.ndarray) -> np.ndarray:
     """Return the sums (patch, k, 4) of the control points with the products of two sets of factors (k, 3)."""
     factors = (in_v[:, :, None] * in_u[:, None, :]).reshape(len(in_v), 9)
     return factors @ np.ascontiguousarray(net).reshape(len(net), 9, 4)
 
 
-def points_at(net, u, v):
+def points_at(net: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the points (patch, len(u), 3) of the patches at the parameters u and v, arrays of equal length."""
     values = combined(bernstein(v), bernstein(u), net)
     return values[..., :3] / values[..., 3:]
 
 
-def areas_at(net, u, v):
+def areas_at(net: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return S_u x S_v (patch, len(u), 3), the normal not divided by its length."""
     value = combined(bernstein(v), bernstein(u), net)
     along_u = combined(bernstein(v), bernstein_slope(u), net)
@@ -81,13 +85,13 @@ def areas_at(net, u, v):
     return np.cross(slope_u, slope_v)
 
 
-def grid(count):
+def grid(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return u and v of the points of a regular grid with `count` points on a side."""
     u, v = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count))
     return u.ravel(), v.ravel()
 
 
-def area_vectors(net):
+def area_vectors(net: np.ndarray) -> np.ndarray:
     """Return the integral of the normal over each patch, mm2, by 3 x 3 Gauss points."""
     place = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
     weight = np.array([5, 8, 5]) / 18
@@ -95,17 +99,17 @@ def area_vectors(net):
     return np.einsum("nkc,k->nc", areas_at(net, u.ravel(), v.ravel()), np.outer(weight, weight).ravel())
 
 
-def turned(net):
+def turned(net: np.ndarray) -> np.ndarray:
     """Return the patches with their normals turned: u reversed."""
     return net[:, :, ::-1]
 
 
-def from_nodes(nodes):
+def from_nodes(nodes: np.ndarray) -> np.ndarray:
     """Return the patches through 3 x 3 nodes each (patch, v, u, 3) at the parameters 0, 1/2 and 1."""
     return homogeneous(np.einsum("ai,bj,nijc->nabc", FROM_NODES, FROM_NODES, nodes))
 
 
-def from_triangles(corners, middles):
+def from_triangles(corners: np.ndarray, middles: np.ndarray) -> np.ndarray:
     """Return the three patches of each quadratic Bézier triangle, exactly.
 
     corners (n, 3, 3); middles (n, 3, 3): the control points of the edges 01, 12, 20. On a quadrilateral of the
@@ -122,7 +126,7 @@ def from_triangles(corners, middles):
     return np.stack(patches, axis=1).reshape(-1, 3, 3, 4)
 
 
-def quarters(net):
+def quarters(net: np.ndarray) -> np.ndarray:
     """Return the four patches of each patch, divided at the middles of u and v, exactly."""
     low = np.array([[1, 0, 0], [.5, .5, 0], [.25, .5, .25]])
     high = low[::-1, ::-1]
@@ -130,7 +134,7 @@ def quarters(net):
     return np.stack(parts, axis=1).reshape(-1, 3, 3, 4)
 
 
-def lowered(patch):
+def lowered(patch: np.ndarray) -> np.ndarray:
     """Return a patch (v, u, 4) without the degrees it does not need."""
     scale = np.abs(patch).max()
     if np.abs(patch[:, 1] - (patch[:, 0] + patch[:, 2]) / 2).max() <= EXACT * scale:
@@ -140,7 +144,7 @@ def lowered(patch):
     return patch
 
 
-def write(path, surface, header):
+def write(path: Path, surface: Surface, header: list[str]) -> None:
     """Write a .bez file; the header's lines and the faces are comments."""
     with path.open("w", encoding="utf-8") as file:
         file.writelines(f"# {line}\n" for line in header)
@@ -152,7 +156,7 @@ def write(path, surface, header):
             write_patch(file, lowered(patch))
 
 
-def write_patch(file, patch):
+def write_patch(file: Any, patch: np.ndarray) -> None:
     """Write one patch; equal weights are left out."""
     weights = patch[..., 3]
     rational = np.ptp(weights) > EXACT * weights.max()
@@ -162,7 +166,7 @@ def write_patch(file, patch):
         file.write(" ".join(f"{value:.12g}" for value in values) + "\n")
 
 
-def read_lines(lines):
+def read_lines(lines: list[list[str]]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the patches of the split lines of a .bez file: points (v, u, 3) and weights (v, u); ValueError or
     IndexError if they are not."""
     patches, i = [], 0
