@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import gmsh
+import numpy as np
 import pytest
 from helpers import ROOT, call
 
@@ -174,3 +175,15 @@ def test_gmsh(program, tmp_path):
         (tmp_path / "disc.dat").write_text(DECK.format(file="disc.inp", fixed=fixed, tip="z_max"))
         launch(program, tmp_path / "disc.dat", tmp_path / "disc.out")
     assert len(set(found)) == 1 and found[0][1] > 20, found
+
+
+def test_merge():
+    """Check that nodes within the tolerance of an earlier one are replaced by it, and volumes by their sign."""
+    nodes = {10 + i: tuple(place) for i, place in enumerate([*CORNERS, *(np.array(CORNERS) + [2 + 1e-5, 0, 0])])}
+    mesh = meshes.Mesh(nodes, {1: list(range(10, 18)), 2: list(range(18, 26))}, {"face": {18, 21}})
+    assert meshes.merge_nodes(mesh, 1e-4) == 4 and meshes.merge_nodes(mesh, 1e-6) == 0
+    assert mesh.elements[2][:4] == [11, 19, 20, 12] and mesh.node_sets["face"] == {11, 12}
+    meshes.renumber(mesh)
+    assert len(mesh.nodes) == 12 and meshes.turn_mirrored(mesh) == 0
+    mesh.elements[1] = mesh.elements[1][4:] + mesh.elements[1][:4]
+    assert meshes.turn_mirrored(mesh) == 1

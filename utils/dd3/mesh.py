@@ -15,10 +15,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import h5py
+import numpy as np
+from scipy.spatial import cKDTree
 
 from dd3.command import new_parser
 from dd3.errors import Problem
+from dd3.fields import Fields
+from dd3.gmsh_session import session
 
 # Natural coordinates of the nodes in the order of Abaqus: corners, edges, centre, faces.
 NATURAL = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1),
@@ -59,16 +62,9 @@ def gmsh_groups(gmsh: Any, mesh: Mesh) -> None:
 
 def read_gmsh(path: Path) -> Mesh:
     """Read what Gmsh reads; a geometry is meshed."""
-    import gmsh
-    gmsh.initialize()
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        try:
-            gmsh.open(str(path))
-            if not gmsh.model.mesh.getElements(3)[0].size and gmsh.model.getEntities(3) and path.suffix == ".geo":
-                gmsh.model.mesh.generate(3)
-        except Exception as error:  # Gmsh raises nothing more specific
-            raise Problem(f"{path}: Gmsh: {error}") from None
+    with session(path) as gmsh:
+        if not gmsh.model.mesh.getElements(3)[0].size and gmsh.model.getEntities(3) and path.suffix == ".geo":
+            gmsh.model.mesh.generate(3)
         mesh = Mesh()
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         mesh.nodes = {int(tag): tuple(coordinates[3 * i:3 * i + 3].tolist()) for i, tag in enumerate(tags)}
@@ -84,24 +80,17 @@ def read_gmsh(path: Path) -> Mesh:
                 mesh.elements[label] = these
         gmsh_groups(gmsh, mesh)
         return mesh
-    finally:
-        gmsh.finalize()
 
 
 def read_run(path: Path) -> Mesh:
     """Read the initial mesh of a run."""
-    try:
-        with h5py.File(path, "r", locking=False) as file:
-            group = file["VTKHDF"]
-            n_point, n_cell = int(group["NumberOfPoints"][0]), int(group["NumberOfCells"][0])
-            points, cells = group["Points"][:n_point], group["Connectivity"][:]
-            offsets, kind = group["Offsets"][:n_cell + 1], int(group["Types"][0])
-    except (KeyError, OSError) as error:
-        raise Problem(f"{path}: not a field file of a run: {error}") from None
+    fields = Fields(path)
+    points, cells, offsets = fields.points(0), fields.grid["Connectivity"][:], fields.grid["Offsets"][:]
+    kind = int(fields.grid["Types"][0])
     if kind not in VTK_HEXAHEDRA:
         raise Problem(f"{path}: cells of type {kind}, expected hexahedra")
     mesh = Mesh(nodes={i + 1: tuple(map(float, point)) for i, point in enumerate(points)})
-    for i in range(n_cell):
+    for i in range(len(offsets) - 1):
         mesh.elements[i + 1] = [int(node) + 1 for node in cells[offsets[i]:offsets[i + 1]]]
         # VTK has the face nodes in the order -x +x -y +y -z +z, then the centre.
         if kind == 29:
@@ -222,11 +211,7 @@ def read_inp(path: Path, wanted: str | None) -> Mesh:
 
 def volume_sign(points: Sequence[Sequence[float]]) -> float:
     """Return the triple product of the mean edges of a hexahedron."""
-    axes = []
-    for axis in range(3):
-        axes.append([sum(NATURAL[a][axis] * points[a][i] for a in range(8)) for i in range(3)])
-    (a, b, c), (d, e, f), (g, h, i) = axes
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+    return float(np.linalg.det(np.transpose(NATURAL[:8]) @ np.asarray(points, float)))
 
 
 def turn_mirrored(mesh: Mesh) -> int:
@@ -245,18 +230,11 @@ def turn_mirrored(mesh: Mesh) -> int:
 
 def merge_nodes(mesh: Mesh, tolerance: float) -> int:
     """Replace nodes within a tolerance of an earlier one; return their number."""
-    cells: dict[tuple[int, ...], list[int]] = {}
+    labels = list(mesh.nodes)
     same: dict[int, int] = {}
-    for label, point in mesh.nodes.items():
-        cell = tuple(int(value // tolerance) for value in point)
-        near = (other for shift in itertools.product((-1, 0, 1), repeat=3)
-                for other in cells.get(tuple(a + b for a, b in zip(cell, shift)), ()))
-        twin = next((other for other in near
-                     if sum((a - b)**2 for a, b in zip(point, mesh.nodes[other])) <= tolerance**2), None)
-        if twin is None:
-            cells.setdefault(cell, []).append(label)
-        else:
-            same[label] = twin
+    for a, b in sorted(cKDTree(list(mesh.nodes.values())).query_pairs(tolerance)):
+        if labels[a] not in same:
+            same.setdefault(labels[b], labels[a])
     mesh.elements = {label: [same.get(node, node) for node in nodes] for label, nodes in mesh.elements.items()}
     mesh.node_sets = {name: {same.get(node, node) for node in members} for name, members in mesh.node_sets.items()}
     return len(same)

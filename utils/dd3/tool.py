@@ -20,6 +20,7 @@ import numpy as np
 
 from dd3.command import new_parser
 from dd3.errors import Problem, run
+from dd3.gmsh_session import session
 from dd3.progress import Progress
 from dd3.tools import cad, facets, moved, report, sides
 from dd3.tools.cad import SUFFIXES as CAD
@@ -57,7 +58,7 @@ def from_shapes(options: argparse.Namespace, _: Progress
 def from_cad(options: argparse.Namespace, progress: Progress
             ) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
     """Return the surface of a CAD file, the number of its parts and the lines of the report."""
-    with cad.session() as gmsh:
+    with session() as gmsh:
         model = cad.read_cad(gmsh, options.source, options, progress)
         surface = cad.surface_of(model)
         sign, kept, found = face_sheet(surface, find_joints(surface.net), options)

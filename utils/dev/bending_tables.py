@@ -10,6 +10,7 @@ into a document, between the lines `<!-- table: name -->` and `<!-- end of table
 """
 
 import argparse
+import itertools
 import json
 import statistics
 from concurrent.futures import ThreadPoolExecutor
@@ -35,16 +36,12 @@ TENS = (10, 20, 30, 40)
 
 def jobs():
     """Yield name, input file and parameters of each run."""
-    for mesh, skew in MESHES.items():
-        for held in EDGES.values():
-            for p in PENALTIES:
-                yield f"{mesh}-{held}-{p}", "bending.dat", {"skew": skew, "held": held, "p": p, **NO_FORCE}
-    for mesh, skew in MESHES.items():
-        for p in PENALTIES:
-            yield f"force-{mesh}-{p}", "bending.dat", {"skew": skew, "p": p}
+    for (mesh, skew), held, p in itertools.product(MESHES.items(), EDGES.values(), PENALTIES):
+        yield f"{mesh}-{held}-{p}", "bending.dat", {"skew": skew, "held": held, "p": p, **NO_FORCE}
+    for (mesh, skew), p in itertools.product(MESHES.items(), PENALTIES):
+        yield f"force-{mesh}-{p}", "bending.dat", {"skew": skew, "p": p}
     for p in PENALTIES:
         yield f"halved-{p}", "bending.dat", {"p": p, **HALVED, **NO_FORCE}
-    for p in PENALTIES:
         yield f"cutback-{p}", "bending.dat", {"p": p, "skew": "0", "cutback": "on", **NO_FORCE}
     yield "holder-11300", "bending.dat", {"holder": "-11300", **NO_FORCE}
     yield "fine", "fine.dat", {}
@@ -67,28 +64,23 @@ def difference_cells(one, other):
     return f"{largest:.3f} % at {where:.1f} mm | {statistics.median(v for v, _ in values):.4f} %"
 
 
+def grid(work):
+    """Yield mesh, edges and p of the runs without the limit on the contact forces, and the run."""
+    for mesh, (edges, held), p in itertools.product(MESHES, EDGES.items(), PENALTIES):
+        yield [f"({mesh})", edges, p], Run(work / f"{mesh}-{held}-{p}")
+
+
 def stops(work):
     """End of each run."""
-    rows = []
-    for mesh in MESHES:
-        for edges, held in EDGES.items():
-            for p in PENALTIES:
-                r = Run(work / f"{mesh}-{held}-{p}")
-                rows.append([f"({mesh})", edges, p, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.iterations:.2f}",
-                             f"{r.force[-1]:.0f}", f"{r.seconds:.1f}"])
+    rows = [[*cells, f"{r.travel[-1]:.1f}", f"{r.increments}", f"{r.iterations:.2f}", f"{r.force[-1]:.0f}",
+             f"{r.seconds:.1f}"] for cells, r in grid(work)]
     return table(["mesh", "edges", "p, N/mm", "reached, mm", "increments", "iterations per increment",
                   "punch force there, N", "processor time, s"], rows)
 
 
 def reasons(work):
     """Reasons of the runs that did not reach the end."""
-    rows = []
-    for mesh in MESHES:
-        for edges, held in EDGES.items():
-            for p in PENALTIES:
-                r = Run(work / f"{mesh}-{held}-{p}")
-                if r.code:
-                    rows.append([f"({mesh})", edges, p, f"{r.travel[-1]:.2f}", r.reason])
+    rows = [[*cells, f"{r.travel[-1]:.2f}", r.reason] for cells, r in grid(work) if r.code]
     return table(["mesh", "edges", "p, N/mm", "last accepted, mm", "`reason` in status.csv"], rows)
 
 
@@ -128,14 +120,9 @@ def penalties(work):
 
 def agreement(work):
     """Dependence of the punch force on p."""
-    rows = []
-    for mesh in MESHES:
-        for edges, held in EDGES.items():
-            base = Run(work / f"{mesh}-{held}-1e4")
-            for p in PENALTIES:
-                if p != "1e4":
-                    other = Run(work / f"{mesh}-{held}-{p}")
-                    rows.append([f"({mesh})", edges, f"{p} and 1e4", difference_cells(other, base)])
+    runs = {tuple(cells): r for cells, r in grid(work)}
+    rows = [[mesh, edges, f"{p} and 1e4", difference_cells(r, runs[mesh, edges, "1e4"])]
+            for (mesh, edges, p), r in runs.items() if p != "1e4"]
     return table(["mesh", "edges", "p, N/mm", "largest difference", "median"], rows)
 
 

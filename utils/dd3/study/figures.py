@@ -14,7 +14,7 @@ import numpy as np
 
 from dd3.command import new_parser
 from dd3.fields import Fields
-from dd3.plot.figures import new_figure, save
+from dd3.plot.figures import new_figure, save, tidy
 from dd3.study.tables import MESHES, PENALTIES, PERTURBED
 from dd3.tables import Row, force_limits, read_table
 
@@ -81,8 +81,7 @@ def control_force(work: Path, results: Mapping[str, Row], path: Path) -> bool:
     axes.set_xlim(0.0, END)
     axes.set_xlabel("punch travel (mm)")
     axes.set_ylabel("B of the controlling node (N)")
-    axes.grid(True, color="0.9", linewidth=0.6)
-    axes.spines[["top", "right"]].set_visible(False)
+    tidy(axes)
     axes.legend(frameon=False, fontsize=8)
     save(figure, path, 150)
     return True

@@ -79,22 +79,6 @@ def silence() -> Iterator[None]:
         os.close(kept)
 
 
-@contextmanager
-def session() -> Iterator[Any]:
-    """Give Gmsh, without its messages."""
-    import gmsh
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        yield gmsh
-    except Exception as error:
-        if type(error) is Exception:  # Gmsh raises nothing more specific
-            raise Problem(f"Gmsh: {error}") from None
-        raise
-    finally:
-        gmsh.finalize()
-
-
 def load(gmsh: Any, path: Path) -> None:
     """Read the shapes of a file."""
     gmsh.clear()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from dd3.errors import Problem
+from dd3.gmsh_session import session
 from dd3.mesh import inp_blocks, inp_elements
 
 SUFFIXES = (".stl", ".msh", ".inp", ".k", ".key", ".dyn", ".vtk", ".vtu", ".vtp", ".ply", ".obj")
@@ -239,14 +240,7 @@ def corners_of(labels: list[int]) -> tuple[int, ...]:
 
 def read_msh(path: Path) -> Facets:
     """Read the facets and solids of a Gmsh mesh; parts are its physical groups."""
-    import gmsh
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        try:
-            gmsh.open(str(path))
-        except Exception as error:  # Gmsh raises nothing more specific
-            raise Problem(f"{path}: Gmsh: {error}") from None
+    with session(path) as gmsh:
         labels, xyz, _ = gmsh.model.mesh.getNodes()
         nodes = dict(zip(labels.tolist(), np.reshape(xyz, (-1, 3)).tolist()))
         dimension = 2 if gmsh.model.mesh.getElements(2)[0].size else 3
@@ -260,8 +254,6 @@ def read_msh(path: Path) -> Facets:
                 _, _, _, count, _, corners = gmsh.model.mesh.getElementProperties(kind)
                 cells += [(name, dimension, tuple(row[:corners])) for row in np.reshape(members, (-1, count)).tolist()]
         return from_cells(path, nodes, cells)
-    finally:
-        gmsh.finalize()
 
 
 def read_vtk(path: Path) -> Facets:

@@ -8,7 +8,8 @@ from typing import Any
 import gmsh
 
 from dd3.errors import run
-from dd3.tools.cad import session, silence
+from dd3.gmsh_session import session
+from dd3.tools.cad import silence
 
 
 def edges(chosen: Callable[..., Any]) -> list[int]:
