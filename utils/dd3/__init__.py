@@ -5,7 +5,7 @@
     run = dd3.open("bending.out")
     run.history.plot(x="travel", y="punch_fz")
     run.fields[-1].plot(scalars="equivalent_plastic_strain")
-    run.job["outcome"]["message"]
+    run.job["outcome"]["state"]
 """
 
 from pathlib import Path

@@ -22,7 +22,8 @@ def job_of(folder: Path, deck: Path | None = None, settings: dict[str, str] | No
         "command": {"file": str(deck or ""), "working_directory": None},
         "started": next((line.removeprefix("started ") for line in heading if line.startswith("started ")), ""),
         "title": "".join(title),
-        "outcome": {"message": (log.strip().splitlines() or [""])[-1]},
+        "outcome": {"state": "reached" if "\nreached the end" in log else "stopped",
+                    "message": (log.strip().splitlines() or [""])[-1]},
         "warnings": [{"text": found[2], "at": None}
                      for found in re.finditer(r"^(\S+:\d+: )?warning: (.*)$", log, re.M)],
         "seconds": float(seconds[1]) if seconds else None,

@@ -129,8 +129,11 @@ def add_setup(report: Report) -> None:
         for entry in block["entries"]:
             remark = ", ".join(filter(None, (entry["unit"], "default" if entry["default"] else "")))
             lines.append(f"  {entry['key']} = {entry['text']}".ljust(52) + (f"# {remark}" if remark else ""))
-    heading = (f"{job['program']['name']} {job['program']['version']}: {job['command']['file']}",
-               f"started {job['started']}")
+    heading = [f"{job['program']['name']} {job['program']['version']}: {job['command']['file']}",
+               f"started {job['started']}"]
+    if sheet := job.get("sheet"):
+        heading.append(f"{sheet['elements']} elements {sheet['element']}, {sheet['nodes']} nodes, "
+                       f"{sheet['contact_points']} candidates for contact with {len(report.tools)} tools")
     report.add("Set-up", "<p>" + "<br>".join(map(html.escape, heading)) + "</p><details><summary>All input values"
                "</summary><pre>" + html.escape("\n".join(map(str.rstrip, lines))) + "</pre></details>")
 
@@ -157,7 +160,7 @@ def add_statistics(report: Report) -> None:
 def end_of(report: Report) -> str:
     """Return how the run ended."""
     outcome = report.job["outcome"]
-    return outcome["message"] or {"reached": "reached the end"}.get(outcome["state"], outcome["state"])
+    return str(outcome["message"] or outcome["state"])
 
 
 def add_force(report: Report) -> None:
