@@ -49,9 +49,9 @@ def by_steps(program, work):
     tail = ["--cases", CASES, "--program", program, "--work", work]
     for name in NAMES:
         call(*STUDY, "case", name, *tail)
-    stamp = (work / "b-1e3" / "case.json").stat().st_mtime_ns
+    stamp = (work / "b-1e3" / "done.json").stat().st_mtime_ns
     assert "done before" in call(*STUDY, "case", "b-1e3", *tail)
-    assert (work / "b-1e3" / "case.json").stat().st_mtime_ns == stamp
+    assert (work / "b-1e3" / "done.json").stat().st_mtime_ns == stamp
     call(*STUDY, "case", "none", *tail, expect=2)
     call(*STUDY, "table", *tail)
     check_table(work / "results.csv")
@@ -61,12 +61,12 @@ def by_workflow(program, work):
     """Run all by the workflow, then again with nothing to do, then with one case lost."""
     def run():
         call(*STUDY, "run", "--quick", "--cores", 2, "--program", program, "--work", work, cwd=ROOT)
-        return {name: (work / name / "case.json").stat().st_mtime_ns for name in NAMES}
+        return {name: (work / name / "done.json").stat().st_mtime_ns for name in NAMES}
 
     first = run()
     check_table(work / "results.csv")
     assert run() == first
-    (work / "a-1e3" / "case.json").unlink()
+    (work / "a-1e3" / "done.json").unlink()
     again = run()
     assert [name for name in NAMES if again[name] != first[name]] == ["a-1e3"]
     check_table(work / "results.csv")

@@ -32,7 +32,7 @@ def test_messages(tmp_path, words, said):
     more = cases if words[1:2] in (("command",), ("case",), ("table",)) and "--cases" not in words else []
     line = call(*words, *more, expect=2).strip().splitlines()[-1]
     assert said in line and "error: " in line
-    assert not list(tmp_path.glob("*/case.json"))
+    assert not list(tmp_path.glob("*/done.json"))
 
 
 @pytest.mark.parametrize("script", ("first_run.sh", "run_tests.sh", "install_needed.sh", "dev/benchmark.py",

@@ -6,7 +6,7 @@
 
 A case is a row of input_files/bending_study/cases.csv; call the command in the project's folder, or give --cases. Its
 columns other than `case` and `set` are parameters of study.dat in the same folder; an empty cell keeps the default of
-study.dat. A case is done when its folder has a case.json: exit code 0 means that the run reached its end, 3 that it
+study.dat. A case is done when its folder has a done.json: exit code 0 means that the run reached its end, 3 that it
 stopped before. Both are results.
 """
 
@@ -107,7 +107,7 @@ def is_done(note: Path, words: Sequence[str], deck: str) -> bool:
 
 
 def run_case(words: Sequence[str]) -> None:
-    """Run a case unless it is done. case.json is written last, and renamed, so that it marks a finished run."""
+    """Run a case unless it is done. done.json is written last, and renamed, so that it marks a finished run."""
     options = arguments("case", words)
     cases = read_cases(options.cases)
     row = row_of(cases, options)

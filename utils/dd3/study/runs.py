@@ -8,7 +8,7 @@ from dd3.errors import Problem
 from dd3.programs import Finished, command, launch
 from dd3.tables import Row, interpolate, limiters, read_table, totals
 
-NOTE = "case.json"  # exit code, seconds and memory of a finished run, in its folder
+NOTE = "done.json"  # exit code, seconds and memory of a finished run, in its folder
 # First travel at which forces are compared, and the distance of the points, mm.
 FIRST, STEP = 0.1, 0.1
 

@@ -29,7 +29,7 @@ localrules:
 
 rule all:
     input:
-        expand("{case}/case.json", case=CASES),
+        expand("{case}/done.json", case=CASES),
         "results.csv",
         ["figures.txt"] if FIGURES else [],
 
@@ -41,7 +41,7 @@ rule case:
         tools=sorted((TABLE.parent.parent / "bending").glob("*.bez")),
         program=ancient(PROGRAM),
     output:
-        "{case}/case.json",
+        "{case}/done.json",
     params:
         row=lambda wildcards: CASES[wildcards.case],
     threads: 1
@@ -57,7 +57,7 @@ rule case:
 
 rule table:
     input:
-        expand("{case}/case.json", case=CASES),
+        expand("{case}/done.json", case=CASES),
     output:
         "results.csv",
     params:
