@@ -13,6 +13,7 @@ import signal
 import subprocess
 
 import h5py
+
 from killed import CASES
 from runs import RECORDS, Deck, Failure, Runner, after, call_tests, check, compare, fresh, identity, table
 

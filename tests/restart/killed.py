@@ -11,20 +11,8 @@ import random
 import signal
 import time
 
-from runs import (
-    Deck,
-    Runner,
-    after,
-    being_written,
-    call_tests,
-    check,
-    compare,
-    fresh,
-    growing,
-    replaced,
-    restart_of,
-    table,
-)
+from runs import (Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of,
+                  table)
 
 # Phases before the last one, and the beginning of that.
 MOTIONS = """*PHASE turn

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 
 import h5py
+
 from runs import ROOT, Deck, Runner, call_tests, check, fresh
 
 DIE = ROOT / "input_files" / "bending" / "die.bez"

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 
+COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
+
+
 class Fields:
     """The sheet at its steps; `fields[i]` is a grid of pyvista with all fields of a step.
 
@@ -78,6 +81,21 @@ class Fields:
         data = self.grid[where][name]
         first = int(self.steps[where + "Offsets"][name][step])
         return data[first:first + int(self.grid[rows][0])], text_of(data.attrs.get("unit", "")).strip()
+
+    def component(self, step: int, field: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
+        """Return a field, or a component such as stress:11 or displacement:z, and its label; without a component the
+        magnitude of a vector."""
+        name, _, chosen = field.partition(":")
+        values, unit = self.values(step, name, at_cells)
+        values, label, unit = values.astype(float), name.replace("_", " "), f" ({unit})" if unit else ""
+        if values.ndim == 1:
+            return values, label + unit
+        names = COMPONENTS.get(name, tuple("xyz"[: values.shape[1]]))
+        if chosen in names:
+            return values[:, names.index(chosen)], f"{label} {chosen}{unit}"
+        if chosen in ("", "magnitude"):
+            return np.linalg.norm(values, axis=1), f"{label}, magnitude{unit}"
+        raise Problem(f"{self.path}: no component '{chosen}' of '{name}'; there are: {', '.join(names)}, magnitude")
 
 
 def text_of(attribute: str | bytes) -> str:

@@ -35,18 +35,9 @@ class Section:
         self.length0, self.length = length(self.start), length(self.now)
 
     def field(self, name: str) -> tuple[np.ndarray, str]:
-        """Return a field, or its component as in stress:0, and its label."""
-        name, _, component = name.partition(":")
-        values, unit = self.sheet.values(self.step, name)
-        label = name.replace("_", " ") + (f" {component}" if component else "") + (f" ({unit})" if unit else "")
-        values = self.line.at(values.astype(float))
-        if values.ndim == 1:
-            return values, label
-        number = AXES.index(component) if component and component in AXES else component
-        try:
-            return values[:, int(number)], label
-        except (ValueError, IndexError):
-            raise Problem(f"{name} has {values.shape[1]} components: give {name}:0 or so") from None
+        """Return a field, or its component as in stress:11, and its label."""
+        values, label = self.sheet.component(self.step, name)
+        return self.line.at(values), label
 
     def table(self, fields: Sequence[str]) -> pd.DataFrame:
         """Return lengths, positions and fields at the points."""

@@ -22,13 +22,12 @@ from dd3.command import new_parser
 from dd3.errors import Problem, run
 from dd3.gmsh_session import session
 from dd3.progress import Progress
-from dd3.tools import cad, facets, moved, report, sides
+from dd3.tools import cad, facets, mend, moved, report, sides
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
 from dd3.tools.joints import Joints, find_joints, turn
 from dd3.tools.limits import supervised
-from dd3.tools.mend import turn_facets
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
 
@@ -105,8 +104,8 @@ def face_facets(mesh: Facets, options: argparse.Namespace) -> None:
         notes.append(f"turned: {report.plural(turned_facets, 'facet')} against the others of their body")
     if not kept.all():
         notes.append(f"left out: {report.plural(int((~kept).sum()), 'facet')} that face away from --toward")
-    turn_facets(mesh, sign)
-    facets.keep(mesh, kept)
+    mend.turn_facets(mesh, sign)
+    mend.keep(mesh, kept)
     mesh.notes += notes
 
 

@@ -35,7 +35,6 @@ from dd3.tables import tools_in
 from dd3.tools.blocks import lines_of
 from dd3.tools.surface import read_lines
 
-COMPONENTS = {"stress": ["11", "22", "33", "12", "23", "13"]}
 VECTOR = ["x", "y", "z"]
 VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
@@ -74,23 +73,9 @@ class Run(Fields):
     def mesh(self, step: int, field: str, at_cells: bool = False) -> tuple[pv.UnstructuredGrid, str]:
         """Return the sheet at a step with its field as `shown`, and the label of the field."""
         mesh = self.shape(step)
-        name, _, component = field.partition(":")
-        values, unit = self.values(step, name, at_cells)
-        values, label = self.component(values.astype(float), name, component)
-        (mesh.cell_data if at_cells else mesh.point_data)["shown"] = values
-        return mesh, label + (f" ({unit})" if unit else "")
-
-    def component(self, values: np.ndarray, name: str, component: str) -> tuple[np.ndarray, str]:
-        """Return a component of a field, or its magnitude, and its label."""
-        label = name.replace("_", " ")
-        if values.ndim == 1:
-            return values, label
-        names = COMPONENTS.get(name, VECTOR[: values.shape[1]])
-        if component in names:
-            return values[:, names.index(component)], f"{label} {component}"
-        if component in ("", "magnitude"):
-            return np.linalg.norm(values, axis=1), f"{label}, magnitude"
-        raise Problem(f"{self.path}: no component '{component}' of '{name}'; there are: {', '.join(names)}, magnitude")
+        data = mesh.cell_data if at_cells else mesh.point_data
+        data["shown"], label = self.component(step, field, at_cells)
+        return mesh, label
 
     def tool_displacement(self, step: int) -> dict[str, np.ndarray]:
         """Return the displacement of each tool at a step: from the fields, or from history.csv."""

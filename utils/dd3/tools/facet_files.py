@@ -270,7 +270,7 @@ def read_vtk(path: Path) -> Facets:
         data = data.combine()
     data = data if isinstance(data, pv.PolyData) else data.extract_surface(nonlinear_subdivision=0,
                                                                           algorithm="dataset_surface")
-    if not data.n_cells or not data.n_faces_strict:
+    if not data.n_cells or not data.n_faces:
         raise Problem(f"{path}: no facets; a damaged file or one of another kind")
     cells, faces, i = [], np.asarray(data.faces), 0
     while i < len(faces):

@@ -6,30 +6,15 @@ from typing import Any
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.tools import moved
+from dd3.tools import mend, moved
 from dd3.tools.facet_files import Facets, read_facets
 from dd3.tools.joints import find_joints, kinks
-from dd3.tools.mend import (
-    SAME_NODE,
-    consistent,
-    edge_table,
-    gaps,
-    keep,
-    merged,
-    pairs_of,
-    with_whole_edges,
-    without_doubles,
-    without_repeats,
-    without_slivers,
-)
 from dd3.tools.nagata import CREASE, estimate_normals, facet_areas, groups, unfolded_patches, unit
 from dd3.tools.report import REACH, plural, up, where
 from dd3.tools.surface import Surface
 
 # Largest coordinate, mm; beyond it a damaged number is likelier than a tool.
 FARTHEST = 1e9
-
-__all__ = ["keep", "load", "patches", "sides_of", "turned_number"]
 
 
 def load(options: argparse.Namespace) -> Facets:
@@ -39,14 +24,14 @@ def load(options: argparse.Namespace) -> Facets:
     mesh.nodes = mesh.nodes * options.scale
     choose(path, mesh, options.part)
     size = diagonal(path, mesh)
-    merge = merged(mesh, max(options.sew or 0.0, SAME_NODE * size))
-    empty = without_repeats(mesh)
-    doubled = without_doubles(mesh)
-    empty += without_slivers(mesh)
-    doubled += without_doubles(mesh)
+    merge = mend.merged(mesh, max(options.sew or 0.0, mend.SAME_NODE * size))
+    empty = mend.without_repeats(mesh)
+    doubled = mend.without_doubles(mesh)
+    empty += mend.without_slivers(mesh)
+    doubled += mend.without_doubles(mesh)
     if not len(mesh.facets):
         raise Problem(f"{path}: no facet has an area")
-    inserted, left = with_whole_edges(mesh, max(options.sew or 0.0, SAME_NODE * size))
+    inserted, left = mend.with_whole_edges(mesh, max(options.sew or 0.0, mend.SAME_NODE * size))
     refuse_gaps(path, mesh, left)
     for count, what in ((merge, "nodes merged"), (empty, "facets without area removed"),
                         (doubled, "doubled facets left out"), (inserted, "nodes inserted into edges of other facets")):
@@ -63,14 +48,14 @@ def diagonal(path: Path, mesh: Facets) -> float:
     if np.abs(used).max(initial=0.0) > FARTHEST:
         raise Problem(f"{path}: a coordinate of {np.abs(used).max():.3g} mm; expected at most {FARTHEST:g} mm")
     size = np.linalg.norm(np.ptp(used, axis=0))
-    if size == 0.0 or np.linalg.svd(used - used.mean(axis=0), compute_uv=False)[1] <= SAME_NODE * size:
+    if size == 0.0 or np.linalg.svd(used - used.mean(axis=0), compute_uv=False)[1] <= mend.SAME_NODE * size:
         raise Problem(f"{path}: all nodes are on one line or at one point")
     return size
 
 
 def refuse_gaps(path: Path, mesh: Facets, inside: list[Any]) -> None:
     """Refuse facets with cracks, or with nodes inside the edges of others."""
-    pairs, distance = gaps(mesh, REACH)
+    pairs, distance = mend.gaps(mesh, REACH)
     if len(pairs):
         worst = distance.argmax()
         raise Problem(f"{path}: error: {plural(len(pairs), 'pair')} of nodes on free edges up to "
@@ -95,19 +80,19 @@ def choose(path: Path, mesh: Facets, wanted: list[str] | None) -> None:
             there = ", ".join(f"{number} '{name}'" for number, name in enumerate(mesh.names, 1))
             raise Problem(f"{path}: no part '{word}'; there are {there}")
         chosen |= np.isin(mesh.part, found)
-    keep(mesh, chosen)
+    mend.keep(mesh, chosen)
 
 
 def sides_of(mesh: Facets) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray,
                                     np.ndarray]:
     """Return area vectors, centres, regions between sharp edges, signs, bodies, which are open, and facets that
     cannot have a side."""
-    sign, body, is_open, twisted = consistent(mesh)
+    sign, body, is_open, twisted = mend.consistent(mesh)
     area = facet_areas(mesh.nodes, mesh.facets)
     corner = np.where(mesh.facets < 0, mesh.facets[:, :1], mesh.facets)
     centre = mesh.nodes[corner].mean(axis=1)
-    _, _, facet, _ = edge_table(mesh.facets)
-    pairs, _ = pairs_of(mesh.facets)
+    _, _, facet, _ = mend.edge_table(mesh.facets)
+    pairs, _ = mend.pairs_of(mesh.facets)
     first, second = facet[pairs].T
     normal = unit(area) * sign[:, None]
     smooth = (normal[first] * normal[second]).sum(axis=1) >= np.cos(np.radians(CREASE))
