@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from itertools import pairwise
 from unittest import mock
 
 import gmsh
@@ -37,7 +38,7 @@ def with_nodes(triangles, count):
             continue
         one, two, three = corners
         place = [two + (three - two) * k / (count + 1) for k in range(count + 2)]
-        result += [np.array([a, b, one]) for a, b in zip(place, place[1:])]
+        result += [np.array([a, b, one]) for a, b in pairwise(place)]
     return np.array(result)
 
 
@@ -134,7 +135,7 @@ def test_cut_texts(tmp_path):
         assert "error: " in convert(path, expect=2)
         path.write_text(MESHES[name].replace("10", "1e300", 1))
         assert "error: " in convert(path, expect=2)
-    endings = "stl inp k shape vtk vtu vtp ply obj msh step igs brep".split()
+    endings = ["stl", "inp", "k", "shape", "vtk", "vtu", "vtp", "ply", "obj", "msh", "step", "igs", "brep"]
     noise = np.random.default_rng(1).bytes(2000)
     for ending in endings:
         for data in (noise, b"\0" * 2000):

@@ -179,7 +179,7 @@ def test_gmsh(program, tmp_path):
 
 def test_merge():
     """Check that nodes within the tolerance of an earlier one are replaced by it, and volumes by their sign."""
-    nodes = {10 + i: tuple(place) for i, place in enumerate([*CORNERS, *(np.array(CORNERS) + [2 + 1e-5, 0, 0])])}
+    nodes = {10 + i: tuple(place) for i, place in enumerate([*CORNERS, *np.add(CORNERS, (2 + 1e-5, 0, 0))])}
     mesh = meshes.Mesh(nodes, {1: list(range(10, 18)), 2: list(range(18, 26))}, {"face": {18, 21}})
     assert meshes.merge_nodes(mesh, 1e-4) == 4 and meshes.merge_nodes(mesh, 1e-6) == 0
     assert mesh.elements[2][:4] == [11, 19, 20, 12] and mesh.node_sets["face"] == {11, 12}

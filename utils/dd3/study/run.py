@@ -6,7 +6,7 @@
     dd3 study run -- --profile utils/dd3/study/slurm        options of snakemake after --, such as --dry-run
 
 Call it in the project's folder, or give --cases. All cores are used. After an interruption the same command continues;
-finished cases are not repeated. The workflow engine, snakemake, is installed by `pip install "./utils[study]"`.
+finished cases are not repeated. `pip install --editable "./utils[study]"` installs snakemake, the workflow engine.
 """
 
 import argparse
@@ -45,7 +45,7 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     program = find_program(options.program)
     if importlib.util.find_spec("snakemake") is None:
-        raise Problem('snakemake is missing: pip install "./utils[study]"')
+        raise Problem('snakemake is missing: pip install --editable "./utils[study]"')
     name = "quick" if options.quick else "cases"
     cases = options.cases or Path(f"input_files/bending_study/{name}.csv")
     work = made_folder(options.work or ("bending_study_quick.out" if options.quick else "bending_study.out"))
