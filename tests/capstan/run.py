@@ -14,11 +14,12 @@ import pathlib
 import re
 import sys
 
+from dd3.programs import command, find_program, launch
+from dd3.tables import number, read_table, totals
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
 REPORT = ROOT / "docs" / "reports" / "capstan.md"
-sys.path.insert(0, str(ROOT / "utils"))
-from results import command, find_program, launch, number, read_table, totals  # noqa: E402
 
 EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0

@@ -10,13 +10,14 @@ agree within 2 % with ring.py at the same radius. --all prints the same for othe
 """
 import math
 import pathlib
-import sys
+
+from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to
+
+from dd3.errors import check
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import number, read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "utils"))
-from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
-from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to  # noqa: E402
-from scripts import check  # noqa: E402
 
 TOLERANCE = 0.02
 RADII = (10.0, 50.0, 100.0)
