@@ -1,22 +1,14 @@
 # What `cmake --install` copies beside the program: utilities, examples and documents.
 #
-#   <bindir>/dd3imp-report ...     the utilities by name, links to
-#   <datadir>/dd3imp/utils         the utilities; their Python environment is made by install_needed.sh as .venv beside it
+#   <bindir>/dd3                   the utilities, a link to dd3.sh
+#   <datadir>/dd3imp/utils         their package; install_needed.sh makes its Python environment as .venv beside it
 #   <datadir>/dd3imp/input_files   the examples
 #   <docdir>                       the documents, with links to examples and utilities, so that their own links hold
 include(GNUInstallDirs)
 set(data "${CMAKE_INSTALL_DATADIR}/${PROJECT_NAME}")
-set(commands tool mesh report section identify plot_force plot_increments plot_point plot_sheet)
-# Scripts of the project's own studies and pictures.
-set(internal benchmark bending_tables law_pictures plot_study study study_report)
-list(TRANSFORM commands PREPEND utils/ OUTPUT_VARIABLE scripts)
-list(TRANSFORM scripts APPEND .py)
-file(GLOB modules RELATIVE "${CMAKE_SOURCE_DIR}" CONFIGURE_DEPENDS utils/*.py)
-list(TRANSFORM internal REPLACE "(.+)" "utils/\\1.py")
-list(REMOVE_ITEM modules ${scripts} ${internal})
-install(PROGRAMS ${scripts} utils/install_needed.sh DESTINATION "${data}/utils")
-install(FILES ${modules} utils/requirements.txt DESTINATION "${data}/utils")
-install(DIRECTORY utils/tools DESTINATION "${data}/utils" FILES_MATCHING PATTERN "*.py")
+install(PROGRAMS utils/dd3.sh utils/install_needed.sh DESTINATION "${data}/utils")
+install(FILES utils/pyproject.toml DESTINATION "${data}/utils")
+install(DIRECTORY utils/dd3 DESTINATION "${data}/utils" PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY input_files DESTINATION "${data}" USE_SOURCE_PERMISSIONS PATTERN "*.out" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
@@ -37,9 +29,7 @@ function(dd3_link target place)
     file(CREATE_LINK \"\${target}\" \"\$ENV{DESTDIR}\${place}\" SYMBOLIC)")
 endfunction()
 
-foreach(name IN LISTS commands)
-  dd3_link("${data}/utils/${name}.py" "${CMAKE_INSTALL_BINDIR}/${PROJECT_NAME}-${name}")
-endforeach()
+dd3_link("${data}/utils/dd3.sh" "${CMAKE_INSTALL_BINDIR}/dd3")
 foreach(folder IN ITEMS utils input_files)
   dd3_link("${data}/${folder}" "${CMAKE_INSTALL_DOCDIR}/${folder}")
 endforeach()

@@ -31,10 +31,11 @@ import pathlib
 import shutil
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "utils"))
-from results import command, find_program, launch, number, read_table  # noqa: E402
-from run_description import check_description  # noqa: E402
-from scripts import Problem  # noqa: E402
+from run_description import check_description
+
+from dd3.errors import Problem
+from dd3.programs import command, find_program, launch
+from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains",

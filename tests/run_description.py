@@ -4,12 +4,11 @@ Without the package jsonschema the schema is not used.
 """
 import json
 import pathlib
-import sys
+
+from dd3.errors import Problem
+from dd3.tables import is_whole, read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "utils"))
-from results import is_whole, read_table  # noqa: E402
-from scripts import Problem  # noqa: E402
 
 try:
     import jsonschema

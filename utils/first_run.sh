@@ -35,9 +35,9 @@ trap - EXIT
 [ "$other" -eq 0 ] || [ "$other" -eq 3 ] || exit "$other"
 
 echo "== drawing"
-.venv/bin/python utils/plot_force.py --output "$result/force.png" "$result"
-.venv/bin/python utils/plot_sheet.py --output "$result/sheet.png" --deck input_files/bending/bending.dat "$result"
-.venv/bin/python utils/plot_increments.py --output "$result/increments.png" \
+.venv/bin/dd3 plot force --output "$result/force.png" "$result"
+.venv/bin/dd3 plot sheet --output "$result/sheet.png" "$result"
+.venv/bin/dd3 plot increments --output "$result/increments.png" \
   --label "limit on the contact forces, c = d = e = 1" --label "without this limit" "$result" "$without"
 echo
 echo "punch force against displacement: $result/force.png"

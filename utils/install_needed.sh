@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv of the
-# utilities. Needs root only if a package is missing. Not installed: libmumps-seq-dev, the optional linear solver.
+# Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv with
+# the utilities. Needs root only if a package is missing. Not installed: libmumps-seq-dev, the optional linear solver.
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv
@@ -45,18 +45,19 @@ install_packages() {
     "${missing[@]}" >/dev/null
 }
 
-# The environment is created again if the list of requirements has changed.
+# The package is installed such that changes of its sources need no further installation; the environment is created
+# again if its requirements have changed.
 install_python() {
   local python=/usr/bin/python3 wanted
   [ -x "$python" ] || python=python3
-  wanted=$(cksum <utils/requirements.txt)
-  [ "$(cat .venv/requirements.cksum 2>/dev/null)" = "$wanted" ] && return 0
-  echo "== installing the Python packages of utils/requirements.txt into .venv"
+  wanted=$(cksum <utils/pyproject.toml)
+  [ "$(cat .venv/pyproject.cksum 2>/dev/null)" = "$wanted" ] && return 0
+  echo "== installing the Python package utils/dd3 into .venv"
   rm -rf .venv
   "$python" -m venv .venv
-  .venv/bin/pip install -q --disable-pip-version-check -r utils/requirements.txt
-  echo "$wanted" >.venv/requirements.cksum
+  .venv/bin/pip install -q --disable-pip-version-check --editable "./utils[test]"
+  echo "$wanted" >.venv/pyproject.cksum
 }
 
 install_packages
-[ "${1:-}" = --no-python ] || [ ! -f utils/requirements.txt ] || install_python
+[ "${1:-}" = --no-python ] || [ ! -f utils/pyproject.toml ] || install_python

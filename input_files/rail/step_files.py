@@ -3,15 +3,12 @@
 
     step_files.py build/rail
 
-Gmsh leads the profile along the centre line, two arcs between straight ends; utils/tool.py converts the files, see
+Gmsh leads the profile along the centre line, two arcs between straight ends; dd3 tool converts the files, see
 docs/tools.md. The shape files of this folder describe the same surfaces.
 """
 import math
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from solids import gmsh, wire, write  # noqa: E402
+from dd3.tools.solids import gmsh, wire, write
 
 THICKNESS = 0.8  # of the blank, whose lower face is at z = 0, mm
 PUNCH, OPENING, FACE = 15.0, 16.0, 60.0  # half widths, mm

@@ -3,15 +3,12 @@
 
     step_files.py build/round_cup
 
-Gmsh revolves the profiles by 120 degrees, a quarter that extends beyond the planes of symmetry; utils/tool.py converts
+Gmsh revolves the profiles by 120 degrees, a quarter that extends beyond the planes of symmetry; dd3 tool converts
 the files, see docs/tools.md. The shape files of this folder describe the same surfaces.
 """
 import math
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from solids import gmsh, wire, write  # noqa: E402
+from dd3.tools.solids import gmsh, wire, write
 
 THICKNESS = 1.6  # of the blank, whose lower face is at z = 0, mm
 PUNCH, OPENING, FACE, RADIUS = 48.73, 50.74, 100.0, 12.7  # radii of punch, opening, faces and profiles, mm

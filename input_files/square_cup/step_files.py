@@ -3,13 +3,10 @@
 
     step_files.py build/cup
 
-Gmsh makes them of boxes with fillets, for the whole cup; utils/tool.py converts them, see docs/tools.md.
+Gmsh makes them of boxes with fillets, for the whole cup; dd3 tool converts them, see docs/tools.md.
 """
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from solids import edges, gmsh, write  # noqa: E402
+from dd3.tools.solids import edges, gmsh, write
 
 THICKNESS = 0.78  # of the blank, whose lower face is at z = 0, mm
 FACE = 220.0  # side of the die and the holder

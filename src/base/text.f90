@@ -4,9 +4,12 @@ module dd3_base_text
   implicit none
   private
   public :: text_t, text_buffer_t, newline, to_text, lower_case, upper_case, same_name, &
-      nearest_name, suggestion, join, slice
+      nearest_name, suggestion, join, slice, axis_name
 
   character(len=1), parameter :: newline = achar(10)
+
+  !> Names of the axes and of components along them.
+  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
 
   !> A string of any length, for lists of strings.
   type :: text_t

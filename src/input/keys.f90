@@ -52,7 +52,7 @@ contains
 
     key = [ &
       row("file", kind_text, "", "", "mesh of hexahedra as an Abaqus or CalculiX .inp file; "// &
-          "utils/mesh.py makes one of other formats"), &
+          "dd3 mesh makes one of other formats"), &
       row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
       row("thickness_points", kind_integer, "", "7", &
           "integration points through the thickness of an element solid_shell", lower=2.0_wp, &

@@ -3,7 +3,7 @@
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
-  use dd3_base_text, only : text_t
+  use dd3_base_text, only : axis_name, text_t
   use dd3_input_block, only : deck_t
   use dd3_input_case, only : case_t, motion_spec_t, phase_spec_t
   use dd3_input_reference, only : check_references
@@ -17,7 +17,6 @@ module dd3_mesh_build
   private
   public :: new_mesh
 
-  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
   character(len=*), parameter :: directions_led = &
       "directions that `displace` led in an earlier phase"
 

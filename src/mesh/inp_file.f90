@@ -109,7 +109,7 @@ contains
       call need_set(self, at, "elset")
     case default
       call self%report(number, "the keyword "//upper_case(trim(word%name(1)))//" is not read", &
-          keywords//"; a model is turned into such a file by utils/mesh.py", 1, &
+          keywords//"; a model is turned into such a file by dd3 mesh", 1, &
           len_trim(word%name(1)))
     end select
   end subroutine begin_section

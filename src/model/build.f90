@@ -4,29 +4,31 @@ module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t, location_t
   use dd3_base_text, only : text_buffer_t, to_text
-  use dd3_contact_closest, only : find_contact, hint_t, hit_t
+  use dd3_contact_closest, only : hit_t
+  use dd3_contact_placement, only : placement_t
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, fields_at, fields_every, fields_increments
+  use dd3_input_case, only : case_t
   use dd3_input_known_name, only : check_known_name
   use dd3_linalg_solver_registry, only : missing_package, solver_names
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
-  use dd3_model_contact_points, only : find_contact_faces, set_contact_points
+  use dd3_model_contact_points, only : set_contact_points
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_drawbead_build, only : new_drawbeads
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_phases, only : new_phases
-  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
+  use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
+      rigid_motion_t
   use dd3_model_rim, only : set_rim
   use dd3_model_sheet_faces, only : new_sheet_faces
-  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
@@ -46,6 +48,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
+    integer :: i
 
     call set_title(model, case)
     call set_element(model, case, errors)
@@ -53,7 +56,10 @@ contains
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) then
-      call check_mesh_file(model, case, errors)
+      ! The mesh file of an input with errors is read to report its errors with the others.
+      if (model%element%n_node == 0 .or. size(case%mesh) /= 1) return
+      if (case%mesh(1)%source%has("file")) &
+          call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
       return
     end if
     call new_variables(model%internal_variable, model%material)
@@ -64,7 +70,10 @@ contains
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)
     if (errors%count > 0) return
-    call set_supports(model, case, mesh)
+    allocate (model%fixed(3, model%n_node), source=.false.)
+    do i = 1, size(case%boundary)
+      call mark_directions(model%fixed, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
+    end do
     call set_rim(model)
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
@@ -118,21 +127,6 @@ contains
     end subroutine set_from
 
   end subroutine set_element
-
-  !> Read the mesh file of an input with errors, to report its errors with the others.
-  subroutine check_mesh_file(model, case, errors)
-    !> With its element, if that is known.
-    type(model_t), intent(in) :: model
-    type(case_t), intent(in) :: case
-    type(error_list_t), intent(inout) :: errors
-
-    type(mesh_t) :: mesh
-
-    if (model%element%n_node == 0) return
-    if (size(case%mesh) /= 1) return
-    if (.not. case%mesh(1)%source%has("file")) return
-    call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
-  end subroutine check_mesh_file
 
   !> Report a linear solver that is not in the registry or not in this build.
   subroutine check_solver(case, errors)
@@ -206,6 +200,7 @@ contains
 
     type(element_work_t) :: work
     type(verdict_t) :: verdict
+    type(location_t) :: at
     integer :: e, i
 
     model%n_node = mesh%n_node
@@ -231,20 +226,13 @@ contains
     do e = 1, model%n_element
       call element_gradients(model%element, model%x0(:, model%connectivity(:, e)), work, verdict)
       if (verdict%outcome == verdict_converged) cycle
-      call errors%push_input(sheet_location(case), "element "//to_text(e)// &
+      if (size(case%blank) > 0) at = case%blank(1)%source%opened
+      if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
+      call errors%push_input(at, "element "//to_text(e)// &
           " has no volume", "a sheet whose node lines do not cross", code="E148")
       return
     end do
   end subroutine set_mesh
-
-  !> Return where the sheet is defined.
-  function sheet_location(case) result(at)
-    type(case_t), intent(in) :: case
-    type(location_t) :: at
-
-    if (size(case%blank) > 0) at = case%blank(1)%source%opened
-    if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
-  end function sheet_location
 
   !> Number the contact candidates, and the block rows of the tools that are pressed in some phase.
   subroutine find_candidates(model, case, mesh, errors)
@@ -262,7 +250,6 @@ contains
     do t = 1, model%n_tool
       member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
     end do
-    call find_contact_faces(model, member)
     points = case%contact%points
     if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
         case%contact%points_at, "points between the nodes need a sheet of one layer of "// &
@@ -298,20 +285,6 @@ contains
     end do
   end function is_one_layer
 
-  !> Set the supports that hold in every phase.
-  subroutine set_supports(model, case, mesh)
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    type(mesh_t), intent(in) :: mesh
-
-    integer :: b
-
-    allocate (model%fixed(3, model%n_node), source=.false.)
-    do b = 1, size(case%boundary)
-      call mark_directions(model%fixed, mesh%nodes_of(case%boundary(b)%set), case%boundary(b)%fix)
-    end do
-  end subroutine set_supports
-
   !> Set the outputs and the node sets of history.csv.
   subroutine set_output(model, case, mesh)
     type(model_t), intent(inout) :: model
@@ -320,26 +293,11 @@ contains
 
     integer :: h
 
-    model%output%history_every = case%output%history
-    model%output%restart = case%output%restart
-    model%output%restart_every = case%output%restart_every
-    select case (case%output%fields)
-    case (fields_every)
-      model%output%fields_every = case%output%fields_value(1)
-    case (fields_at)
-      model%output%fields_at = case%output%fields_value
-    case (fields_increments)
-      model%output%fields_increments = nint(case%output%fields_value(1))
-    end select
+    model%output = case%output
     allocate (model%history(size(case%history)))
     do h = 1, size(case%history)
-      model%history(h)%name = case%history(h)%name
+      model%history(h)%history_spec_t = case%history(h)
       model%history(h)%node = mesh%nodes_of(case%history(h)%set)
-      model%history(h)%displacement = case%history(h)%displacement
-      model%history(h)%reaction = case%history(h)%reaction
-      model%history(h)%position = case%history(h)%position
-      model%history(h)%moment = case%history(h)%moment
-      model%history(h)%draw_in = case%history(h)%draw_in
     end do
   end subroutine set_output
 
@@ -350,40 +308,31 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    real(wp) :: deepest, nearest
-    integer :: c, t, node, worst
+    type(hit_t), allocatable :: hit(:)
+    integer :: c, t, nearest, worst
 
     do t = 1, model%n_tool
-      deepest = -start_depth
-      nearest = model%tolerance%start_search
-      worst = 0
-      do c = 1, model%n_contact
-        if (.not. model%candidate(t, c)) cycle
-        node = model%contact_node(c)
-        hint = hint_t()
-        call find_contact(model%tool(t)%surface, model%point_position(c, model%x0) &
-            - model%tool(t)%position, hint, model%tolerance%start_search, &
-            model%tolerance%start_search, hit)
-        if (.not. hit%found) cycle
-        if (abs(hit%distance) < abs(nearest)) nearest = hit%distance
-        if (hit%distance >= deepest .or. hit%distance < -wrong_side_depth* &
-            model%thickness_at(node)) cycle
-        deepest = hit%distance
-        worst = node
-      end do
-      if (worst == 0 .and. nearest < -start_depth) then
+      associate (distance => model%tolerance%start_search)
+        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), model%x0, &
+            distance, distance)
+      end associate
+      nearest = minloc(abs(hit%distance), dim=1, mask=hit%found)
+      worst = minloc(hit%distance, dim=1, mask=hit%found .and. hit%distance < -start_depth &
+          .and. hit%distance >= [(-wrong_side_depth*model%thickness_at(model%contact_node(c)), &
+          c=1, model%n_contact)])
+      if (worst == 0) then
+        if (nearest == 0) cycle
+        if (hit(nearest)%distance >= -start_depth) cycle
         call errors%push_input(case%tool(t)%source%opened, "tool '" &
             //case%tool(t)%source%called()//"' turns away from the sheet, "// &
-            to_text(-nearest, 4)//" mm off", &
+            to_text(-hit(nearest)%distance, 4)//" mm off", &
             "patches whose normals (the cross product of their u and v) point to the sheet", &
             code="E142")
+        cycle
       end if
-      if (worst == 0) cycle
       call errors%push_input(case%tool(t)%source%opened, "tool '"//case%tool(t)%source%called()// &
-          "' starts inside the sheet: node "//to_text(worst)//" is "//to_text(-deepest, 4)// &
-          " mm deep in it", &
+          "' starts inside the sheet: node "//to_text(model%contact_node(worst))//" is "// &
+          to_text(-hit(worst)%distance, 4)//" mm deep in it", &
           "a start no deeper than 0.001 mm (see position), normals that point to the sheet", &
           code="E142")
     end do

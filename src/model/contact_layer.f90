@@ -1,6 +1,8 @@
-!> Contact layer of the tools in the compliant formulation. A tool may start at the sheet, inside
-!> the height of its layer. So that the sheet starts without pressure, the layer begins behind its
-!> place by what is missing, and advances to it over the first part of the phase.
+!> Contact layer of the tools in the compliant formulation, and penalty in the mixed one. A tool may
+!> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
+!> the layer begins behind its place by what is missing, and advances to it over the first part of
+!> the phase. The penalty of the augmented Lagrangian does not change the converged solution; it
+!> weighs gap and slip against forces where the contact status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : border_t, hint_t, hit_t
@@ -12,7 +14,7 @@ module dd3_model_contact_layer
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: layer_at, border_at, starting_offset, held_offsets
+  public :: layer_at, border_at, contact_penalty, starting_offset, held_offsets
   public :: offset_factor, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
@@ -21,6 +23,10 @@ module dd3_model_contact_layer
   real(wp), parameter :: border_radius = 0.5_wp
   !> Progress below which a rest is round-off.
   real(wp), parameter :: no_progress = 1.0e-9_wp
+  !> Automatic penalty over the stiffness of the sheet under a candidate. Where a node closes, the
+  !> linearisation leaves gaps and slips of the order of the curvature of tool and path; a penalty
+  !> near the stiffness of the sheet turns them into forces that decide the status wrongly.
+  real(wp), parameter :: fraction = 1.0e-3_wp
 
 contains
 
@@ -46,6 +52,18 @@ contains
       border = border_t(border_radius*thickness, phase%layer*thickness)
     end associate
   end function border_at
+
+  !> Return the penalty of a candidate, N/mm: that of the input, or the automatic one if there is
+  !> none in the input.
+  pure real(wp) function contact_penalty(model, phase, c)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    !> Number of the candidate.
+    integer, intent(in) :: c
+
+    contact_penalty = phase%penalty
+    if (phase%penalty <= 0.0_wp) contact_penalty = fraction*model%contact_stiffness(c)
+  end function contact_penalty
 
   !> Return the part of a layer's offset that is left at a progress of the phase.
   pure real(wp) function offset_factor(progress)
@@ -92,7 +110,7 @@ contains
       layer = layer_at(model, phase, c)
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, layer%height, &
+          model%contact_point(c)%position(state%x), hint, layer%height, &
           model%tolerance%committed_depth + state%layer_offset(tool), hit, &
           border=border_at(model, phase, c))
       if (.not. hit%found) cycle
@@ -133,7 +151,7 @@ contains
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = hint_t()
           call find_on_tool(model%tool(t), state%placement(t), &
-              model%point_position(c, state%x), hint, layer%height, &
+              model%contact_point(c)%position(state%x), hint, layer%height, &
               model%tolerance%committed_depth + state%layer_offset(t), hit, &
               border=border_at(model, phase, c))
           if (.not. hit%found) cycle

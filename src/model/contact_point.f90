@@ -81,7 +81,7 @@ contains
     call bend_edge(self, 2, 3, eta, xi)
   end function face_point
 
-  !> Add the bending of an edge.
+  !> Add the bending of an edge: h_a (x_a - x_b) to v_a, and the same for b.
   pure subroutine bend_edge(self, a, b, xi, blend)
     type(contact_point_t), intent(inout) :: self
     !> Its ends among the nodes of the point.
@@ -89,19 +89,15 @@ contains
     !> Place on the edge and weight of the edge.
     real(wp), intent(in) :: xi, blend
 
-    call bend_end(self, a, b, blend*xi*(1.0_wp - xi)**2)
-    call bend_end(self, b, a, blend*(1.0_wp - xi)*xi**2)
-  end subroutine bend_edge
+    real(wp) :: h
 
-  !> Add h (x_a - x_b) to v_a.
-  pure subroutine bend_end(self, a, b, h)
-    type(contact_point_t), intent(inout) :: self
-    integer, intent(in) :: a, b
-    real(wp), intent(in) :: h
-
+    h = blend*xi*(1.0_wp - xi)**2
     self%slope(a, a) = self%slope(a, a) + h
     self%slope(a, b) = self%slope(a, b) - h
-  end subroutine bend_end
+    h = blend*(1.0_wp - xi)*xi**2
+    self%slope(b, b) = self%slope(b, b) + h
+    self%slope(b, a) = self%slope(b, a) - h
+  end subroutine bend_edge
 
   !> Return the position of the point, mm.
   pure function position(self, x)

@@ -9,7 +9,7 @@ module dd3_model_contact_points
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: set_contact_points, find_contact_faces, point_areas, nodal_areas
+  public :: set_contact_points, point_areas, nodal_areas
 
   !> Points of a list, each once.
   type :: point_list_t
@@ -21,21 +21,9 @@ module dd3_model_contact_points
 
 contains
 
-  !> Find the faces of the sheet whose nodes are all candidates of the same tool.
-  subroutine find_contact_faces(model, member)
-    type(model_t), intent(inout) :: model
-    !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
-    logical, intent(in) :: member(:, :)
-
-    integer :: f
-
-    model%contact_face = pack([(f, f=1, model%face%n)], &
-        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
-  end subroutine find_contact_faces
-
-  !> Set the contact points with their areas, stiffnesses and tools.
+  !> Set the contact faces, whose nodes are all candidates of the same tool, and the contact points
+  !> with their areas, stiffnesses and tools.
   subroutine set_contact_points(model, member, divisions)
-    !> Has its contact faces.
     type(model_t), intent(inout) :: model
     !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
     logical, intent(in) :: member(:, :)
@@ -43,9 +31,10 @@ contains
     integer, intent(in) :: divisions
 
     type(point_list_t) :: list
-    logical, allocatable :: candidate(:, :)
     integer :: i, c, f, most
 
+    model%contact_face = pack([(f, f=1, model%face%n)], &
+        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
     most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
     allocate (list%point(most))
     allocate (list%next(most), list%first(model%n_node), source=0)
@@ -65,13 +54,18 @@ contains
     model%n_contact = list%n
     model%contact_point = list%point(:list%n)
     model%contact_node = model%contact_point%node(1)
-    allocate (candidate(model%n_tool, list%n))
+    allocate (model%candidate(model%n_tool, list%n))
     do c = 1, list%n
       associate (point => model%contact_point(c))
-        candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
+        model%candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
       end associate
     end do
-    call move_alloc(candidate, model%candidate)
+    ! A point lies on the first of its faces.
+    do f = size(model%contact_face), 1, -1
+      associate (element => model%face%element(model%contact_face(f)))
+        model%contact_point(model%face_point(:, f))%element = element
+      end associate
+    end do
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)
   end subroutine set_contact_points
@@ -118,7 +112,6 @@ contains
     associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
       if (size(node) > 4) then
         face_point_number = model%candidate_of(node)
-        call set_missing(list%point%element, face_point_number, model%face%element(f))
         return
       end if
       number(0, 0) = model%candidate_of(corner(1))
@@ -139,7 +132,6 @@ contains
         end do
       end if
       face_point_number = reshape(number, [size(number)])
-      call set_missing(list%point%element, face_point_number, model%face%element(f))
     end associate
 
   contains
@@ -183,18 +175,6 @@ contains
     end subroutine add_edge
 
   end subroutine add_face
-
-  !> Set the element of the points that have none yet.
-  pure subroutine set_missing(of_point, number, element)
-    integer, intent(inout) :: of_point(:)
-    integer, intent(in) :: number(:), element
-
-    integer :: i
-
-    do i = 1, size(number)
-      if (of_point(number(i)) == 0) of_point(number(i)) = element
-    end do
-  end subroutine set_missing
 
   !> Set the nodes opposite to those of the contact faces, across their elements.
   subroutine set_opposites(model)
@@ -278,23 +258,6 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the nodes of a face with eight or nine of them, mm2: their weights, times
-  !> the Jacobian there.
-  pure function areas_of_many(weight, x) result(area)
-    real(wp), intent(in) :: weight(:)
-    !> Corners, mm.
-    real(wp), intent(in) :: x(3, 4)
-    real(wp) :: area(size(weight))
-
-    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1]
-    integer, parameter :: row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
-    real(wp) :: jacobian(0:2, 0:2)
-    integer :: i
-
-    jacobian = jacobians(2, x)
-    area = weight*[(jacobian(column(i), row(i)), i=1, size(weight))]
-  end function areas_of_many
-
   !> Return the areas of the contact points, `(n_contact)`, mm2; zero for a node without contact
   !> faces.
   pure function point_areas(model, x) result(area)
@@ -306,7 +269,6 @@ contains
     integer :: f, divisions
 
     allocate (area(model%n_contact), source=0.0_wp)
-    if (.not. allocated(model%contact_face)) return
     divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
     do f = 1, size(model%contact_face)
       associate (point => model%face_point(:, f))
@@ -325,7 +287,6 @@ contains
     integer :: f
 
     allocate (area(model%n_node), source=0.0_wp)
-    if (.not. allocated(model%contact_face)) return
     do f = 1, size(model%contact_face)
       associate (node => model%face%node(:, model%contact_face(f)))
         if (size(node) > 4) then
@@ -337,7 +298,8 @@ contains
     end do
   end function nodal_areas
 
-  !> Return the areas of the points of a contact face, in the order of `face_point`, mm2.
+  !> Return the areas of the points of a contact face, in the order of `face_point`, mm2: those of a
+  !> face with eight or nine nodes are their weights, times the Jacobian there.
   pure function areas_of_face(model, x, f, divisions) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
@@ -348,9 +310,16 @@ contains
     integer, intent(in) :: divisions
     real(wp), allocatable :: area(:)
 
+    integer, parameter :: column(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1]
+    integer, parameter :: row(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
+    real(wp) :: jacobian(0:2, 0:2)
+    integer :: i
+
     associate (corner => x(:, model%face%corner(:, model%contact_face(f))))
       if (model%element%n_face_node > 4) then
-        area = areas_of_many(model%element%face_weight, corner)
+        jacobian = jacobians(2, corner)
+        area = model%element%face_weight &
+            *[(jacobian(column(i), row(i)), i=1, model%element%n_face_node)]
       else
         area = areas_of_parts(divisions, corner)
       end if

@@ -1,9 +1,10 @@
-!> Results of the contact in a committed state: pressure, which is normal force over area, and gap
-!> between the candidates and the nearest tool.
+!> Contact between the candidates and the tools: closest points and, in a committed state, gap to the
+!> nearest tool and pressure, which is normal force over area.
 module dd3_model_contact_results
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
+  use dd3_contact_placement, only : placement_t
   use dd3_contact_tool, only : find_on_tool
   use dd3_model_contact_layer, only : border_at
   use dd3_model_contact_points, only : nodal_areas, point_areas
@@ -12,7 +13,7 @@ module dd3_model_contact_results
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts
+  public :: candidate_hits, contact_gaps, contact_pressures, tool_contact_t, tool_contacts
 
   !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
@@ -20,6 +21,35 @@ module dd3_model_contact_results
   end type tool_contact_t
 
 contains
+
+  !> Return the closest points, `(n_contact)`; none is found for a point that is no candidate.
+  pure function candidate_hits(model, tool, placement, x, search_distance, depth, outward) &
+      result(hit)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    type(placement_t), intent(in) :: placement
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Largest distance outside the tool, and depth inside it, mm.
+    real(wp), intent(in) :: search_distance, depth
+    !> Outward normals of the sheet, `(3, n_contact)`.
+    real(wp), intent(in), optional :: outward(:, :)
+    type(hit_t), allocatable :: hit(:)
+
+    type(hint_t) :: hint
+    real(wp) :: facing(3)
+    integer :: c
+
+    allocate (hit(model%n_contact))
+    facing = 0.0_wp
+    do c = 1, model%n_contact
+      if (.not. model%candidate(tool, c)) cycle
+      hint = hint_t()
+      if (present(outward)) facing = outward(:, c)
+      call find_on_tool(model%tool(tool), placement, model%contact_point(c)%position(x), hint, &
+          search_distance, depth, hit(c), facing)
+    end do
+  end function candidate_hits
 
   !> Return the pressures at the nodes, `(n_node)`, MPa, positive in compression; zero for a node
   !> without contact faces.
@@ -76,14 +106,13 @@ contains
 
     associate (phase => model%phase(state%phase))
       allocate (gap(model%n_contact_node), source=phase%search_distance)
-      if (.not. allocated(model%contact_face)) return
       outward = outward_normals(model, state%x)
       do c = 1, model%n_contact_node
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           hint = state%hint(t, c)
           call find_on_tool(model%tool(t), state%placement(t), &
-              model%point_position(c, state%x), hint, &
+              model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
               + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(c) = min(gap(c), hit%distance)

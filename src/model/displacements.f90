@@ -1,7 +1,8 @@
 !> Prescribed displacements of the phases. A direction that a phase displaces stays prescribed in
 !> later phases, with no further displacement, until one frees it.
 module dd3_model_displacements
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
+  use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t
   use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_model_motions, only : motion_t, new_motion
@@ -9,8 +10,6 @@ module dd3_model_displacements
   implicit none
   private
   public :: set_displacements
-
-  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
 
 contains
 
@@ -73,9 +72,9 @@ contains
           if (.not. motion%bends .or. motion%set /= set) cycle
           ! The table may end the phase at a fraction of its motion.
           if (size(table) > 0) then
-            angle = angle + table(size(table))*(acos(-1.0_wp)/180.0_wp*motion%value(7) - angle)
+            angle = angle + table(size(table))*(pi/180.0_wp*motion%value(7) - angle)
           else
-            angle = acos(-1.0_wp)/180.0_wp*motion%value(7)
+            angle = pi/180.0_wp*motion%value(7)
           end if
         end associate
       end do

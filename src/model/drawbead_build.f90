@@ -78,7 +78,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(location_t) :: at
-    real(wp), allocatable :: point(:)
+    real(wp), allocatable :: point(:), table(:, :)
     integer :: before
 
     before = errors%count
@@ -91,7 +91,9 @@ contains
     if (errors%count == before) call check_points(point, thickness, at, errors)
     call check_slopes(spec, thickness, errors)
     if (errors%count > before) return
-    call new_drawbead(self, reshape(point, [2, size(point)/2]), law_table(spec), spacing, thickness)
+    table = reshape(spec%table, [2, size(spec%table)/2])
+    table(2, :) = spec%force*table(2, :)
+    call new_drawbead(self, reshape(point, [2, size(point)/2]), table, spacing, thickness)
     self%name = spec%source%name
     self%tool = spec%tool
     self%normal = spec%normal
@@ -134,14 +136,5 @@ contains
       end do
     end associate
   end subroutine check_slopes
-
-  !> Return slip path and limit of the restraining force, `(2, n)`.
-  pure function law_table(spec) result(table)
-    type(drawbead_spec_t), intent(in) :: spec
-    real(wp), allocatable :: table(:, :)
-
-    table = reshape(spec%table, [2, size(spec%table)/2])
-    table(2, :) = spec%force*table(2, :)
-  end function law_table
 
 end module dd3_model_drawbead_build

@@ -36,48 +36,35 @@ contains
     end do
   end function elastic_energy
 
-  !> Return the energy stored in the contact layers, mJ.
+  !> Return the energy stored in the contact layers, mJ. The normal force is that along the tool's
+  !> normal: along the normal of a face of the sheet, which is not at right angles to a curved tool,
+  !> the friction would count too.
   pure real(wp) function contact_energy(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
     type(layer_t) :: layer
+    type(hint_t) :: hint
+    type(hit_t) :: hit
     integer :: c
 
     contact_energy = 0.0_wp
-    if (.not. allocated(model%contact_face)) return
     if (model%phase(state%phase)%mixed) return
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
-      layer = layer_at(model, model%phase(state%phase), c)
-      contact_energy = contact_energy + layer_energy(layer, normal_force(model, state, c, layer))
+      associate (tool => state%contact_tool(c), phase => model%phase(state%phase))
+        layer = layer_at(model, phase, c)
+        hint = state%hint(tool, c)
+        call find_on_tool(model%tool(tool), state%placement(tool), &
+            model%contact_point(c)%position(state%x), hint, layer%height, &
+            model%tolerance%committed_depth &
+            + max(state%layer_offset(tool), state%start%held_offset(c)), hit, &
+            border=border_at(model, phase, c))
+      end associate
+      contact_energy = contact_energy &
+          + layer_energy(layer, -dot_product(hit%normal, state%lambda(:, c)))
     end do
   end function contact_energy
-
-  !> Return the normal force between a point in contact and its tool, N, positive in compression. It
-  !> is that along the tool's normal: along the normal of a face of the sheet, which is not at right
-  !> angles to a curved tool, the friction would count too.
-  pure real(wp) function normal_force(model, state, c, layer)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    !> Number of the candidate.
-    integer, intent(in) :: c
-    type(layer_t), intent(in) :: layer
-
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    real(wp) :: offset
-
-    associate (tool => state%contact_tool(c))
-      offset = max(state%layer_offset(tool), state%start%held_offset(c))
-      hint = state%hint(tool, c)
-      call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, layer%height, &
-          model%tolerance%committed_depth + offset, hit, &
-          border=border_at(model, model%phase(state%phase), c))
-    end associate
-    normal_force = -dot_product(hit%normal, state%lambda(:, c))
-  end function normal_force
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.

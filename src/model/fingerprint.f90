@@ -30,11 +30,13 @@ contains
     integer, intent(in) :: last_phase
     type(fingerprint_t), allocatable :: fingerprint(:)
 
+    type(digest_t) :: supports
     integer :: i
 
     allocate (fingerprint(0))
     call add(fingerprint, mesh_part, mesh_digest(model))
-    call add(fingerprint, "the supports (*BOUNDARY)", supports_digest(model))
+    call supports%add(reshape(model%fixed, [size(model%fixed)]))
+    call add(fingerprint, "the supports (*BOUNDARY)", supports%value())
     do i = 1, size(model%material)
       call add(fingerprint, "material '"//trim(model%material_name(i))//"'", &
           model%material_digest(i))
@@ -57,11 +59,7 @@ contains
     character(len=*), intent(in) :: part
     integer, intent(in) :: digest
 
-    type(fingerprint_t) :: item
-
-    item%part = part
-    item%digest = digest
-    fingerprint = [fingerprint, item]
+    fingerprint = [fingerprint, fingerprint_t(part, digest)]
   end subroutine add
 
   !> Return the parts that differ between two fingerprints, separated by commas; empty if none does.
@@ -115,16 +113,6 @@ contains
     call digest%add(reshape(model%axes, [size(model%axes)]))
     mesh_digest = digest%value()
   end function mesh_digest
-
-  !> Return the check sum of the supports that hold in every phase.
-  integer function supports_digest(model)
-    type(model_t), intent(in) :: model
-
-    type(digest_t) :: digest
-
-    call digest%add(reshape(model%fixed, [size(model%fixed)]))
-    supports_digest = digest%value()
-  end function supports_digest
 
   !> Return the check sum of a tool's surface, friction, position and candidates.
   integer function tool_digest(model, tool)

@@ -2,13 +2,12 @@
 module dd3_model_held_loads
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: axis_name, check_loads, find_held_loads, held_load_t
-
-  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
+  public :: check_loads, find_held_loads, held_load_t
 
   !> A component of a load that is held at some nodes of its set.
   type :: held_load_t
@@ -74,36 +73,24 @@ contains
     type(held_load_t), allocatable, intent(out) :: found(:)
 
     type(held_load_t) :: this
-    integer :: i, k, axis
+    integer :: i, k, s, axis
 
     allocate (found(0))
     do i = 1, size(case%phase)
       do k = 1, size(case%phase(i)%load)
         do axis = 1, 3
           if (abs(case%phase(i)%load(k)%force(axis)) <= 0.0_wp) cycle
-          this = held_load_t(phase=i, load=k, axis=axis)
-          call count_held(model, case%phase(i)%load(k)%set, this)
-          if (this%held > 0) found = [found, this]
+          do s = 1, size(model%load_set)
+            if (model%load_set(s)%name /= case%phase(i)%load(k)%set) cycle
+            associate (node => model%load_set(s)%node)
+              this = held_load_t(i, k, axis, count(model%phase(i)%prescribed(axis, node)), &
+                  size(node))
+            end associate
+            if (this%held > 0) found = [found, this]
+          end do
         end do
       end do
     end do
   end subroutine find_held_loads
-
-  !> Count the nodes of a load's set that its phase holds.
-  pure subroutine count_held(model, set, this)
-    type(model_t), intent(in) :: model
-    !> Name of the set.
-    character(len=*), intent(in) :: set
-    !> Gets the numbers of nodes.
-    type(held_load_t), intent(inout) :: this
-
-    integer :: s
-
-    do s = 1, size(model%load_set)
-      if (model%load_set(s)%name /= set) cycle
-      this%held = count(model%phase(this%phase)%prescribed(this%axis, model%load_set(s)%node))
-      this%n_node = size(model%load_set(s)%node)
-    end do
-  end subroutine count_held
 
 end module dd3_model_held_loads

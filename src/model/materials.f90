@@ -103,6 +103,8 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(problem_t), allocatable :: problems(:)
+    type(location_t) :: place
+    !> Position of each value among the parameters as written; 0 for a default.
     integer, allocatable :: origin(:)
     integer :: found, i
 
@@ -111,8 +113,13 @@ contains
     if (choice%name == "" .or. choice%name == no_law) return
     call check_together(kind, choice%name, choice%values, problems, errors%count > found)
     do i = 1, size(problems)
-      call errors%push_input(problem_place(spec, origin, problems(i)%index), &
-          trim(problems(i)%message), trim(problems(i)%expected), code="E149")
+      ! A problem of the whole law, or of a default, belongs to the name of the law.
+      place = spec%at
+      if (problems(i)%index > 0) then
+        if (origin(problems(i)%index) > 0) place = spec%parameter(origin(problems(i)%index))%at
+      end if
+      call errors%push_input(place, trim(problems(i)%message), trim(problems(i)%expected), &
+          code="E149")
     end do
   end subroutine choose_checked
 
@@ -141,21 +148,6 @@ contains
     call law_rows(kind, names(position), rows)
     call check_law_values(spec, rows, choice%values, errors, origin)
   end subroutine choose_law
-
-  !> Return the location of the value that a problem concerns; if it concerns the whole law or a
-  !> default, that of the law's name.
-  pure function problem_place(spec, origin, index) result(place)
-    type(law_spec_t), intent(in) :: spec
-    !> Position of each value among the parameters as written; 0 for a default.
-    integer, intent(in) :: origin(:)
-    !> Position among the values, or 0.
-    integer, intent(in) :: index
-    type(location_t) :: place
-
-    place = spec%at
-    if (index == 0) return
-    if (origin(index) > 0) place = spec%parameter(origin(index))%at
-  end function problem_place
 
   !> Return the laws of a material with their sources, one per line.
   function law_sources(name, material) result(text)

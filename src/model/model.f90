@@ -4,19 +4,22 @@ module dd3_model_model
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
+  use dd3_input_case, only : fields_at, fields_every, fields_increments, history_spec_t, &
+      output_spec_t
   use dd3_material_material, only : material_t
   use dd3_contact_tool, only : tool_t
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
-  use dd3_model_loads, only : load_set_t
+  use dd3_model_loads, only : load_set_t, pressure_set_t
   use dd3_model_phase, only : phase_t
-  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
   implicit none
   private
-  public :: model_t, history_set_t, node_set_t, output_t
+  public :: model_t, history_set_t, node_set_t
+  !> For the outputs of the model.
+  public :: fields_at, fields_every, fields_increments, output_spec_t
 
   !> Node set by its name.
   type :: node_set_t
@@ -24,31 +27,10 @@ module dd3_model_model
     integer :: n_node = 0
   end type node_set_t
 
-  !> Node set with quantities in history.csv.
-  type :: history_set_t
-    !> Name of the block, prefix of its columns.
-    character(len=:), allocatable :: name
+  !> Node set with quantities in history.csv; its name is the prefix of their columns.
+  type, extends(history_spec_t) :: history_set_t
     integer, allocatable :: node(:)
-    !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
-    logical :: draw_in = .false.
   end type history_set_t
-
-  !> Output and its intervals.
-  type :: output_t
-    !> Interval of the rows of history.csv, in increments.
-    integer :: history_every = 0
-    !> Interval of the fields in the travel within a phase, mm; 0: off.
-    real(wp) :: fields_every = 0.0_wp
-    !> Travels within a phase at which fields are written, mm, ascending.
-    real(wp), allocatable :: fields_at(:)
-    !> Interval of the fields, in increments; 0: off.
-    integer :: fields_increments = 0
-    !> Whether restart.h5 is written at the end of each phase and when a run stops, and the interval
-    !> between, in increments; 0: off.
-    logical :: restart = .true.
-    integer :: restart_every = 0
-  end type output_t
 
   !> Model of a job.
   type :: model_t
@@ -119,10 +101,10 @@ module dd3_model_model
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
-    type(output_t) :: output
+    !> What is written, and when.
+    type(output_spec_t) :: output
   contains
     procedure :: thickness_at
-    procedure :: point_position
     procedure :: nodal_contact_forces
     procedure :: largest_thickness
     procedure :: least_shear
@@ -139,18 +121,6 @@ contains
     thickness_at = self%thickness
     if (allocated(self%node_thickness)) thickness_at = self%node_thickness(node)
   end function thickness_at
-
-  !> Return the position of a contact point, mm.
-  pure function point_position(self, c, x) result(position)
-    class(model_t), intent(in) :: self
-    !> Number of the contact point.
-    integer, intent(in) :: c
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    real(wp) :: position(3)
-
-    position = self%contact_point(c)%position(x)
-  end function point_position
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
   !> contact points.

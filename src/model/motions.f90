@@ -2,7 +2,7 @@
 !> section of a bar that is bent to an arc while its middle line keeps its length: at the angle phi
 !> of the section the arc has the radius L/phi.
 module dd3_model_motions
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
   use dd3_linalg_tensor, only : cross
   implicit none
   private
@@ -41,7 +41,6 @@ contains
     !> Angle of a bend at the start of the phase, rad.
     real(wp), intent(in) :: start
 
-    real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
     integer :: i
 
     self%node = node
@@ -49,7 +48,7 @@ contains
     self%point = values(1:3)
     self%axis = values(4:6)/norm2(values(4:6))
     self%prescribes = 1.0_wp - abs(self%axis) > aligned
-    self%angle = degree*values(7)
+    self%angle = pi/180.0_wp*values(7)
     if (.not. bends) return
     self%start = start
     self%angle = self%angle - start

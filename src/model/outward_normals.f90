@@ -18,11 +18,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: normal(:, :)
 
-    if (allocated(model%contact_face)) then
-      normal = mean_normals(model%face, model%contact_face, x)
-    else
-      allocate (normal(3, model%n_node), source=0.0_wp)
-    end if
+    normal = mean_normals(model%face, model%contact_face, x)
   end function nodal_normals
 
   !> Return the means of the outward unit normals of some faces at their nodes, `(3, n_node)`, by

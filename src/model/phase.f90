@@ -134,7 +134,6 @@ contains
     real(wp) :: motion(3)
 
     motion = self%move(:, tool)
-    if (.not. allocated(self%gap_other)) return
     associate (other => self%gap_other(tool))
       if (other > 0) motion(3) = self%gap_offset(tool) + start(3, other) + self%move(3, other) &
           - start(3, tool)

@@ -7,9 +7,8 @@ module dd3_model_phases
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
-  use dd3_model_loads, only : face_load_weights, load_set_t
+  use dd3_model_loads, only : face_load_weights, load_set_t, pressure_set_t
   use dd3_model_model, only : model_t
-  use dd3_model_pressures, only : pressure_set_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   implicit none
@@ -18,9 +17,6 @@ module dd3_model_phases
 
   !> Default height of the contact layer over the thickness.
   real(wp), parameter :: default_layer = 0.02_wp
-  !> Largest tolerance of the corrector when all tools are released: the residual stresses, by which
-  !> the criterion is scaled, are far larger than those that bend a slender sheet.
-  real(wp), parameter :: release_tolerance = 1.0e-5_wp
 
 contains
 
@@ -101,21 +97,6 @@ contains
     if (allocated(phase%press_table)) deallocate (phase%press_table)
   end subroutine new_phase_after
 
-  !> Set the table of the forces on pressed tools; the force of the start is its first point.
-  pure subroutine set_press_table(pairs, phase)
-    !> Progress and factor on the force of `press`, in pairs.
-    real(wp), intent(in) :: pairs(:)
-    type(phase_t), intent(inout) :: phase
-
-    integer :: n
-
-    n = size(pairs)/2
-    allocate (phase%press_table(3, n + 1), source=0.0_wp)
-    phase%press_table(2, 1) = 1.0_wp
-    phase%press_table(1, 2:) = pairs(1::2)
-    phase%press_table(3, 2:) = pairs(2::2)
-  end subroutine set_press_table
-
   !> Set name, control, limits and end.
   subroutine set_settings(model, spec, phase)
     type(model_t), intent(in) :: model
@@ -128,7 +109,13 @@ contains
     phase%newton = spec%newton
     phase%until = spec%until
     if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
-    if (size(spec%press_table) > 0) call set_press_table(spec%press_table, phase)
+    if (size(spec%press_table) > 0) then
+      ! The force of the start is the first point.
+      allocate (phase%press_table(3, size(spec%press_table)/2 + 1), source=0.0_wp)
+      phase%press_table(2, 1) = 1.0_wp
+      phase%press_table(1, 2:) = spec%press_table(1::2)
+      phase%press_table(3, 2:) = spec%press_table(2::2)
+    end if
     if (spec%until%kind == until_never) phase%until%tool = 0
     phase%mixed = spec%contact%mixed
     phase%layer = spec%contact%layer
@@ -154,7 +141,7 @@ contains
       t = spec%move(i)%tool
       call stop_pressing(phase, t, .true.)
       phase%move(:, t) = spec%move(i)%vector
-      if (norm2(spec%move(i)%vector) > 0.0_wp) phase%direction(:, t) = unit(spec%move(i)%vector)
+      call set_line(phase, t, spec%move(i)%vector)
     end do
     do i = 1, size(spec%gap)
       t = spec%gap(i)%tool
@@ -163,7 +150,12 @@ contains
       phase%direction(:, t) = [0.0_wp, 0.0_wp, 1.0_wp]
     end do
     do i = 1, size(spec%press)
-      call press(phase, spec%press(i)%tool, spec%press(i)%vector)
+      t = spec%press(i)%tool
+      phase%pressed(t) = .true.
+      phase%active(t) = .true.
+      phase%keeps_tool_load(t) = .false.
+      phase%tool_load_end(:, t) = spec%press(i)%vector
+      call set_line(phase, t, spec%press(i)%vector)
     end do
     do i = 1, size(spec%release)
       call stop_pressing(phase, spec%release(i)%tool, .false.)
@@ -171,14 +163,21 @@ contains
     do t = 1, merge(size(phase%active), 0, spec%unload)
       call stop_pressing(phase, t, .false.)
     end do
-    if (size(phase%active) > 0 .and. .not. any(phase%active)) &
-        phase%newton%tolerance = min(phase%newton%tolerance, release_tolerance)
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return
     phase%length = norm2(phase%move(:, spec%control))
     if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
   end subroutine set_tools
+
+  !> Set the line along which a tool moves; a vector of zero leaves it unchanged.
+  subroutine set_line(phase, tool, vector)
+    type(phase_t), intent(inout) :: phase
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: vector(3)
+
+    if (norm2(vector) > 0.0_wp) phase%direction(:, tool) = vector/norm2(vector)
+  end subroutine set_line
 
   !> Remove the force from a tool that is held, moved or released.
   subroutine stop_pressing(phase, tool, active)
@@ -191,19 +190,6 @@ contains
     phase%pressed(tool) = .false.
     phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
-
-  !> Press a tool; a force of zero leaves the line of its motion unchanged.
-  subroutine press(phase, tool, force)
-    type(phase_t), intent(inout) :: phase
-    integer, intent(in) :: tool
-    real(wp), intent(in) :: force(3)
-
-    if (norm2(force) > 0.0_wp) phase%direction(:, tool) = unit(force)
-    phase%pressed(tool) = .true.
-    phase%active(tool) = .true.
-    phase%keeps_tool_load(tool) = .false.
-    phase%tool_load_end(:, tool) = force
-  end subroutine press
 
   !> Set the prescribed directions. For a sheet unloaded by this phase or an earlier one, supports
   !> are added that stop the rigid motions left free.
@@ -254,9 +240,11 @@ contains
     integer :: i, s
 
     do i = 1, size(spec%load)
-      s = find_load_set(model%load_set, spec%load(i)%set)
-      phase%load_end(:, s) = spec%load(i)%force
-      phase%keeps_load(s) = .false.
+      do s = 1, size(model%load_set)
+        if (model%load_set(s)%name /= spec%load(i)%set) cycle
+        phase%load_end(:, s) = spec%load(i)%force
+        phase%keeps_load(s) = .false.
+      end do
     end do
     do i = 1, size(spec%pressure)
       do s = 1, size(model%pressure_set)
@@ -273,26 +261,24 @@ contains
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    type(pressure_set_t), allocatable :: set(:)
+    type(pressure_set_t) :: set
     logical :: member(mesh%n_node), inside(model%face%n)
-    integer :: i, j, n, s, f
+    integer :: i, j, s, f
 
-    allocate (set(sum([(size(case%phase(i)%pressure), i=1, size(case%phase))])))
-    n = 0
+    allocate (model%pressure_set(0))
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%pressure)
         associate (name => case%phase(i)%pressure(j)%set)
-          if (any([(set(s)%name == name, s=1, n)])) cycle
-          n = n + 1
-          set(n)%name = name
+          if (any([(model%pressure_set(s)%name == name, s=1, size(model%pressure_set))])) cycle
+          set%name = name
           member = .false.
           member(mesh%nodes_of(name)) = .true.
           inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
-          set(n)%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
+          set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
+          model%pressure_set = [model%pressure_set, set]
         end associate
       end do
     end do
-    model%pressure_set = set(:n)
   end subroutine new_pressure_sets
 
   !> List the sets that carry a load in some phase, in the order of the phases.
@@ -301,43 +287,22 @@ contains
     type(case_t), intent(in) :: case
     type(mesh_t), intent(in) :: mesh
 
-    type(load_set_t), allocatable :: set(:)
-    integer :: i, j, n
+    type(load_set_t) :: set
+    integer :: i, j, s
 
-    allocate (set(sum([(size(case%phase(i)%load), i=1, size(case%phase))])))
-    n = 0
+    allocate (model%load_set(0))
     do i = 1, size(case%phase)
       do j = 1, size(case%phase(i)%load)
         associate (name => case%phase(i)%load(j)%set)
-          if (find_load_set(set(:n), name) > 0) cycle
-          n = n + 1
-          set(n)%name = name
-          set(n)%node = mesh%nodes_of(name)
-          call face_load_weights(model%element, model%connectivity, model%x0, set(n)%node, &
-              set(n)%weight)
+          if (any([(model%load_set(s)%name == name, s=1, size(model%load_set))])) cycle
+          set%name = name
+          set%node = mesh%nodes_of(name)
+          call face_load_weights(model%element, model%connectivity, model%x0, set%node, set%weight)
+          model%load_set = [model%load_set, set]
         end associate
       end do
     end do
-    model%load_set = set(:n)
   end subroutine new_load_sets
-
-  !> Return the position of a set; 0 if it is not among them.
-  pure integer function find_load_set(set, name) result(s)
-    type(load_set_t), intent(in) :: set(:)
-    character(len=*), intent(in) :: name
-
-    do s = size(set), 1, -1
-      if (set(s)%name == name) return
-    end do
-  end function find_load_set
-
-  !> Return a vector scaled to length one.
-  pure function unit(vector)
-    real(wp), intent(in) :: vector(3)
-    real(wp) :: unit(3)
-
-    unit = vector/norm2(vector)
-  end function unit
 
   !> Set the displacements at which tools have the gaps of the input.
   subroutine set_gaps(model, case, errors)

@@ -1,20 +1,20 @@
 !> Rigid-body motions of the sheet that the supports leave free. A node held in a direction d
 !> excludes the motions u = t + w x (x - c) with u . d /= 0. The free motions are the null space of
 !> the sum of the dyadic products of all such conditions, found by elimination with diagonal pivots,
-!> translations first.
+!> translations first. A part of the sheet are elements that are connected through common nodes.
 module dd3_model_rigid_motion
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
-  use dd3_linalg_tensor, only : cross
+  use dd3_base_text, only : axis_name, to_text
+  use dd3_linalg_tensor, only : cross, identity
   implicit none
   private
   public :: rigid_motion_t, new_rigid_motion, new_supported_part
+  public :: part_name, parts_of_nodes
 
   !> Pivots below this fraction of the trace are round-off.
   real(wp), parameter :: round_off = 1.0e-12_wp
   !> Components of a unit vector below this count as zero.
   real(wp), parameter :: aligned = 1.0e-4_wp
-  character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
   !> Conditions that hold a body.
   type :: rigid_motion_t
@@ -97,15 +97,11 @@ contains
     !> Components with a prescribed displacement, `(3, n_node)`.
     logical, intent(in) :: prescribed(:, :)
 
-    real(wp) :: direction(3)
     integer :: n, d
 
     do n = 1, size(x, 2)
       do d = 1, 3
-        if (.not. prescribed(d, n)) cycle
-        direction = 0.0_wp
-        direction(d) = 1.0_wp
-        call self%hold(x(:, n), direction)
+        if (prescribed(d, n)) call self%hold(x(:, n), identity(:, d))
       end do
     end do
   end subroutine hold_prescribed
@@ -169,7 +165,7 @@ contains
 
     unit = direction/norm2(direction)
     k = maxloc(abs(unit), dim=1)
-    name = axis(k)
+    name = axis_name(k)
     if (norm2(unit) - abs(unit(k)) < aligned**2) return
     where (abs(unit) < aligned) unit = 0.0_wp
     name = "("//to_text(unit(1), 3)//" "//to_text(unit(2), 3)//" "//to_text(unit(3), 3)//")"
@@ -214,5 +210,57 @@ contains
       motion(k, n) = 1.0_wp
     end do
   end subroutine null_space
+
+  !> Return the part of each node, from 1 in the order of their lowest nodes.
+  pure function parts_of_nodes(connectivity, n_node) result(part)
+    !> `(n_element_node, n_element)`; every node belongs to an element.
+    integer, intent(in) :: connectivity(:, :)
+    integer, intent(in) :: n_node
+    integer :: part(n_node)
+
+    integer :: parent(n_node), e, i, a, b
+
+    parent = [(i, i=1, n_node)]
+    do e = 1, size(connectivity, 2)
+      a = root(parent, connectivity(1, e))
+      do i = 2, size(connectivity, 1)
+        b = root(parent, connectivity(i, e))
+        parent(max(a, b)) = min(a, b)
+        a = min(a, b)
+      end do
+      parent(connectivity(:, e)) = a
+    end do
+    b = 0
+    do i = 1, n_node
+      a = root(parent, i)
+      if (a == i) b = b + 1
+      part(i) = b
+      if (a < i) part(i) = part(a)
+    end do
+  end function parts_of_nodes
+
+  !> Return the lowest node known to be connected with a node.
+  pure integer function root(parent, node)
+    !> A connected node that is lower, or the node itself, `(n_node)`.
+    integer, intent(in) :: parent(:)
+    integer, intent(in) :: node
+
+    root = node
+    do while (parent(root) /= root)
+      root = parent(root)
+    end do
+  end function root
+
+  !> Return what a part is called in a message: the sheet, if it is all of it.
+  function part_name(part, number) result(name)
+    !> Part of each node.
+    integer, intent(in) :: part(:)
+    integer, intent(in) :: number
+    character(len=:), allocatable :: name
+
+    name = "the sheet"
+    if (any(part /= number)) name = "the part of the sheet with node "// &
+        to_text(findloc(part, number, dim=1))
+  end function part_name
 
 end module dd3_model_rigid_motion

@@ -4,7 +4,7 @@
 !> motions that it stops are removed.
 module dd3_model_rigid_supports
   use dd3_base_kinds, only : wp
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : axis_name, to_text
   use dd3_linalg_tensor, only : identity
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   implicit none
@@ -81,9 +81,7 @@ contains
     integer, intent(in) :: support(2)
     character(len=:), allocatable :: text
 
-    character(len=1), parameter :: axis(3) = ["x", "y", "z"]
-
-    text = axis(support(2))//" of node "//to_text(support(1))
+    text = axis_name(support(2))//" of node "//to_text(support(1))
   end function name_of_support
 
 end module dd3_model_rigid_supports

@@ -25,24 +25,15 @@ contains
 
     do f = 1, model%face%n
       associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
-        associate (bottom => model%column(1, corner))
+        associate (bottom => model%column(1, corner), area => area_vector(model%x0(:, corner)))
+          ! A face on a plane of symmetry is held in the direction of its normal, which is an axis.
           on_rim(f) = any(bottom == cshift(bottom, 1)) .and. .not. &
-              on_symmetry_plane(area_vector(model%x0(:, corner)), model%fixed(:, node))
+              any(all(model%fixed(:, node), dim=2) .and. abs(area) > along_axis*norm2(area))
         end associate
       end associate
     end do
     model%rim_normal = -mean_normals(model%face, pack([(f, f=1, size(on_rim))], on_rim), model%x0)
   end subroutine set_rim
-
-  !> Whether a face is held in the direction of its normal, which is an axis.
-  pure logical function on_symmetry_plane(area, fixed)
-    !> Normal of any length.
-    real(wp), intent(in) :: area(3)
-    !> `(3, n)`.
-    logical, intent(in) :: fixed(:, :)
-
-    on_symmetry_plane = any(all(fixed, dim=2) .and. abs(area) > along_axis*norm2(area))
-  end function on_symmetry_plane
 
   !> Return the draw-in of the nodes, `(n_node)`, mm; zero for a node that is not on the rim.
   pure function draw_in(model, x) result(value)

@@ -7,7 +7,7 @@ module dd3_model_settings_report
   use dd3_input_case, only : limit_spec_t
   use dd3_model_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_model, only : model_t
-  use dd3_model_penalty, only : contact_penalty
+  use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_phase, only : phase_t
   implicit none
   private
@@ -16,17 +16,6 @@ module dd3_model_settings_report
   !> Pressures whose gap is reported, MPa.
   real(wp), parameter :: reported_pressure(3) = [1.0_wp, 100.0_wp, 500.0_wp]
 
-  abstract interface
-    !> Return the settings of a phase as text.
-    function settings_interface(model, i) result(text)
-      import :: model_t
-      type(model_t), intent(in) :: model
-      !> Number of the phase.
-      integer, intent(in) :: i
-      character(len=:), allocatable :: text
-    end function settings_interface
-  end interface
-
 contains
 
   !> Return the settings of the contact; empty without candidates.
@@ -34,8 +23,7 @@ contains
     type(model_t), intent(in) :: model
     character(len=:), allocatable :: text
 
-    text = ""
-    if (model%n_contact > 0) text = changes(model, contact_settings)
+    text = changes(model, contact_settings)
   end function contact_report
 
   !> Return the limits of the predictor.
@@ -43,14 +31,13 @@ contains
     type(model_t), intent(in) :: model
     character(len=:), allocatable :: text
 
-    text = ""
-    if (allocated(model%phase)) text = changes(model, limits_settings)
+    text = changes(model, limits_settings)
   end function limits_report
 
   !> Return a line for the first phase and for each later one with other settings.
   function changes(model, settings) result(text)
     type(model_t), intent(in) :: model
-    procedure(settings_interface) :: settings
+    procedure(contact_settings) :: settings
     character(len=:), allocatable :: text
 
     character(len=:), allocatable :: before, here
@@ -58,6 +45,7 @@ contains
 
     text = ""
     before = ""
+    if (.not. allocated(model%phase)) return
     do i = 1, size(model%phase)
       here = settings(model, i)
       if (here == before) cycle
@@ -74,6 +62,8 @@ contains
     integer, intent(in) :: i
     character(len=:), allocatable :: text
 
+    text = ""
+    if (model%n_contact == 0) return
     associate (phase => model%phase(i))
       if (phase%mixed) then
         text = "contact: "//penalties(model, phase)

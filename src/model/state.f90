@@ -5,6 +5,7 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   implicit none
@@ -130,6 +131,7 @@ module dd3_model_state
     type(phase_start_t) :: start
   contains
     procedure :: placement
+    procedure :: touches
   end type state_t
 
 contains
@@ -141,6 +143,14 @@ contains
 
     placement%translation = self%tool_displacement(:, tool)
   end function placement
+
+  !> Whether a tool is in contact.
+  pure logical function touches(self, tool)
+    class(state_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    touches = any(self%contact_tool == tool .and. self%status /= status_gap)
+  end function touches
 
   !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
   subroutine new_state(self, model)
@@ -183,16 +193,10 @@ contains
     type(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
-    integer :: n_load, n_pressure
-
-    n_load = 0
-    if (allocated(model%load_set)) n_load = size(model%load_set)
-    n_pressure = 0
-    if (allocated(model%pressure_set)) n_pressure = size(model%pressure_set)
     associate (n_node => model%n_node, n_point => model%element%n_point, n => model%n_element)
       allocate (self%x(3, n_node), self%internal_force(3, n_node), source=0.0_wp)
-      allocate (self%external_force(3, n_node), self%load(3, n_load), source=0.0_wp)
-      allocate (self%pressure(n_pressure), source=0.0_wp)
+      allocate (self%external_force(3, n_node), self%load(3, size(model%load_set)), source=0.0_wp)
+      allocate (self%pressure(size(model%pressure_set)), source=0.0_wp)
       allocate (self%stress(6, n_point, n), source=0.0_wp)
       allocate (self%internal_variables(model%n_internal, n_point, n), source=0.0_wp)
       allocate (self%orientation(3, 3, n_point, n), source=0.0_wp)
@@ -208,8 +212,7 @@ contains
 
     integer :: n_bead, n_interval, n_node, b
 
-    n_bead = 0
-    if (allocated(model%drawbead)) n_bead = size(model%drawbead)
+    n_bead = size(model%drawbead)
     n_node = merge(model%n_node, 0, n_bead > 0)
     n_interval = sum([(size(model%drawbead(b)%line, 3), b=1, n_bead)])
     allocate (self%bead_force(n_interval), self%bead_path(n_interval), source=0.0_wp)

@@ -7,7 +7,6 @@ module dd3_model_tool_depth
   use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
   use dd3_contact_curvature, only : smallest_radius
-  use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -71,8 +70,7 @@ contains
     state%tool_depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
-      state%touched(tool) = state%touched(tool) .or. &
-          any(state%contact_tool == tool .and. state%status /= status_gap)
+      state%touched(tool) = state%touched(tool) .or. state%touches(tool)
       found = measure_tool_depth(model, state, tool)
       state%tool_depth(tool) = found%depth
       if (found%depth <= state%largest_depth(tool)) cycle
@@ -210,8 +208,11 @@ contains
     real(wp) :: x(3)
     integer :: i
 
-    if (is_beside_plane(model, hint, tool)) return
     start = hint(maxloc(hint%patch, dim=1))
+    if (start%patch > 0 .and. all(hint%patch == start%patch)) then
+      ! The closest points of all corners lie on one patch: if it is plane, no other is deeper.
+      if (model%tool(tool)%surface%patch(start%patch)%flat) return
+    end if
     do i = 1, size(sample_shape, 2)
       x = matmul(face%x, sample_shape(:, i))
       start%due = start%patch == 0
@@ -223,16 +224,6 @@ contains
       call keep_larger(self, -hit%distance, x, face)
     end do
   end subroutine probe_tool
-
-  !> Whether the closest points of all corners lie on one plane: no other point is deeper then.
-  pure logical function is_beside_plane(model, hint, tool)
-    type(model_t), intent(in) :: model
-    type(hint_t), intent(in) :: hint(4)
-    integer, intent(in) :: tool
-
-    is_beside_plane = hint(1)%patch > 0 .and. all(hint%patch == hint(1)%patch)
-    if (is_beside_plane) is_beside_plane = model%tool(tool)%surface%patch(hint(1)%patch)%flat
-  end function is_beside_plane
 
   !> Return an upper bound of the depth of a patch behind a face, from its bounding box, mm.
   pure real(wp) function largest_depth(patch, face)
@@ -251,8 +242,11 @@ contains
     type(face_t), intent(in) :: face
     integer, intent(in) :: tool, k
 
-    real(wp) :: point(3), depth
+    type(hint_t) :: hint
+    type(hit_t) :: hit
+    real(wp) :: point(3), normal(3), depth
     integer :: i, j
+    logical :: regular
 
     associate (patch => model%tool(tool)%surface%patch(k))
       do j = 0, n_sample
@@ -263,9 +257,14 @@ contains
           if (any(point < face%lower .or. point > face%upper)) cycle
           call locate(face, point, depth)
           if (depth <= self%depth .or. depth > face%search_depth) cycle
-          if (.not. enters(patch, face, real([i, j], wp)/n_sample)) cycle
+          call normal_at(patch, real(i, wp)/n_sample, real(j, wp)/n_sample, normal, regular)
+          if (.not. regular .or. dot_product(normal, face%normal) >= -facing) cycle
           if (depth > face%thickness) then
-            if (.not. is_inside(model, tool, point + depth*face%normal, face)) cycle
+            ! A part of the tool deeper than the thickness may be one behind the sheet.
+            hint = hint_t()
+            call find_contact(model%tool(tool)%surface, point + depth*face%normal, hint, &
+                face%search_depth, face%search_depth, hit)
+            if (.not. hit%found .or. hit%distance >= 0.0_wp) cycle
           end if
           call keep_larger(self, depth, point, face)
         end do
@@ -316,33 +315,5 @@ contains
       return
     end do
   end subroutine locate
-
-  !> Whether the tool faces the sheet at a point of a patch.
-  pure logical function enters(patch, face, uv)
-    type(patch_t), intent(in) :: patch
-    type(face_t), intent(in) :: face
-    !> Parameters of the point.
-    real(wp), intent(in) :: uv(2)
-
-    real(wp) :: normal(3)
-
-    call normal_at(patch, uv(1), uv(2), normal, enters)
-    enters = enters .and. dot_product(normal, face%normal) < -facing
-  end function enters
-
-  !> Whether a point of a face is inside the tool: a part of the tool deeper than the thickness may
-  !> be one behind the sheet.
-  pure logical function is_inside(model, tool, x, face)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: tool
-    real(wp), intent(in) :: x(3)
-    type(face_t), intent(in) :: face
-
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-
-    call find_contact(model%tool(tool)%surface, x, hint, face%search_depth, face%search_depth, hit)
-    is_inside = hit%found .and. hit%distance < 0.0_wp
-  end function is_inside
 
 end module dd3_model_tool_depth

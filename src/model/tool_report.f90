@@ -1,7 +1,7 @@
 !> What the input says about the tools: the joints of their surfaces as text, and warnings of edges
 !> that nearly coincide and of candidates on the wrong face of the sheet.
 module dd3_model_tool_report
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : wp, pi
   use dd3_base_error, only : location_t
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : newline, to_text
@@ -23,7 +23,7 @@ module dd3_model_tool_report
   integer, parameter :: most_faces = 500
   !> Least |m.n| of the normals of sheet and tool at which one faces the other.
   real(wp), parameter :: facing = 0.5_wp
-  real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
+  real(wp), parameter :: degree = pi/180.0_wp
 
 contains
 

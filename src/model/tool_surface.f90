@@ -12,7 +12,8 @@ module dd3_model_tool_surface
 
 contains
 
-  !> Read the surface of a tool from its file; valid only if no error was added.
+  !> Read the surface of a tool from its file; valid only if no error was added. Patches are built
+  !> in their place, and the points of the file are given up one by one, to save memory.
   subroutine read_tool_surface(surface, file, location, errors)
     type(surface_t), intent(out) :: surface
     character(len=*), intent(in) :: file
@@ -21,24 +22,10 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(patch_spec_t), allocatable :: patches(:)
-
-    call read_patches(patches, file, largest_degree, location, errors)
-    call new_tool_surface(surface, patches, location, errors)
-  end subroutine read_tool_surface
-
-  !> Build a surface from the patches of a file; valid only if no error was added. Patches are built
-  !> in their place, and the points of the file are given up one by one, to save memory.
-  subroutine new_tool_surface(surface, patches, location, errors)
-    type(surface_t), intent(out) :: surface
-    !> Left without points.
-    type(patch_spec_t), intent(inout) :: patches(:)
-    !> Where the input names the file.
-    type(location_t), intent(in) :: location
-    type(error_list_t), intent(inout) :: errors
-
     type(error_list_t) :: found
     integer :: i
 
+    call read_patches(patches, file, largest_degree, location, errors)
     if (size(patches) == 0) return
     allocate (surface%patch(size(patches)))
     do i = 1, size(patches)
@@ -55,7 +42,7 @@ contains
       call check_orientation(surface, patches, found)
     end if
     call push_file_errors(errors, found, location)
-  end subroutine new_tool_surface
+  end subroutine read_tool_surface
 
   !> Build one patch.
   subroutine new_tool_patch(patch, spec)

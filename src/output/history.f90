@@ -4,7 +4,7 @@
 module dd3_output_history
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_t
-  use dd3_base_text, only : newline
+  use dd3_base_text, only : axis => axis_name, newline
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -18,8 +18,6 @@ module dd3_output_history
 
   !> Name of the file in the folder of the results.
   character(len=*), parameter :: file_name = "history.csv"
-  !> Endings of the columns along the axes.
-  character(len=1), parameter :: axis(3) = ["x", "y", "z"]
 
   !> History of a run.
   type :: history_record_t
@@ -142,7 +140,7 @@ contains
       if (allocated(error)) return
       state%history_increment = self%increment
     end if
-    due = mod(state%increment, model%output%history_every) == 0 &
+    due = mod(state%increment, model%output%history) == 0 &
           .or. state%progress >= 1.0_wp
     self%increment = state%increment
     self%phase = state%phase

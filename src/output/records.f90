@@ -3,7 +3,7 @@
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
   use dd3_base_ranks, only : this_rank
-  use dd3_model_model, only : model_t
+  use dd3_model_model, only : fields_increments, model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t
   use dd3_output_history, only : history_record_t
@@ -143,10 +143,14 @@ contains
     logical, intent(in) :: fields_due
     type(error_t), allocatable, intent(out) :: error
 
+    logical :: due
+
     call self%history%write(model, state, error)
     if (allocated(error)) return
-    if (fields_due .or. every(model%output%fields_increments, state)) &
-      call write_fields(self, model, state, error)
+    due = fields_due
+    if (model%output%fields == fields_increments) &
+        due = due .or. every(nint(model%output%fields_value(1)), state)
+    if (due) call write_fields(self, model, state, error)
     if (allocated(error)) return
     if (every(model%output%restart_every, state)) call save(self, model, state, error)
   end subroutine write_due

@@ -1,9 +1,7 @@
 !> Equilibrium of a trial state, as the problem that the corrector solves: element forces, loads,
 !> contact and supports, with all non-linearities (plasticity, large rotations, contact, friction)
 !> in one residual.
-!> Source: Menezes and Teodosiu 2000; criterion of convergence: Oliveira and Menezes 2004, eq. (19),
-!> scaled by the norm of the internal forces where it exceeds that of the contact forces, and such
-!> that a residual that is round-off has converged.
+!> Source: Menezes and Teodosiu 2000.
 module dd3_process_equilibrium
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
@@ -13,31 +11,18 @@ module dd3_process_equilibrium
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
-  use dd3_process_balance, only : balance_tools, tool_imbalance
+  use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
-  use dd3_process_residual, only : evaluate_forces, evaluate_norm, lost_tool, residual_t
-  use dd3_system_enhanced, only : enhanced_response
+  use dd3_process_norm, only : evaluate_norm, residual_t, tool_imbalance
   use dd3_system_internal, only : assemble_stiffness, update_material
+  use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_load_stiffness, only : add_load_stiffness
-  use dd3_system_reduced, only : contact_force_increment
-  use dd3_system_round_off, only : attainable_residual
+  use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: equilibrium_t, unknowns_t
-
-  !> Unknowns of the increment, or a step of them.
-  type :: unknowns_t
-    !> Positions of the nodes, `(3, n_node)`, or displacements, mm.
-    real(wp), allocatable :: x(:, :)
-    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
-    real(wp), allocatable :: enhanced(:, :)
-    !> Contact forces, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda(:, :)
-    !> Displacements of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool(:, :)
-  end type unknowns_t
+  public :: equilibrium_t
 
   !> The problem. What it is built on is pointed to, as the procedures of an abstract problem have
   !> no argument for it; it must not outlive that.
@@ -52,9 +37,7 @@ module dd3_process_equilibrium
     type(unknowns_t) :: start, step
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
-    !> Residual, and its scaled norm.
     type(residual_t) :: residual
-    real(wp) :: norm = 0.0_wp
     !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
     integer, allocatable :: status(:, :)
     !> Work of the linear solver.
@@ -64,7 +47,6 @@ module dd3_process_equilibrium
   contains
     procedure :: begin
     procedure :: evaluate
-    procedure :: scaled_norm
     procedure :: is_admissible
     procedure :: linearise
     procedure :: apply
@@ -73,16 +55,8 @@ module dd3_process_equilibrium
     procedure :: changing
   end type equilibrium_t
 
-  !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
-  !> sheet at rest all forces are round-off.
-  real(wp), parameter :: negligible_strain = 1.0e-6_wp
-  !> Residual over the scale above which it is not round-off.
-  real(wp), parameter :: largest_round_off = 1.0e-3_wp
   !> Work of the residual in a step that is round-off, over the norms of internal forces and step.
   real(wp), parameter :: negligible_work = 1.0e-9_wp
-  !> Weight of the balance of a pressed tool in the norm: what is off at the end of an increment is
-  !> a step in the force of the next.
-  real(wp), parameter :: tool_weight = 10.0_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Number of contact status kept, and the value before the first.
@@ -123,75 +97,12 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
-      call set_norm(self, .not. with_stiffness)
-      call system%partition%check_agreement(self%norm, verdict)
+      call evaluate_norm(self%model, self%committed, self%trial, system, self%step, &
+          .not. with_stiffness, self%residual)
+      self%scaled_norm = self%residual%scaled
+      call system%partition%check_agreement(self%scaled_norm, verdict)
     end associate
   end subroutine evaluate
-
-  !> Set the scaled norm: the criterion of convergence, or the imbalance of a pressed tool if that
-  !> is larger and the criterion has met the tolerance.
-  subroutine set_norm(self, balance)
-    class(equilibrium_t), intent(inout) :: self
-    !> Whether the tools are balanced first.
-    logical, intent(in) :: balance
-
-    logical :: moved
-
-    associate (model => self%model, trial => self%trial, system => self%system, &
-        tolerance => self%model%phase(self%trial%phase)%newton%tolerance)
-      call evaluate_norm(model, trial, system, self%residual)
-      self%norm = criterion(self)
-      if (self%norm >= tolerance) return
-      moved = .false.
-      if (balance .and. model%phase(trial%phase)%mixed) call balance_tools(model, self%committed, &
-          trial, system, moved)
-      if (moved) then
-        call evaluate_norm(model, trial, system, self%residual)
-        self%norm = criterion(self)
-      end if
-      self%norm = max(self%norm, tool_weight*tool_imbalance(model, trial, system))
-    end associate
-  end subroutine set_norm
-
-  !> Return the criterion of convergence, eq. (19).
-  real(wp) function criterion(self)
-    class(equilibrium_t), intent(in) :: self
-
-    real(wp) :: force, scale
-
-    associate (trial => self%trial, system => self%system, model => self%model)
-      force = norm2(self%step%lambda) + self%residual%norm
-      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-          negligible_strain*model%least_shear()*model%thickness**2)
-      associate (tolerance => model%phase(trial%phase)%newton%tolerance)
-        if (force >= tolerance*scale .and. force < largest_round_off*scale) scale = max(scale, &
-            round_off_of_forces(self)/tolerance)
-      end associate
-      criterion = force/scale
-    end associate
-  end function criterion
-
-  !> Return the norm of the residual below which it is round-off, N. In the compliant formulation
-  !> the reduced matrix is that of the sheet and the contact layers.
-  real(wp) function round_off_of_forces(self) result(residual)
-    class(equilibrium_t), intent(in) :: self
-
-    associate (system => self%system, trial => self%trial)
-      if (self%model%phase(trial%phase)%mixed) then
-        residual = attainable_residual(system%stiffness, trial%x, system%partition)
-      else
-        residual = attainable_residual(system%reduced, trial%x, system%partition)
-      end if
-    end associate
-  end function round_off_of_forces
-
-  !> Return the norm of residual and step over their scale.
-  function scaled_norm(self) result(norm)
-    class(equilibrium_t), intent(in) :: self
-    real(wp) :: norm
-
-    norm = self%norm
-  end function scaled_norm
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
   !> prescribed displacements have reached their positions.
@@ -201,7 +112,7 @@ contains
 
     associate (model => self%model, trial => self%trial, contact => self%system%contact, &
         problem => self%system%problem)
-      admissible = lost_tool(model, trial, contact) == 0 .and. &
+      admissible = lost_tool(model, trial) == 0 .and. &
           all(contact%distance + contact%onset >= -model%tolerance%depth .or. contact%tool == 0)
       if (problem%missed) admissible = admissible .and. all(abs(problem%target - trial%x) &
           <= model%tolerance%closed .or. .not. model%phase(trial%phase)%prescribed)
@@ -231,11 +142,12 @@ contains
         where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x
       end if
       call system%profile%add(section_assembly)
-      call solve_reduced(system, model, phase, self%trial%x, self%solver, verdict)
+      call solve_reduced(system, model, trial, self%solver, verdict)
       if (first) call system%threads%end_iteration()
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
-      call set_step(self)
+      call read_step(system, model, trial, self%step)
+      self%step%enhanced = self%step%enhanced - system%enhanced%offset
       system%problem%residual = residual
     end associate
     call check_step(self, verdict)
@@ -251,26 +163,6 @@ contains
       self%start_hint = trial%hint
     end associate
   end subroutine keep_start
-
-  !> Set the step from the solution of the linear system.
-  subroutine set_step(self)
-    class(equilibrium_t), intent(inout) :: self
-
-    integer :: tool, row
-
-    associate (model => self%model, system => self%system, step => self%step, &
-        solution => self%system%problem%solution)
-      step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
-      step%enhanced = enhanced_response(system%enhanced, model, solution) - system%enhanced%offset
-      call contact_force_increment(model, model%phase(self%trial%phase), system%contact, &
-          self%trial%x, system%stiffness, system%problem, step%lambda)
-      step%tool = 0.0_wp
-      do tool = 1, model%n_tool
-        row = model%tool_row(tool)
-        if (row > 0) step%tool(:, tool) = solution(3*row - 2:3*row)
-      end do
-    end associate
-  end subroutine set_step
 
   !> Set a verdict to retry if the step moves a node too far.
   subroutine check_step(self, verdict)
@@ -343,9 +235,9 @@ contains
     class(equilibrium_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
-    associate (model => self%model, trial => self%trial, contact => self%system%contact, &
+    associate (model => self%model, trial => self%trial, &
         phase => self%model%phase(self%trial%phase), imbalance => self%system%problem%tool_residual)
-      verdict%tool = lost_tool(model, trial, contact)
+      verdict%tool = lost_tool(model, trial)
       verdict%cause = cause_lost_tool
       if (verdict%tool > 0) return
       verdict%node = self%residual%worst_node
@@ -355,7 +247,7 @@ contains
       if (self%changing() > 0) return
       verdict%cause = cause_residual
       verdict%value(1) = self%residual%worst
-      if (tool_weight*tool_imbalance(model, trial, self%system) < self%norm) return
+      if (tool_imbalance(model, trial, self%system) < self%scaled_norm) return
       verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
       if (verdict%tool == 0) return
       verdict%cause = cause_tool_force

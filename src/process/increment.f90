@@ -6,16 +6,16 @@ module dd3_process_increment
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_state, only : state_t
-  use dd3_process_equilibrium, only : equilibrium_t, unknowns_t
-  use dd3_process_external, only : evaluate_external, set_loads
+  use dd3_process_equilibrium, only : equilibrium_t
+  use dd3_process_forces, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
   use dd3_process_newton, only : newton_converged, newton_diverging, newton_interrupted, &
       newton_slow, solve
+  use dd3_process_norm, only : convergence_tolerance
   use dd3_process_open_edges, only : find_passage, observe_passages
   use dd3_process_phase_end, only : progress_tolerance
   use dd3_process_predictor, only : predict
-  use dd3_process_step_control, only : attempt_t, set_next_r_cap
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
   use dd3_process_work, only : add_work
   use dd3_system_partition, only : share_state
   use dd3_system_linear_problem, only : linear_problem_t
@@ -55,21 +55,20 @@ contains
     equilibrium%trial => trial
     equilibrium%system => stepper%system
     associate (prediction => stepper%prediction, attempt => stepper%attempt, &
-        r => stepper%attempt%limit%r, newton => model%phase(committed%phase)%newton)
+        r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
       trial%travel = committed%travel &
-          + (trial%progress - committed%progress)*model%phase(committed%phase)%length
+          + (trial%progress - committed%progress)*phase%length
       trial%hint%due = .true.
-      associate (step => prediction%step)
-        call equilibrium%begin(unknowns_t(r*step%x, r*step%enhanced, r*step%lambda, r*step%tool))
-      end associate
+      call equilibrium%begin(prediction%step%scaled(r))
       call set_loads(model, trial)
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)
-      call solve(equilibrium, newton%tolerance, newton%iterations, newton%damping, attempt%course)
+      call solve(equilibrium, convergence_tolerance(phase), phase%newton%iterations, &
+          phase%newton%damping, attempt%course)
       call conclude(equilibrium, attempt)
       if (attempt%verdict%outcome /= verdict_converged) attempt%passage = &
           find_passage(model, committed, prediction%step%x, prediction%step%tool)
@@ -90,7 +89,7 @@ contains
       verdict = course%verdict
       verdict%iterations = course%iterations
       verdict%changing = equilibrium%changing()
-      verdict%norm = equilibrium%norm
+      verdict%norm = equilibrium%scaled_norm
       select case (course%outcome)
       case (newton_converged)
         equilibrium%trial%lambda = equilibrium%system%contact%force
@@ -120,7 +119,6 @@ contains
     problem%target = trial%x
     problem%missed = .false.
     associate (phase => model%phase(trial%phase))
-      if (.not. allocated(phase%motion)) return
       problem%missed = size(phase%motion) > 0
       do i = 1, size(phase%motion)
         associate (node => phase%motion(i)%node)

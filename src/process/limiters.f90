@@ -11,8 +11,7 @@ module dd3_process_limiters
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_phase_end, only : next_output_progress, until_value
-  use dd3_process_step_control, only : limit_t
-  use dd3_process_stepper, only : stepper_t
+  use dd3_process_step_control, only : limit_t, stepper_t
   implicit none
   private
   public :: limit_increment

@@ -25,13 +25,14 @@ module dd3_process_newton
 
   !> Problem F(u) = 0 with its trial solution u and the last step.
   type, abstract :: newton_problem_t
+    !> Norm of residual and step over their scale at the trial solution, which tells convergence.
+    real(wp) :: scaled_norm = 0.0_wp
   contains
     procedure(evaluate_interface), deferred :: evaluate
-    procedure(norm_interface), deferred :: scaled_norm
     procedure(is_admissible_interface), deferred :: is_admissible
     procedure(linearise_interface), deferred :: linearise
     procedure(apply_interface), deferred :: apply
-    procedure(norm_interface), deferred :: slope
+    procedure(slope_interface), deferred :: slope
   end type newton_problem_t
 
   abstract interface
@@ -45,13 +46,12 @@ module dd3_process_newton
       type(verdict_t), intent(out) :: verdict
     end subroutine evaluate_interface
 
-    !> `scaled_norm`: return the norm of residual and step over their scale, which tells
-    !> convergence. `slope`: return the work of the residual in the last step.
-    function norm_interface(self) result(norm)
+    !> Return the work of the residual in the last step.
+    function slope_interface(self) result(work)
       import :: newton_problem_t, wp
       class(newton_problem_t), intent(in) :: self
-      real(wp) :: norm
-    end function norm_interface
+      real(wp) :: work
+    end function slope_interface
 
     !> Whether the trial solution satisfies the conditions that are not in the norm.
     function is_admissible_interface(self) result(admissible)
@@ -126,7 +126,7 @@ contains
       course%outcome = newton_invalid
       call evaluate(problem, damping, start, course)
       if (course%verdict%outcome /= verdict_converged) return
-      course%norm = [course%norm, problem%scaled_norm()]
+      course%norm = [course%norm, problem%scaled_norm]
       course%outcome = newton_converged
       if (j > 1 .and. course%norm(j) < tolerance) then
         if (problem%is_admissible()) return

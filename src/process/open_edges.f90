@@ -88,8 +88,8 @@ contains
       do c = 1, model%n_contact
         if (force(c) <= least) cycle
         hint = state%hint(tool, c)
-        call find_on_tool(model%tool(tool), placement, model%point_position(c, x), hint, distance, &
-            distance, hit)
+        call find_on_tool(model%tool(tool), placement, model%contact_point(c)%position(x), hint, &
+            distance, distance, hit)
         if (.not. hit%border) cycle
         passage = passage_t(tool, hit%patch, open_edge_at(model%tool(tool)%surface, hit), &
             model%contact_node(c))

@@ -1,8 +1,8 @@
 !> End of a phase and its outputs of fields, as progress of the phase.
 module dd3_process_phase_end
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : until_displacement
-  use dd3_model_model, only : model_t, output_t
+  use dd3_input_case, only : fields_at, fields_every, output_spec_t, until_displacement
+  use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   implicit none
@@ -94,7 +94,7 @@ contains
 
   !> Return the progress at the next output of fields; a huge value if none is left in the phase.
   pure real(wp) function next_output_progress(output, phase, state) result(progress)
-    type(output_t), intent(in) :: output
+    type(output_spec_t), intent(in) :: output
     type(phase_t), intent(in) :: phase
     type(state_t), intent(in) :: state
 
@@ -104,16 +104,18 @@ contains
     progress = huge(1.0_wp)
     if (phase%length <= 0.0_wp) return
     travel = state%progress*phase%length
-    if (output%fields_every > 0.0_wp) then
-      progress = (aint(travel/output%fields_every + progress_tolerance) + 1) &
-          *output%fields_every/phase%length
-    else if (allocated(output%fields_at)) then
-      do i = 1, size(output%fields_at)
-        if (output%fields_at(i) <= travel + progress_tolerance*phase%length) cycle
-        progress = output%fields_at(i)/phase%length
+    select case (output%fields)
+    case (fields_every)
+      associate (interval => output%fields_value(1))
+        progress = (aint(travel/interval + progress_tolerance) + 1)*interval/phase%length
+      end associate
+    case (fields_at)
+      do i = 1, size(output%fields_value)
+        if (output%fields_value(i) <= travel + progress_tolerance*phase%length) cycle
+        progress = output%fields_value(i)/phase%length
         exit
       end do
-    end if
+    end select
     if (progress > 1.0_wp) progress = huge(1.0_wp)
   end function next_output_progress
 

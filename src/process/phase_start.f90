@@ -6,8 +6,8 @@ module dd3_process_phase_start
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_tool, only : find_on_tool
   use dd3_input_case, only : until_force
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
   use dd3_model_model, only : model_t
@@ -15,7 +15,7 @@ module dd3_process_phase_start
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
-  use dd3_process_external, only : evaluate_external
+  use dd3_process_forces, only : evaluate_external
   use dd3_process_phase_end, only : until_value
   use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   implicit none
@@ -128,48 +128,22 @@ contains
     !> Set if a tool would start inside the sheet.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp) :: depth
-    integer :: tool, node
+    type(hit_t), allocatable :: hit(:)
+    integer :: tool, c
 
     do tool = 1, model%n_tool
       if (.not. returns(model, number, tool)) cycle
-      call deepest_candidate(model, tool, state, depth, node)
-      if (node == 0) cycle
+      hit = candidate_hits(model, tool, state%placement(tool), state%x, &
+          model%tolerance%start_search, wrong_side_depth*model%largest_thickness())
+      c = minloc(hit%distance, dim=1, mask=hit%found .and. -hit%distance > start_depth)
+      if (c == 0) cycle
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
-          model%tool(tool)%name//"', which was released, but node "//to_text(node)//" is "// &
-          to_text(depth, 3)//" mm inside it: move the tool clear of the sheet in the phase "// &
-          "that releases it", "E206")
+          model%tool(tool)%name//"', which was released, but node "// &
+          to_text(model%contact_node(c))//" is "//to_text(-hit(c)%distance, 3)// &
+          " mm inside it: move the tool clear of the sheet in the phase that releases it", "E206")
       return
     end do
   end subroutine check_returns
-
-  !> Find the candidate that is deepest inside a tool.
-  subroutine deepest_candidate(model, tool, state, depth, node)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: tool
-    type(state_t), intent(in) :: state
-    !> Its depth, mm.
-    real(wp), intent(out) :: depth
-    !> Its node; 0 if none is deeper than a tool may start.
-    integer, intent(out) :: node
-
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    integer :: c
-
-    depth = start_depth
-    node = 0
-    do c = 1, model%n_contact
-      if (.not. model%candidate(tool, c)) cycle
-      hint = hint_t()
-      call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, &
-          model%tolerance%start_search, wrong_side_depth*model%largest_thickness(), hit)
-      if (.not. hit%found .or. -hit%distance <= depth) cycle
-      depth = -hit%distance
-      node = model%contact_node(c)
-    end do
-  end subroutine deepest_candidate
 
   !> Set the forces pressed on the tools at the start and at the end of a phase. A tool that was
   !> held or moved until now starts from the contact force on it in the direction of its line.
@@ -270,7 +244,7 @@ contains
     real(wp) :: gap, facing
     integer :: k
 
-    if (any(state%contact_tool == tool .and. state%status /= status_gap)) return
+    if (state%touches(tool)) return
     do k = 1, most_advances
       call gap_of_tool(model, tool, state, gap, facing)
       if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return
@@ -291,26 +265,22 @@ contains
     !> negative if the force points away from the sheet.
     real(wp), intent(out) :: facing
 
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    real(wp) :: outward(3, model%n_contact)
+    type(hit_t), allocatable :: hit(:)
     integer :: c
 
-    outward = outward_normals(model, state%x)
+    hit = candidate_hits(model, tool, state%placement(tool), state%x, &
+        model%tolerance%tool_search, model%tolerance%committed_depth, &
+        outward_normals(model, state%x))
     gap = huge(1.0_wp)
     facing = -1.0_wp
-    do c = 1, model%n_contact
-      if (.not. model%candidate(tool, c)) cycle
-      hint = hint_t()
-      call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%point_position(c, state%x), hint, &
-          model%tolerance%tool_search, model%tolerance%committed_depth, hit, &
-          outward(:, c))
-      if (.not. hit%found) cycle
-      gap = min(gap, hit%distance + state%layer_offset(tool) - model%phase(state%phase)%layer &
-          *model%thickness_at(model%contact_node(c)))
-      facing = max(facing, dot_product(hit%normal, model%phase(state%phase)%direction(:, tool)))
-    end do
+    associate (phase => model%phase(state%phase))
+      do c = 1, model%n_contact
+        if (.not. hit(c)%found) cycle
+        gap = min(gap, hit(c)%distance + state%layer_offset(tool) &
+            - phase%layer*model%thickness_at(model%contact_node(c)))
+        facing = max(facing, dot_product(hit(c)%normal, phase%direction(:, tool)))
+      end do
+    end associate
   end subroutine gap_of_tool
 
 end module dd3_process_phase_start

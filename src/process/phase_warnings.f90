@@ -1,7 +1,9 @@
 !> Notes and warnings at the start and at the end of a phase: nodes that stay held, a pressed tool
-!> without contact, an unsupported sheet, yielding during a release, gaps of the contact layers.
+!> without contact, an unsupported sheet, yielding during a release, gaps of the contact layers, and
+!> those on chosen supports and on tools.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
+  use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force
@@ -12,32 +14,59 @@ module dd3_process_phase_warnings
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
-  use dd3_model_rigid_motion, only : new_supported_part, rigid_motion_t
-  use dd3_model_sheet_parts, only : part_name, parts_of_nodes
+  use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
+      rigid_motion_t
   use dd3_model_state, only : state_t
   use dd3_model_tolerances, only : tangential
-  use dd3_process_phase_end, only : until_met, until_tolerance, until_value
+  use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
+  use dd3_process_tool_warnings, only : add_tool_warnings
+  use dd3_process_unload_report, only : add_reactions, imbalance_warning, unload_note
   implicit none
   private
-  public :: gap_note, kept_note, press_warning, release_warning, support_warning, until_warning
+  public :: start_notes, end_notes
+  public :: gap_note, press_warning, release_warning, support_warning, until_warning
 
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
 
 contains
 
-  !> Return a note on the directions that earlier phases displaced and this one keeps; empty
-  !> without them.
-  pure function kept_note(phase) result(text)
-    type(phase_t), intent(in) :: phase
-    character(len=:), allocatable :: text
+  !> Return the notes and warnings at the start of the running phase.
+  subroutine start_notes(model, state, notes)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(message_list_t), intent(out) :: notes
 
-    text = ""
-    if (len(phase%kept_displacements) > 0) text = "phase '"//phase%name// &
-        "' keeps directions where earlier phases displaced them: "//phase%kept_displacements// &
-        " (`free` frees them)"
-  end function kept_note
+    associate (phase => model%phase(state%phase))
+      if (len(phase%kept_displacements) > 0) call notes%add_new("N101", "phase '"//phase%name// &
+          "' keeps directions where earlier phases displaced them: "//phase%kept_displacements// &
+          " (`free` frees them)")
+      call notes%add_new("W102", press_warning(model, state))
+      call notes%add_new("W103", support_warning(model, state))
+      call notes%add_new("N102", unload_note(model, state))
+      call notes%add_new("W104", imbalance_warning(model, state))
+      if (phase_is_over(model, state)) call notes%add_new("N105", "phase '"//phase%name// &
+          "' has no increment: the condition of its early end holds at its start")
+    end associate
+  end subroutine start_notes
+
+  !> Return the notes and warnings on the running phase at its end, or where the run stops in it.
+  subroutine end_notes(model, state, ended, notes)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Whether the phase has reached its end.
+    logical, intent(in) :: ended
+    type(message_list_t), intent(out) :: notes
+
+    if (ended) then
+      call notes%add_new("W105", until_warning(model%phase(state%phase), state))
+      call notes%add_new("W106", release_warning(model%phase(state%phase), state))
+      call add_reactions(model, state, notes)
+      call notes%add_new("N104", gap_note(model, state))
+    end if
+    call add_tool_warnings(model, state, ended, notes)
+  end subroutine end_notes
 
   !> Return a warning if a phase with an early end went on to its end, or beyond the value that
   !> should end it; empty otherwise.
@@ -85,7 +114,7 @@ contains
     associate (phase => model%phase(state%phase))
       do tool = 1, model%n_tool
         if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
-        if (any(state%contact_tool == tool .and. state%status /= status_gap)) cycle
+        if (state%touches(tool)) cycle
         call gap_of_tool(model, tool, state, gap, facing)
         if (facing > tangential .and. gap <= model%tolerance%touch) cycle
         text = "in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &
@@ -121,8 +150,8 @@ contains
         text = body%free_motion()
         if (len(text) == 0) cycle
         text = "at the start of phase '"//phase%name//"' nothing holds "// &
-            part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool in "// &
-            "contact from the start"
+            part_name(part, k)//": it is free to "//text//"; supports are missing, or a tool "// &
+            "in contact from the start"
         return
       end do
     end associate
@@ -145,7 +174,7 @@ contains
 
     do c = 1, model%n_contact
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
-      associate (x => model%point_position(c, state%x), phase => model%phase(state%phase))
+      associate (x => model%contact_point(c)%position(state%x), phase => model%phase(state%phase))
         hint = hint_t()
         call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
             model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &

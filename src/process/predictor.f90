@@ -10,23 +10,20 @@ module dd3_process_predictor
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
-  use dd3_element_work, only : element_work_t
   use dd3_model_contact_layer, only : offset_rate
-  use dd3_model_loads, only : fading_rate, nodal_forces
+  use dd3_model_loads, only : fading_rate
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
-  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_state, only : state_t
-  use dd3_process_equilibrium, only : unknowns_t
-  use dd3_process_external, only : unfaded_forces
+  use dd3_process_forces, only : applied_forces, unfaded_forces
   use dd3_system_contact, only : predictor_contact
-  use dd3_system_enhanced, only : enhanced_response
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_drawbead, only : place_beads
   use dd3_system_load_stiffness, only : add_load_stiffness
+  use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_partition, only : partition_t
-  use dd3_system_reduced, only : contact_force_increment
+  use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
   implicit none
@@ -79,7 +76,7 @@ contains
     !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: switch, switched, tool, row
+    integer :: switch, switched
 
     associate (phase => model%phase(committed%phase), &
         unloading => model%phase(committed%phase)%limits%unloading)
@@ -96,25 +93,16 @@ contains
         call assemble_stiffness(system, model, committed)
         call add_load_stiffness(system, model, committed)
         call system%profile%add(section_assembly)
-        call solve_reduced(system, model, phase, committed%x, solver, verdict)
+        call solve_reduced(system, model, committed, solver, verdict)
         if (verdict%outcome /= verdict_converged) return
         call system%profile%start()
-        self%step%x(:, :) = reshape(system%problem%solution(:3*model%n_node), [3, model%n_node])
-        self%step%enhanced(:, :) = enhanced_response(system%enhanced, model, &
-            system%problem%solution)
+        call read_step(system, model, committed, self%step)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, system%partition, switched)
         if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
       end do
-      call contact_force_increment(model, phase, system%contact, committed%x, system%stiffness, &
-          system%problem, self%step%lambda)
       where (spread(system%contact%status == status_gap, 1, 3)) self%step%lambda = 0.0_wp
-      self%step%tool = system%problem%tool_prescribed
-      do tool = 1, model%n_tool
-        row = 3*model%tool_row(tool)
-        if (phase%pressed(tool)) self%step%tool(:, tool) = system%problem%solution(row - 2:row)
-      end do
     end associate
   end subroutine predict
 
@@ -133,10 +121,9 @@ contains
     faded = self%progress*fading_rate(committed%progress)
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
-      call nodal_forces(model%load_set, -factor*(start%load_end - start%load), &
-          faded*unfaded_forces(model, committed), problem%residual)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
-          -factor*(start%pressure_end - start%pressure), committed%x, problem%residual)
+      problem%residual = applied_forces(model, -factor*(start%load_end - start%load), &
+          -factor*(start%pressure_end - start%pressure), committed%x, &
+          faded*unfaded_forces(model, committed))
       call advance_layers(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
@@ -185,7 +172,6 @@ contains
     real(wp) :: here, ahead(3, model%n_node), behind(3, model%n_node)
     integer :: i
 
-    if (.not. allocated(phase%motion)) return
     if (size(phase%motion) == 0) return
     here = phase%factor(committed%progress)
     ahead = 0.0_wp
@@ -228,41 +214,30 @@ contains
     !> Provides the workspaces.
     type(system_t), intent(inout) :: system
 
+    type(verdict_t) :: verdict
     integer :: e, thread
 
-    !$omp parallel num_threads(model%element_threads()) private(e, thread)
+    !$omp parallel num_threads(model%element_threads()) private(e, thread, verdict)
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     !$omp do
     do e = 1, model%n_element
       if (.not. system%partition%evaluated(e)) cycle
-      call element_increments(self, model, committed, e, system%element(thread))
+      associate (nodes => model%connectivity(:, e), element => model%element, &
+          work => system%element(thread))
+        work%x_committed(:, :) = committed%x(:, nodes)
+        work%enhanced(:) = self%step%enhanced(:, e)
+        work%x_initial(:, :) = model%x0(:, nodes)
+        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+        call element%evaluate_rate(element, self%step%x(:, nodes), &
+            committed%orientation(:, :, :, e), work)
+        self%strain(:, :, e) = work%strain_increment
+        self%rotation(:, e) = work%rotation_increment
+      end associate
     end do
     !$omp end do
     !$omp end parallel
   end subroutine point_increments
-
-  !> Evaluate those of one element.
-  subroutine element_increments(self, model, committed, e, work)
-    type(prediction_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    integer, intent(in) :: e
-    type(element_work_t), intent(inout) :: work
-
-    type(verdict_t) :: verdict
-
-    associate (nodes => model%connectivity(:, e), element => model%element)
-      work%x_committed(:, :) = committed%x(:, nodes)
-      work%enhanced(:) = self%step%enhanced(:, e)
-      work%x_initial(:, :) = model%x0(:, nodes)
-      call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
-      call element%evaluate_rate(element, self%step%x(:, nodes), &
-          committed%orientation(:, :, :, e), work)
-      self%strain(:, :, e) = work%strain_increment
-      self%rotation(:, e) = work%rotation_increment
-    end associate
-  end subroutine element_increments
 
   !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
   subroutine switch_unloading(self, model, committed, partition, switched)

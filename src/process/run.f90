@@ -26,13 +26,9 @@ module dd3_process_run
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
       until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns
-  use dd3_process_phase_warnings, only : gap_note, kept_note, press_warning, release_warning, &
-      support_warning, until_warning
+  use dd3_process_phase_warnings, only : end_notes, start_notes
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until
-  use dd3_process_stepper, only : stepper_t
-  use dd3_process_tool_warnings, only : tool_warnings
-  use dd3_process_unload_report, only : imbalance_warning, report_reactions, unload_note
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system, system_t
   implicit none
@@ -164,15 +160,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(error_t), allocatable :: late
-    type(message_list_t) :: warnings
+    type(message_list_t) :: notes
     real(wp) :: next_output
     logical :: ended
-    integer :: done, i
+    integer :: done
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
-        call start_phase(model, number, committed, log, error)
+        call check_returns(model, number, committed, error)
         if (allocated(error)) return
+        call begin_phase(model, number, committed)
+        call start_notes(model, committed, notes)
+        call tell_all(log, notes)
       end if
       do while (.not. phase_is_over(model, committed))
         next_output = next_output_progress(model%output, phase, committed)
@@ -189,16 +188,8 @@ contains
         exit
       end do
       ended = .not. allocated(error)
-      if (ended) then
-        call log%report("W105", until_warning(phase, committed))
-        call log%report("W106", release_warning(phase, committed))
-        call report_reactions(model, committed, log)
-        call log%report("N104", gap_note(model, committed))
-      end if
-      call tool_warnings(model, committed, ended, warnings)
-      do i = 1, warnings%count
-        call log%tell(warnings%item(i))
-      end do
+      call end_notes(model, committed, ended, notes)
+      call tell_all(log, notes)
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
@@ -214,29 +205,17 @@ contains
     system%threads%news = ""
   end subroutine note_choices
 
-  !> Begin a phase, with notes and warnings.
-  subroutine start_phase(model, number, committed, log, error)
-    type(model_t), intent(in) :: model
-    !> Number of the phase.
-    integer, intent(in) :: number
-    type(state_t), intent(inout) :: committed
+  !> Log notes and warnings.
+  subroutine tell_all(log, notes)
     type(log_t), intent(inout) :: log
-    !> Set if a tool that was released would start inside the sheet.
-    type(error_t), allocatable, intent(out) :: error
+    type(message_list_t), intent(in) :: notes
 
-    call check_returns(model, number, committed, error)
-    if (allocated(error)) return
-    call begin_phase(model, number, committed)
-    associate (phase => model%phase(number))
-      call log%report("N101", kept_note(phase))
-      call log%report("W102", press_warning(model, committed))
-      call log%report("W103", support_warning(model, committed))
-      call log%report("N102", unload_note(model, committed))
-      call log%report("W104", imbalance_warning(model, committed))
-      if (phase_is_over(model, committed)) call log%report("N105", "phase '"//phase%name &
-          //"' has no increment: the condition of its early end holds at its start")
-    end associate
-  end subroutine start_phase
+    integer :: i
+
+    do i = 1, notes%count
+      call log%tell(notes%item(i))
+    end do
+  end subroutine tell_all
 
   !> Make one increment in as many attempts as allowed. A converged one is accepted even if its row
   !> of status.csv cannot be written.

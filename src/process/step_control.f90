@@ -5,12 +5,14 @@ module dd3_process_step_control
   use dd3_base_verdict, only : verdict_t
   use dd3_model_state, only : state_t
   use dd3_process_newton, only : newton_course_t
+  use dd3_process_norm, only : residual_t
   use dd3_process_open_edges, only : passage_t
-  use dd3_process_residual, only : residual_t
+  use dd3_process_predictor, only : prediction_t
   use dd3_system_solve, only : solve_info_t
+  use dd3_system_system, only : system_t
   implicit none
   private
-  public :: attempt_t, limit_t, cut_back, return_to_until, set_next_r_cap, makes_progress
+  public :: attempt_t, limit_t, stepper_t, cut_back, return_to_until, set_next_r_cap, makes_progress
 
   !> Upper bound of the factor r and its origin; numbers that do not apply are 0.
   type :: limit_t
@@ -41,6 +43,13 @@ module dd3_process_step_control
     !> Where the prediction of a failed attempt leads a point in contact over an open edge.
     type(passage_t) :: passage
   end type attempt_t
+
+  !> Work data of the increments. Only the memory of the solver is kept from one to the next.
+  type :: stepper_t
+    type(system_t) :: system
+    type(prediction_t) :: prediction
+    type(attempt_t) :: attempt
+  end type stepper_t
 
   !> Factor on r after a failed attempt, and the smallest r of another one.
   real(wp), parameter :: cutback_factor = 0.5_wp, cutback_min = 1.0e-5_wp

@@ -5,16 +5,16 @@ module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : hint_t, hit_t
+  use dd3_contact_closest, only : hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_tool, only : find_on_tool
+  use dd3_model_contact_results, only : candidate_hits
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name
   use dd3_process_tool_crossing, only : crossing_t, find_crossing
   implicit none
   private
-  public :: tool_warnings
+  public :: add_tool_warnings
 
   !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
   !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
@@ -24,14 +24,14 @@ module dd3_process_tool_warnings
 
 contains
 
-  !> Return the warnings.
-  subroutine tool_warnings(model, state, ended, warnings)
+  !> Add the warnings.
+  subroutine add_tool_warnings(model, state, ended, warnings)
     type(model_t), intent(in) :: model
     !> Last state of the phase.
     type(state_t), intent(in) :: state
     !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
     logical, intent(in) :: ended
-    type(message_list_t), intent(out) :: warnings
+    type(message_list_t), intent(inout) :: warnings
 
     integer :: a, b
 
@@ -59,7 +59,7 @@ contains
           model%phase(state%phase)%name//"' "//text)
     end subroutine add
 
-  end subroutine tool_warnings
+  end subroutine add_tool_warnings
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
   function contact_warning(model, state, tool) result(text)
@@ -68,19 +68,23 @@ contains
     integer, intent(in) :: tool
     character(len=:), allocatable :: text
 
-    real(wp) :: gap
-    integer :: node
+    type(hit_t), allocatable :: hit(:)
+    integer :: c
 
     text = ""
     associate (phase => model%phase(state%phase))
       if (state%touched(tool)) return
       if (.not. phase%pressed(tool) .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
     end associate
-    call find_nearest(model, state, tool, node, gap)
+    associate (distance => model%tolerance%tool_search)
+      hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
+    end associate
+    c = minloc(abs(hit%distance), dim=1, mask=hit%found)
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
-    if (node > 0) then
-      text = text//"the nearest candidate, node "//to_text(node)//", is "//to_text(abs(gap), 3)// &
-          " mm "//trim(merge("behind   ", "in front ", gap < 0.0_wp))//" of its surface"
+    if (c > 0) then
+      text = text//"the nearest candidate, node "//to_text(model%contact_node(c))//", is "// &
+          to_text(abs(hit(c)%distance), 3)//" mm "// &
+          trim(merge("behind   ", "in front ", hit(c)%distance < 0.0_wp))//" of its surface"
     else
       text = text//"no candidate lies in front of its surface"
     end if
@@ -90,35 +94,6 @@ contains
       text = text//"; check its place, its normals and its set of candidates"
     end if
   end function contact_warning
-
-  !> Find the candidate that is nearest to a tool.
-  subroutine find_nearest(model, state, tool, node, gap)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: tool
-    !> 0 if no candidate lies in front of or behind the tool's surface.
-    integer, intent(out) :: node
-    !> mm.
-    real(wp), intent(out) :: gap
-
-    type(hint_t) :: hint
-    type(hit_t) :: hit
-    integer :: c
-
-    node = 0
-    gap = huge(1.0_wp)
-    do c = 1, model%n_contact
-      if (.not. model%candidate(tool, c)) cycle
-      hint = hint_t()
-      associate (distance => model%tolerance%tool_search, n => model%contact_node(c))
-        call find_on_tool(model%tool(tool), state%placement(tool), &
-            model%point_position(c, state%x), hint, distance, distance, hit)
-        if (.not. hit%found .or. abs(hit%distance) >= abs(gap)) cycle
-        gap = hit%distance
-        node = n
-      end associate
-    end do
-  end subroutine find_nearest
 
   !> Return a warning if a tool has entered the faces of the sheet notably between their nodes.
   function depth_warning(model, state, tool) result(text)

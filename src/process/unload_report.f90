@@ -2,17 +2,16 @@
 !> the forces on the sheet are in equilibrium without them, and their reactions.
 module dd3_process_unload_report
   use dd3_base_kinds, only : wp
-  use dd3_base_log, only : log_t
+  use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
-  use dd3_model_loads, only : nodal_forces
-  use dd3_model_pressures, only : add_pressure_forces
   use dd3_model_model, only : model_t
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
+  use dd3_process_forces, only : applied_forces
   implicit none
   private
-  public :: imbalance_warning, report_reactions, unload_note
+  public :: imbalance_warning, add_reactions, unload_note
 
   !> Resultants below this fraction of the forces on the sheet, and reactions at the end below this
   !> fraction of the largest force that faded, are those that the tolerance of the corrector leaves.
@@ -69,24 +68,20 @@ contains
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    real(wp) :: force(3, model%n_node), fading(3, model%n_node), resultant
+    real(wp) :: force(3, model%n_node), resultant
 
     text = ""
     associate (phase => model%phase(state%phase), start => state%start)
       if (size(phase%support, 2) == 0) return
-      fading = 0.0_wp
-      call nodal_forces(model%load_set, start%load_end, fading, force)
-      if (size(start%pressure_end) > 0) call add_pressure_forces(model%element, &
-          model%pressure_set, start%pressure_end, state%x, force)
+      force = applied_forces(model, start%load_end, start%pressure_end, state%x, &
+          0.0_wp*start%fading)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
         text = "the loads on the sheet are not in equilibrium in phase '"//phase%name// &
             "': the chosen supports carry "//to_text(resultant, 3)//" N of them"
         return
       end if
-      call nodal_forces(model%load_set, start%load, start%fading, force)
-      if (size(start%pressure) > 0) call add_pressure_forces(model%element, model%pressure_set, &
-          start%pressure, state%x, force)
+      force = applied_forces(model, start%load, start%pressure, state%x, start%fading)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
           "the forces that fade in phase '"//phase%name// &
@@ -117,13 +112,13 @@ contains
     resultant = norm2(matmul(projector, total))
   end function free_resultant
 
-  !> Tell the largest reaction of the supports chosen for the running phase, as a warning if it is
+  !> Add the largest reaction of the supports chosen for the running phase, as a warning if it is
   !> not small; no-op without chosen supports.
-  subroutine report_reactions(model, state, log)
+  subroutine add_reactions(model, state, notes)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.
     type(state_t), intent(in) :: state
-    type(log_t), intent(inout) :: log
+    type(message_list_t), intent(inout) :: notes
 
     real(wp), allocatable :: reaction(:)
     real(wp) :: scale
@@ -140,11 +135,11 @@ contains
       k = maxloc(abs(reaction), dim=1)
       scale = max(0.0_wp, maxval(norm2(start%fading, dim=1)), &
           maxval(norm2(start%load, dim=1)), maxval(norm2(start%load_end, dim=1)))
-      call log%report(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
+      call notes%add_new(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
           "phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &
           name_of_support(support(:, k))//")")
     end associate
-  end subroutine report_reactions
+  end subroutine add_reactions
 
 end module dd3_process_unload_report

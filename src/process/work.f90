@@ -95,11 +95,15 @@ contains
       if (tool == 0) cycle
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
       tool_motion = point_displacement(old%placement(tool), new%placement(tool), &
-          model%point_position(c, new%x))
-      slip = model%point_position(c, new%x) - model%point_position(c, old%x) - tool_motion
+          model%contact_point(c)%position(new%x))
+      slip = model%contact_point(c)%position(new%x) - model%contact_point(c)%position(old%x) &
+          - tool_motion
       normal = contact%normal(:, c)
-      if (contact%committed_tool(c) == tool) normal = &
-          mean_normal(contact%committed_normal(:, c), normal)
+      if (contact%committed_tool(c) == tool) then
+        ! The chord along which a point slides over a radius is at right angles to the mean normal.
+        normal = contact%committed_normal(:, c) + normal
+        normal = normal/norm2(normal)
+      end if
       slip = slip - dot_product(normal, slip)*normal
       advance = old%layer_offset(tool) - new%layer_offset(tool)
       new%tool_work = new%tool_work - dot_product(force, tool_motion + advance*normal)
@@ -108,15 +112,5 @@ contains
           new%slip_path(c) = new%slip_path(c) + norm2(slip)
     end do
   end subroutine add_contact_work
-
-  !> Return the mean direction of two unit normals that are not opposite. The chord along which a
-  !> point slides over a radius is at right angles to it.
-  pure function mean_normal(first, second) result(mean)
-    real(wp), intent(in) :: first(3), second(3)
-    real(wp) :: mean(3)
-
-    mean = first + second
-    mean = mean/norm2(mean)
-  end function mean_normal
 
 end module dd3_process_work

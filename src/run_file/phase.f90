@@ -2,6 +2,7 @@
 module dd3_run_file_phase
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
+  use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t, limit_spec_t, limits_spec_t, newton_spec_t, phase_spec_t, &
       tool_gap_t, until_force
   use dd3_model_model, only : model_t
@@ -9,7 +10,7 @@ module dd3_run_file_phase
   use dd3_output_run_summary, only : phase_summary_t
   use dd3_process_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
-  use dd3_run_file_sheet, only : add_axes, axis_name
+  use dd3_run_file_sheet, only : add_axes
   implicit none
   private
   public :: add_phases

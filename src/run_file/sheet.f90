@@ -2,15 +2,15 @@
 module dd3_run_file_sheet
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
+  use dd3_base_text, only : axis_name
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t
-  use dd3_model_model, only : history_set_t, model_t, output_t
+  use dd3_model_model, only : fields_at, fields_every, fields_increments, history_set_t, &
+      model_t, output_spec_t
   use dd3_run_file_input, only : add_location
   implicit none
   private
-  public :: add_sheet, add_sets, add_boundaries, add_histories, add_output, add_axes, axis_name
-
-  character(len=1), parameter :: axis_name(3) = ["x", "y", "z"]
+  public :: add_sheet, add_sets, add_boundaries, add_histories, add_output, add_axes
 
 contains
 
@@ -148,44 +148,36 @@ contains
   end subroutine add_quantities
 
   !> Add what is written, and when.
-  subroutine add_output(json, case, output)
+  subroutine add_output(json, output)
     type(json_t), intent(inout) :: json
-    type(case_t), intent(in) :: case
-    type(output_t), intent(in) :: output
+    type(output_spec_t), intent(in) :: output
 
     real(wp) :: none(0)
 
     call json%begin_object("output", flat=.true.)
-    call json%add("history", case%output%history)
-    if (output%fields_every > 0.0_wp) then
-      call json%add("fields_every", output%fields_every)
+    call json%add("history", output%history)
+    if (output%fields == fields_every) then
+      call json%add("fields_every", output%fields_value(1))
     else
       call json%add_null("fields_every")
     end if
-    if (allocated(output%fields_at)) then
-      call json%add("fields_at", output%fields_at)
+    if (output%fields == fields_at) then
+      call json%add("fields_at", output%fields_value)
     else
       call json%add("fields_at", none)
     end if
-    call add_interval("fields_increments", output%fields_increments)
-    call json%add("restart", case%output%restart)
-    call add_interval("restart_every", case%output%restart_every)
+    if (output%fields == fields_increments) then
+      call json%add("fields_increments", nint(output%fields_value(1)))
+    else
+      call json%add_null("fields_increments")
+    end if
+    call json%add("restart", output%restart)
+    if (output%restart_every > 0) then
+      call json%add("restart_every", output%restart_every)
+    else
+      call json%add_null("restart_every")
+    end if
     call json%end_object()
-
-  contains
-
-    !> Add an interval; null if it is off.
-    subroutine add_interval(name, interval)
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: interval
-
-      if (interval > 0) then
-        call json%add(name, interval)
-      else
-        call json%add_null(name)
-      end if
-    end subroutine add_interval
-
   end subroutine add_output
 
 end module dd3_run_file_sheet

@@ -75,7 +75,7 @@ contains
       call add_drawbeads(json, case, model)
       call add_boundaries(json, case)
       call add_histories(json, case, model)
-      call add_output(json, case, model%output)
+      call add_output(json, case%output)
       call add_points(json, case)
     end associate
   end subroutine run_file_start

@@ -9,10 +9,9 @@ module dd3_system_contact
       round_off, status_gap, status_slip, status_stick
   use dd3_contact_placement, only : placement_t, relative_displacement
   use dd3_contact_tool, only : find_on_tool
-  use dd3_model_contact_layer, only : border_at, layer_at
+  use dd3_model_contact_layer, only : border_at, contact_penalty, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
-  use dd3_model_penalty, only : contact_penalty
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t, open_candidate
@@ -62,16 +61,15 @@ contains
 
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    real(wp) :: x(3), slip(3)
+    real(wp) :: x(3), slip(3), penalty
     integer :: tool
 
     hint = trial%hint(:, c)
-    x = model%point_position(c, trial%x)
+    x = model%contact_point(c)%position(trial%x)
     call find_nearest_tool(self, model, committed, trial, c, x, hint, hit)
     tool = self%tool(c)
     trial%contact_tool(c) = tool
     trial%hint(:, c) = hint
-    self%lambda(:, c) = trial%lambda(:, c)
     if (tool == 0) then
       call open_candidate(self, c)
     else
@@ -80,11 +78,17 @@ contains
       self%normal(:, c) = hit%normal
       associate (phase => model%phase(trial%phase))
         if (.not. phase%mixed) then
-          call evaluate_layer(self, c, layer_at(model, phase, c), offset_at(trial, tool, c), hit, &
-              slip, model%tool(tool)%friction)
-        else
-          call evaluate_node(self, c, hit, slip, candidate_penalty(model, phase, c, hit%normal), &
+          call evaluate_layer(self, trial, c, layer_at(model, phase, c), hit, slip, &
               model%tool(tool)%friction)
+        else
+          penalty = candidate_penalty(model, phase, c, hit%normal)
+          self%onset(c) = 0.0_wp
+          self%distance(c) = hit%distance
+          self%status(c) = contact_status(hit%normal, self%distance(c), trial%lambda(:, c), slip, &
+              penalty, model%tool(tool)%friction)
+          call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), &
+              hit%dnormal, trial%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
+              self%force(:, c), self%d(:, :, c), self%e(:, :, c))
         end if
       end associate
     end if
@@ -114,54 +118,27 @@ contains
 
   !> Evaluate status, force and linearisation of a candidate near the layer of a tool. One that
   !> changes its tool has no tangential force of its history.
-  subroutine evaluate_layer(self, c, layer, offset, hit, slip, friction)
+  subroutine evaluate_layer(self, trial, c, layer, hit, slip, friction)
     type(contact_work_t), intent(inout) :: self
+    type(state_t), intent(in) :: trial
     integer, intent(in) :: c
     type(layer_t), intent(in) :: layer
-    !> Distance by which the layer lies behind its place, mm.
-    real(wp), intent(in) :: offset
     type(hit_t), intent(in) :: hit
     !> Slip, mm, and coefficient of friction.
     real(wp), intent(in) :: slip(3), friction
 
-    real(wp) :: committed(3)
+    real(wp) :: gap, committed(3)
 
+    gap = hit%distance + offset_at(trial, self%tool(c), c)
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
-    call place(self, c, hit%distance + offset, layer%height)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
     self%status(c) = status_gap
-    call compliant_operator(layer, hit%normal, hit%distance + offset, hit%dnormal, &
-        self%lambda(:, c), committed, slip, friction, self%status(c), self%force(:, c), &
-        self%d(:, :, c), self%e(:, :, c))
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%lambda(:, c), committed, &
+        slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine evaluate_layer
-
-  !> Set the gap of a point and the one at the onset of contact.
-  pure subroutine place(self, c, gap, onset)
-    type(contact_work_t), intent(inout) :: self
-    integer, intent(in) :: c
-    !> mm.
-    real(wp), intent(in) :: gap, onset
-
-    self%onset(c) = onset
-    self%distance(c) = gap - onset
-  end subroutine place
-
-  !> Evaluate status, force and linearisation of a node near a tool by the mixed law.
-  subroutine evaluate_node(self, c, hit, slip, penalty, friction)
-    type(contact_work_t), intent(inout) :: self
-    integer, intent(in) :: c
-    type(hit_t), intent(in) :: hit
-    !> Slip, mm; penalty, N/mm; coefficient of friction.
-    real(wp), intent(in) :: slip(3), penalty, friction
-
-    call place(self, c, hit%distance, 0.0_wp)
-    self%status(c) = contact_status(hit%normal, self%distance(c), self%lambda(:, c), slip, &
-        penalty, friction)
-    call contact_operator_of_status(self%status(c), hit%normal, self%distance(c), hit%dnormal, &
-        self%lambda(:, c), slip, penalty, friction, self%force(:, c), self%d(:, :, c), &
-        self%e(:, :, c))
-  end subroutine evaluate_node
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
   !> node lies on the cone, where round-off would make it stick). If a tool has no contact, the
@@ -210,10 +187,9 @@ contains
     logical :: leaving
 
     hint = committed%hint(:, c)
-    self%committed_x(:, c) = model%point_position(c, committed%x)
+    self%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     call find_nearest_tool(self, model, committed, committed, c, self%committed_x(:, c), hint, hit)
     tool = self%tool(c)
-    self%lambda(:, c) = committed%lambda(:, c)
     self%status(c) = committed%status(c)
     self%committed_tool(c) = 0
     if (tool == 0) then
@@ -221,23 +197,29 @@ contains
       return
     end if
     self%normal(:, c) = hit%normal
-    friction = model%tool(tool)%friction
     self%committed_tool(c) = committed%contact_tool(c)
     self%committed_normal(:, c) = hit%normal
     self%committed_force(:, c) = committed%lambda(:, c)
     associate (phase => model%phase(committed%phase))
       if (.not. phase%mixed) then
-        call predict_layer(self, c, layer_at(model, phase, c), offset_at(committed, tool, c), hit, &
-            touching(tool), model)
+        call predict_layer(self, model, committed, c, layer_at(model, phase, c), hit, &
+            touching(tool))
         return
       end if
-      call place(self, c, hit%distance, 0.0_wp)
+      self%onset(c) = 0.0_wp
+      self%distance(c) = hit%distance
+      friction = model%tool(tool)%friction
       leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
           hit%normal) < 0.0_wp
-      call set_predictor_status(self%status(c), friction, leaving, touching(tool), hit, &
-          model%tolerance%touch)
+      if (.not. touching(tool)) then
+        self%status(c) = status_gap
+        if (hit%distance <= model%tolerance%touch .and. .not. leaving) self%status(c) = status_stick
+      else if (self%status(c) == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
+        self%status(c) = status_slip
+        friction = 0.0_wp
+      end if
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          self%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal), &
+          committed%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal), &
           friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
@@ -245,53 +227,31 @@ contains
   !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
   !> the tool has no contact, those within `touch` of the layer resist as inside it: at the onset
   !> its slope is zero.
-  subroutine predict_layer(self, c, layer, offset, hit, touching, model)
+  subroutine predict_layer(self, model, state, c, layer, hit, touching)
     type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The committed state.
+    type(state_t), intent(in) :: state
     integer, intent(in) :: c
     type(layer_t), intent(in) :: layer
-    !> Distance by which the layer lies behind its place, mm.
-    real(wp), intent(in) :: offset
     type(hit_t), intent(in) :: hit
     !> Whether any candidate is in contact with the tool.
     logical, intent(in) :: touching
-    type(model_t), intent(in) :: model
 
     real(wp), parameter :: no_slip(3) = 0.0_wp
     real(wp) :: gap, committed(3)
 
-    gap = hit%distance + offset
-    call place(self, c, gap, layer%height)
+    gap = hit%distance + offset_at(state, self%tool(c), c)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
     if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
         min(gap, at_onset*layer%height)
     committed = 0.0_wp
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
-    call compliant_operator(layer, hit%normal, gap, hit%dnormal, self%lambda(:, c), &
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%lambda(:, c), &
         committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c))
   end subroutine predict_layer
-
-  !> Set the status of a candidate in the predictor.
-  pure subroutine set_predictor_status(status, friction, leaving, touching, hit, touch)
-    !> Committed on entry.
-    integer, intent(inout) :: status
-    !> Gets the coefficient of friction: 0 if the committed state has no contact force.
-    real(wp), intent(inout) :: friction
-    !> Whether the tool moves away from the candidate.
-    logical, intent(in) :: leaving
-    !> Whether any candidate is in contact with the tool.
-    logical, intent(in) :: touching
-    type(hit_t), intent(in) :: hit
-    !> Distance within which a tool without contact is touched, mm.
-    real(wp), intent(in) :: touch
-
-    if (.not. touching) then
-      status = status_gap
-      if (hit%distance <= touch .and. .not. leaving) status = status_stick
-    else if (status == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
-      status = status_slip
-      friction = 0.0_wp
-    end if
-  end subroutine set_predictor_status
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools, or no deeper inside than their layers lie

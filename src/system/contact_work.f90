@@ -19,8 +19,6 @@ module dd3_system_contact_work
     real(wp), allocatable :: onset(:)
     !> Outward normal of the tool, `(3, n_contact)`.
     real(wp), allocatable :: normal(:, :)
-    !> Contact force lambda, N, `(3, n_contact)`.
-    real(wp), allocatable :: lambda(:, :)
     !> Contact force F_equ by the contact law, N, `(3, n_contact)`.
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
@@ -49,8 +47,7 @@ contains
     allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
     allocate (self%distance(n_contact), self%onset(n_contact), source=0.0_wp)
-    allocate (self%normal(3, n_contact), self%lambda(3, n_contact), self%force(3, n_contact), &
-        source=0.0_wp)
+    allocate (self%normal(3, n_contact), self%force(3, n_contact), source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
     allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work

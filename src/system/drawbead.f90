@@ -61,8 +61,7 @@ contains
       associate (i => point(p)%interval, bead => model%drawbead(point(p)%bead))
         call bead%restrain(committed%bead_force(i), committed%bead_path(i), &
             slip(point(p), bead%tool, committed, trial), force, path, point(p)%stiffness)
-        call add_load(point(p), bead_force(point(p), force, &
-            fraction(point(p)%bead)*bead%normal), trial)
+        call add_load(point(p), force, fraction(point(p)%bead)*bead%normal, trial)
         weight(i) = weight(i) + point(p)%weight
         trial%bead_force(i) = trial%bead_force(i) + point(p)%weight*force
         trial%bead_path(i) = trial%bead_path(i) + point(p)%weight*path
@@ -109,26 +108,18 @@ contains
     fraction = state%bead_normal + (1.0_wp - state%bead_normal)*state%progress
   end function normal_fraction
 
-  !> Return the force per length of a bead on the sheet at a point, N/mm.
-  pure function bead_force(point, restraint, normal) result(force)
+  !> Add the force of a bead on the sheet at a point to those of the nodes and of the bead.
+  pure subroutine add_load(point, restraint, normal, state)
     type(bead_point_t), intent(in) :: point
     !> Restraining and normal force, N/mm.
     real(wp), intent(in) :: restraint, normal
+    type(state_t), intent(inout) :: state
+
     real(wp) :: force(3)
+    integer :: a
 
     force = -restraint*point%direction
     force(3) = force(3) + normal
-  end function bead_force
-
-  !> Add the force at a point to those of the nodes and of its bead.
-  pure subroutine add_load(point, force, state)
-    type(bead_point_t), intent(in) :: point
-    !> N/mm.
-    real(wp), intent(in) :: force(3)
-    type(state_t), intent(inout) :: state
-
-    integer :: a
-
     do a = 1, size(point%node)
       state%bead_load(:, point%node(a)) = state%bead_load(:, point%node(a)) &
           + point%weight*point%shape(a)*force

@@ -1,10 +1,24 @@
-!> Right-hand sides and prescribed values of the linear problem of an iteration or a prediction.
+!> Linear problem of an iteration or a prediction, and the step of the unknowns that solves it.
 module dd3_system_linear_problem
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: linear_problem_t, new_linear_problem
+  public :: linear_problem_t, new_linear_problem, unknowns_t
+
+  !> Unknowns of the increment, or a step of them.
+  type :: unknowns_t
+    !> Positions of the nodes, `(3, n_node)`, or displacements, mm.
+    real(wp), allocatable :: x(:, :)
+    !> Parameters of the enhanced strains, `(n_enhanced, n_element)`.
+    real(wp), allocatable :: enhanced(:, :)
+    !> Contact forces, `(3, n_contact)`, N.
+    real(wp), allocatable :: lambda(:, :)
+    !> Displacements of the tools, `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool(:, :)
+  contains
+    procedure :: scaled
+  end type unknowns_t
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
@@ -30,6 +44,15 @@ module dd3_system_linear_problem
   end type linear_problem_t
 
 contains
+
+  !> Return a fraction of a step.
+  pure type(unknowns_t) function scaled(self, fraction)
+    class(unknowns_t), intent(in) :: self
+    real(wp), intent(in) :: fraction
+
+    scaled = unknowns_t(fraction*self%x, fraction*self%enhanced, fraction*self%lambda, &
+        fraction*self%tool)
+  end function scaled
 
   !> Allocate a linear problem and set it to zero.
   subroutine new_linear_problem(self, model, n_row)

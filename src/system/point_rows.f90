@@ -9,86 +9,58 @@
 module dd3_system_point_rows
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_matrix, only : position_of
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity, inverse
   use dd3_model_contact_point, only : contact_point_t, most_point_nodes
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
-  use dd3_system_linear_problem, only : linear_problem_t
+  use dd3_system_linear_problem, only : unknowns_t
+  use dd3_system_system, only : system_t
   use dd3_system_tool_rows, only : add_to_tool_row, force_row
   implicit none
   private
-  public :: add_points, point_force_increment
+  public :: add_points, set_point_forces
 
 contains
 
   !> Add the contributions of all points.
-  subroutine add_points(model, phase, contact, x, position, problem, reduced)
+  subroutine add_points(system, model, phase, x)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    !> Evaluated at the positions.
-    type(contact_work_t), intent(in) :: contact
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Positions of the blocks of each element in the matrix, see `find_positions`.
-    integer, intent(in) :: position(:, :, :)
-    !> Residuals; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3), force(3)
-    !> Coupling of the nodes with a pressed tool: its displacement in their rows, theirs in its row.
-    real(wp) :: column(3, 3, model%n_node), row(3, model%n_node), own(3)
-    integer :: c, i, tool
+    integer :: c, tool
 
-    do c = 1, model%n_contact
-      if (contact%status(c) == status_gap) then
-        if (all(abs(problem%contact_residual(:, c)) <= 0.0_wp)) cycle
-        call model%contact_point(c)%gradient(x, b)
-        call add_force(model%contact_point(c), b, -problem%contact_residual(:, c), problem%rhs)
-        cycle
-      end if
-      tool = contact%tool(c)
-      call eliminate(contact, c, weight, stiffness)
-      force = matmul(weight, problem%contact_residual(:, c))
-      if (.not. phase%pressed(tool)) &
-          force = force - matmul(stiffness, problem%tool_prescribed(:, tool))
-      call model%contact_point(c)%gradient(x, b)
-      call add_force(model%contact_point(c), b, -force, problem%rhs)
-      call add_point_stiffness(model%contact_point(c), x, b, stiffness, contact%force(:, c), &
-          position, reduced)
-    end do
-    do tool = 1, model%n_tool
-      if (.not. phase%pressed(tool)) cycle
-      column = 0.0_wp
-      row = 0.0_wp
-      own = 0.0_wp
-      associate (line => phase%direction(:, tool), block => model%tool_row(tool))
-        associate (balance => problem%rhs(3*(block - 1) + force_row(line)))
-          do c = 1, model%n_contact
-            if (contact%tool(c) /= tool .or. contact%status(c) == status_gap) cycle
-            call eliminate(contact, c, weight, stiffness)
-            balance = balance - dot_product(line, &
-                matmul(weight - identity, problem%contact_residual(:, c)))
-            call model%contact_point(c)%gradient(x, b)
-            own = own + matmul(line, stiffness)
-            do i = 1, model%contact_point(c)%n_node
-              associate (node => model%contact_point(c)%node(i))
-                column(:, :, node) = column(:, :, node) &
-                    + matmul(transpose(b(:, :, i)), stiffness)
-                row(:, node) = row(:, node) + matmul(matmul(line, stiffness), b(:, :, i))
-              end associate
-            end do
-          end do
-        end associate
-        call couple_tool(block, force_row(line), column, row, own, reduced)
-      end associate
-    end do
+    associate (contact => system%contact, problem => system%problem, point => model%contact_point)
+      do c = 1, model%n_contact
+        if (contact%status(c) == status_gap) then
+          if (all(abs(problem%contact_residual(:, c)) <= 0.0_wp)) cycle
+          call point(c)%gradient(x, b)
+          call add_force(point(c), b, -problem%contact_residual(:, c), problem%rhs)
+          cycle
+        end if
+        tool = contact%tool(c)
+        call eliminate(contact, c, weight, stiffness)
+        force = matmul(weight, problem%contact_residual(:, c))
+        if (.not. phase%pressed(tool)) &
+            force = force - matmul(stiffness, problem%tool_prescribed(:, tool))
+        call point(c)%gradient(x, b)
+        call add_force(point(c), b, -force, problem%rhs)
+        call add_stiffness(system, point(c), x, b, stiffness, contact%force(:, c))
+        if (phase%pressed(tool)) call couple_tool(system, point(c), model%tool_row(tool), &
+            phase%direction(:, tool), b, stiffness, &
+            matmul(weight - identity, problem%contact_residual(:, c)))
+      end do
+    end associate
   end subroutine add_points
 
-  !> Add a multiple of nodal forces B^T f to a right-hand side.
+  !> Add nodal forces B^T f to a right-hand side.
   pure subroutine add_force(point, b, force, rhs)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: b(:, :, :)
@@ -106,55 +78,65 @@ contains
   end subroutine add_force
 
   !> Add B^T C B + G of a point to the matrix.
-  pure subroutine add_point_stiffness(point, x, b, stiffness, force, position, reduced)
+  pure subroutine add_stiffness(system, point, x, b, stiffness, force)
+    type(system_t), intent(inout) :: system
     type(contact_point_t), intent(in) :: point
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     real(wp), intent(in) :: b(3, 3, most_point_nodes)
     !> C, N/mm, and the force of the point, N.
     real(wp), intent(in) :: stiffness(3, 3), force(3)
-    integer, intent(in) :: position(:, :, :)
-    type(block_matrix_t), intent(inout) :: reduced
 
     real(wp) :: block(3, 3, most_point_nodes, most_point_nodes), right(3, 3)
     integer :: i, j, k
 
-    associate (e => point%element, local => point%local)
+    associate (position => system%position(:, :, point%element), local => point%local, &
+        value => system%reduced%value)
       if (point%n_node == 1) then
-        k = position(local(1), local(1), e)
-        reduced%value(:, :, k) = reduced%value(:, :, k) + stiffness
+        k = position(local(1), local(1))
+        value(:, :, k) = value(:, :, k) + stiffness
         return
       end if
       call point%bending_stiffness(x, force, block)
       do j = 1, point%n_node
         right = matmul(stiffness, b(:, :, j))
         do i = 1, point%n_node
-          k = position(local(i), local(j), e)
-          reduced%value(:, :, k) = reduced%value(:, :, k) &
+          k = position(local(i), local(j))
+          value(:, :, k) = value(:, :, k) &
               + (block(:, :, i, j) + matmul(transpose(b(:, :, i)), right))
         end do
       end do
     end associate
-  end subroutine add_point_stiffness
+  end subroutine add_stiffness
 
-  !> Add the coupling of nodes and a pressed tool.
-  subroutine couple_tool(block, force_row, column, row, own, reduced)
-    !> Block row of the tool, and the row in it of the force balance.
-    integer, intent(in) :: block, force_row
-    !> Coupling, `(3, 3, n_node)` and `(3, n_node)`, and that of the tool with itself, N/mm.
-    real(wp), intent(in) :: column(:, :, :), row(:, :), own(3)
-    type(block_matrix_t), intent(inout) :: reduced
+  !> Couple a point with its pressed tool: the tool's displacement in the rows of the nodes; theirs,
+  !> its own and the force of the point in its force balance.
+  subroutine couple_tool(system, point, block, line, b, stiffness, force)
+    type(system_t), intent(inout) :: system
+    type(contact_point_t), intent(in) :: point
+    !> Block row of the tool.
+    integer, intent(in) :: block
+    !> Unit vector along the line of its motion.
+    real(wp), intent(in) :: line(3)
+    real(wp), intent(in) :: b(3, 3, most_point_nodes)
+    !> C, N/mm, and the force of the point, N.
+    real(wp), intent(in) :: stiffness(3, 3), force(3)
 
-    integer :: node, k
+    integer :: i, k, row
 
-    do node = 1, size(row, 2)
-      if (all(abs(column(:, :, node)) <= 0.0_wp)) cycle
-      if (.not. holds_row(reduced, node)) cycle
-      k = position_of(reduced, node, block)
-      reduced%value(:, :, k) = reduced%value(:, :, k) - column(:, :, node)
-      call add_to_tool_row(reduced, block, force_row, node, row(:, node))
-    end do
-    if (holds_row(reduced, block)) call add_to_tool_row(reduced, block, force_row, block, -own)
+    row = force_row(line)
+    associate (reduced => system%reduced, balance => system%problem%rhs(3*(block - 1) + row))
+      balance = balance - dot_product(line, force)
+      do i = 1, point%n_node
+        if (.not. holds_row(reduced, point%node(i))) cycle
+        k = position_of(reduced, point%node(i), block)
+        reduced%value(:, :, k) = reduced%value(:, :, k) - matmul(transpose(b(:, :, i)), stiffness)
+        call add_to_tool_row(reduced, block, row, point%node(i), &
+            matmul(matmul(line, stiffness), b(:, :, i)))
+      end do
+      if (holds_row(reduced, block)) &
+          call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
+    end associate
   end subroutine couple_tool
 
   !> Evaluate (I - E)^-1 and (I - E)^-1 D of a point in contact.
@@ -169,35 +151,25 @@ contains
     stiffness = matmul(weight, contact%d(:, :, c))
   end subroutine eliminate
 
-  !> Return the increments of the forces of the points from the solution.
-  pure subroutine point_force_increment(model, phase, contact, x, problem, increment)
+  !> Set the increments of the forces of the points.
+  pure subroutine set_point_forces(system, model, state, step)
+    type(system_t), intent(in) :: system
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    type(linear_problem_t), intent(in) :: problem
-    !> `(3, n_contact)`, N.
-    real(wp), intent(out) :: increment(:, :)
+    type(state_t), intent(in) :: state
+    !> Has the displacements.
+    type(unknowns_t), intent(inout) :: step
 
-    real(wp) :: displacement(3, model%n_node), weight(3, 3), stiffness(3, 3), moved(3)
-    integer :: c, row
+    real(wp) :: weight(3, 3), stiffness(3, 3)
+    integer :: c
 
-    displacement = reshape(problem%solution(:3*model%n_node), [3, model%n_node])
+    step%lambda = -state%lambda
     do c = 1, model%n_contact
-      if (contact%status(c) == status_gap) then
-        increment(:, c) = -contact%lambda(:, c)
-        cycle
-      end if
-      call eliminate(contact, c, weight, stiffness)
-      moved = problem%tool_prescribed(:, contact%tool(c))
-      if (phase%pressed(contact%tool(c))) then
-        row = model%tool_row(contact%tool(c))
-        moved = problem%solution(3*row - 2:3*row)
-      end if
-      increment(:, c) = matmul(weight, problem%contact_residual(:, c)) &
-          + matmul(stiffness, model%contact_point(c)%change(x, displacement) - moved)
+      if (system%contact%status(c) == status_gap) cycle
+      call eliminate(system%contact, c, weight, stiffness)
+      step%lambda(:, c) = matmul(weight, system%problem%contact_residual(:, c)) &
+          + matmul(stiffness, model%contact_point(c)%change(state%x, step%x) &
+          - step%tool(:, system%contact%tool(c)))
     end do
-  end subroutine point_force_increment
+  end subroutine set_point_forces
 
 end module dd3_system_point_rows

@@ -10,138 +10,126 @@
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
-  use dd3_linalg_tensor, only : identity
-  use dd3_linalg_matrix, only : block_matrix_t, copy_blocks, position_of
+  use dd3_contact_operator, only : status_gap
+  use dd3_linalg_matrix, only : copy_blocks, position_of
   use dd3_linalg_partition, only : holds_row
+  use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
-  use dd3_contact_operator, only : status_gap
-  use dd3_system_contact_work, only : contact_work_t
-  use dd3_system_linear_problem, only : linear_problem_t
-  use dd3_system_point_rows, only : add_points, point_force_increment
+  use dd3_model_state, only : state_t
+  use dd3_system_enhanced, only : enhanced_response
+  use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
+  use dd3_system_point_rows, only : add_points, set_point_forces
+  use dd3_system_system, only : system_t
   use dd3_system_tool_rows, only : add_to_tool_row, finish_tool_rows, force_row, share_tool_rows, &
       start_tool_rows
   implicit none
   private
-  public :: reduce, contact_force_increment
+  public :: reduce, read_step
 
 contains
 
   !> Build the reduced matrix, of several ranks each its rows, and the right-hand side.
-  subroutine reduce(model, phase, contact, x, position, stiffness, problem, reduced)
+  subroutine reduce(system, model, state)
+    !> With stiffness, contact, residuals and prescribed values at the state.
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    !> Positions of the blocks of each element in the matrix, see `find_positions`.
-    integer, intent(in) :: position(:, :, :)
-    !> Stiffness of the sheet, zero in the rows and columns of the tools.
-    type(block_matrix_t), intent(in) :: stiffness
-    !> Residuals and prescribed values; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    !> Has the pattern of the stiffness.
-    type(block_matrix_t), intent(inout) :: reduced
+    type(state_t), intent(in) :: state
 
-    integer :: node
-
-    call copy_blocks(stiffness, reduced)
-    do node = 1, model%n_node
-      problem%rhs(3*node - 2:3*node) = -problem%residual(:, node)
-    end do
-    call start_tool_rows(model, phase, problem, reduced)
-    if (phase%mixed) then
-      call reduce_nodes(model, phase, contact, problem, reduced)
-    else
-      call add_points(model, phase, contact, x, position, problem, reduced)
-    end if
-    if (allocated(reduced%owner)) call share_tool_rows(model, phase, reduced)
-    call finish_tool_rows(model, phase, contact, problem, reduced)
-    call prescribe(phase, problem, reduced)
+    associate (phase => model%phase(state%phase), problem => system%problem)
+      call copy_blocks(system%stiffness, system%reduced)
+      problem%rhs(:3*model%n_node) = -reshape(problem%residual, [3*model%n_node])
+      call start_tool_rows(system, model, phase)
+      if (phase%mixed) then
+        call reduce_nodes(system, model, phase)
+      else
+        call add_points(system, model, phase, state%x)
+      end if
+      if (system%partition%divided) call share_tool_rows(system, model, phase)
+      call finish_tool_rows(system, model, phase)
+      call prescribe(system, phase)
+    end associate
   end subroutine reduce
 
   !> Reduce the rows of all candidates in the mixed formulation.
-  subroutine reduce_nodes(model, phase, contact, problem, reduced)
+  subroutine reduce_nodes(system, model, phase)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Residuals; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
     integer :: c, node
 
-    do c = 1, model%n_contact
-      node = model%contact_node(c)
-      if (contact%status(c) == status_gap) then
-        problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - &
-            problem%contact_residual(:, c)
-        cycle
-      end if
-      call reduce_node(model, phase, contact, c, problem, reduced)
-    end do
+    associate (problem => system%problem, contact => system%contact)
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        if (contact%status(c) == status_gap) then
+          problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) - &
+              problem%contact_residual(:, c)
+          cycle
+        end if
+        call reduce_node(system, model, phase, c)
+      end do
+    end associate
   end subroutine reduce_nodes
 
   !> Replace the row of a candidate in contact by its reduced row, and add its contribution to the
   !> row of a pressed tool.
-  subroutine reduce_node(model, phase, contact, c, problem, reduced)
+  subroutine reduce_node(system, model, phase, c)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
     integer, intent(in) :: c
-    !> Residuals; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
-    real(wp) :: remaining(3, 3), d(3, 3), residual(3), weight(3)
+    real(wp) :: remaining(3, 3), residual(3), weight(3)
     integer :: node, tool, block, k, at, row
     logical :: pressed
 
     node = model%contact_node(c)
-    tool = contact%tool(c)
+    tool = system%contact%tool(c)
     block = model%tool_row(tool)
     pressed = phase%pressed(tool)
-    d = contact%d(:, :, c)
-    remaining = identity - contact%e(:, :, c)
-    residual = node_residual(phase, problem, node, c)
-    problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
-    if (.not. pressed) then
-      problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
-          + matmul(d, problem%tool_prescribed(:, tool))
-    else
-      row = force_row(phase%direction(:, tool))
-      problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
-          + dot_product(phase%direction(:, tool), matmul(contact%e(:, :, c), residual))
-    end if
-    weight = -matmul(phase%direction(:, tool), contact%e(:, :, c))
-    do k = 1, 3
-      if (.not. phase%prescribed(k, node)) cycle
-      remaining(:, k) = 0.0_wp
-      weight(k) = 0.0_wp
-    end do
-    if (.not. holds_row(reduced, node)) return
-    ! The columns of both rows ascend, and all of the node's are among the tool's.
-    if (pressed) at = reduced%row_start(block)
-    do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
-      if (reduced%column(k) > model%n_node) exit
-      if (pressed) then
-        do while (reduced%column(at) < reduced%column(k))
-          at = at + 1
-        end do
-        reduced%value(row, :, at) = reduced%value(row, :, at) &
-            + matmul(weight, reduced%value(:, :, k))
+    associate (problem => system%problem, reduced => system%reduced, &
+        line => phase%direction(:, tool), d => system%contact%d(:, :, c), &
+        e => system%contact%e(:, :, c))
+      remaining = identity - e
+      residual = node_residual(phase, problem, node, c)
+      problem%rhs(3*node - 2:3*node) = -matmul(remaining, residual) - problem%contact_residual(:, c)
+      if (.not. pressed) then
+        problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
+            + matmul(d, problem%tool_prescribed(:, tool))
+      else
+        row = force_row(line)
+        problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
+            + dot_product(line, matmul(e, residual))
       end if
-      reduced%value(:, :, k) = matmul(remaining, reduced%value(:, :, k))
-    end do
-    k = reduced%diagonal(node)
-    reduced%value(:, :, k) = reduced%value(:, :, k) + d
-    if (pressed) then
-      k = position_of(reduced, node, block)
-      reduced%value(:, :, k) = -d
-      weight = matmul(phase%direction(:, tool), d)
+      weight = -matmul(line, e)
+      do k = 1, 3
+        if (.not. phase%prescribed(k, node)) cycle
+        remaining(:, k) = 0.0_wp
+        weight(k) = 0.0_wp
+      end do
+      if (.not. holds_row(reduced, node)) return
+      ! The columns of both rows ascend, and all of the node's are among the tool's.
+      if (pressed) at = reduced%row_start(block)
+      do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
+        if (reduced%column(k) > model%n_node) exit
+        if (pressed) then
+          do while (reduced%column(at) < reduced%column(k))
+            at = at + 1
+          end do
+          reduced%value(row, :, at) = reduced%value(row, :, at) &
+              + matmul(weight, reduced%value(:, :, k))
+        end if
+        reduced%value(:, :, k) = matmul(remaining, reduced%value(:, :, k))
+      end do
+      k = reduced%diagonal(node)
+      reduced%value(:, :, k) = reduced%value(:, :, k) + d
+      if (.not. pressed) return
+      reduced%value(:, :, position_of(reduced, node, block)) = -d
+      weight = matmul(line, d)
       call add_to_tool_row(reduced, block, row, node, weight)
       call add_to_tool_row(reduced, block, row, block, -weight)
-    end if
+    end associate
   end subroutine reduce_node
 
   !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
@@ -158,64 +146,79 @@ contains
   end function node_residual
 
   !> Make the rows of prescribed displacements unit rows.
-  subroutine prescribe(phase, problem, reduced)
+  subroutine prescribe(system, phase)
+    type(system_t), intent(inout) :: system
     type(phase_t), intent(in) :: phase
-    !> Prescribed increments; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: node, i, k
+    integer :: node, i
 
-    do node = 1, size(phase%prescribed, 2)
-      do i = 1, 3
-        if (.not. phase%prescribed(i, node)) cycle
-        do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
-          reduced%value(i, :, k) = 0.0_wp
+    associate (reduced => system%reduced)
+      do node = 1, size(phase%prescribed, 2)
+        do i = 1, 3
+          if (.not. phase%prescribed(i, node)) cycle
+          reduced%value(i, :, reduced%row_start(node):reduced%row_start(node + 1) - 1) = 0.0_wp
+          reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
+          system%problem%rhs(3*(node - 1) + i) = system%problem%prescribed(i, node)
         end do
-        reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
-        problem%rhs(3*(node - 1) + i) = problem%prescribed(i, node)
       end do
-    end do
+    end associate
   end subroutine prescribe
 
-  !> Return the increments of the contact forces from the solution: dlambda_A = -r_A - K_A du.
-  subroutine contact_force_increment(model, phase, contact, x, stiffness, problem, increment)
+  !> Set a step of the unknowns from the solution, but for the offset of the enhanced strains. A
+  !> candidate in gap status loses its force.
+  subroutine read_step(system, model, state, step)
+    !> Solved.
+    type(system_t), intent(in) :: system
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    type(block_matrix_t), intent(in) :: stiffness
-    !> Residuals and solution.
-    type(linear_problem_t), intent(in) :: problem
-    !> Increments, `(3, n_contact)`, N; a candidate in gap status loses its force.
-    real(wp), intent(out) :: increment(:, :)
+    !> State of the linearisation.
+    type(state_t), intent(in) :: state
+    type(unknowns_t), intent(inout) :: step
+
+    integer :: tool, row
+
+    associate (phase => model%phase(state%phase), solution => system%problem%solution)
+      step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
+      step%enhanced = enhanced_response(system%enhanced, model, solution)
+      step%tool = system%problem%tool_prescribed
+      do tool = 1, model%n_tool
+        row = 3*model%tool_row(tool)
+        if (phase%pressed(tool)) step%tool(:, tool) = solution(row - 2:row)
+      end do
+      if (phase%mixed) then
+        call set_node_forces(system, model, state, step)
+      else
+        call set_point_forces(system, model, state, step)
+      end if
+    end associate
+  end subroutine read_step
+
+  !> Set the increments of the contact forces of the nodes: dlambda_A = -r_A - K_A du.
+  subroutine set_node_forces(system, model, state, step)
+    type(system_t), intent(in) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Has the displacements.
+    type(unknowns_t), intent(inout) :: step
 
     real(wp) :: change(3)
-    integer :: c, node, k, first
+    integer :: c, node, k
 
-    if (.not. phase%mixed) then
-      call point_force_increment(model, phase, contact, x, problem, increment)
-      return
-    end if
-    increment = 0.0_wp
-    do c = 1, model%n_contact
-      node = model%contact_node(c)
-      if (.not. holds_row(stiffness, node)) cycle
-      if (contact%status(c) == status_gap) then
-        increment(:, c) = -contact%lambda(:, c)
-        cycle
-      end if
-      change = 0.0_wp
-      do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
-        if (stiffness%column(k) > model%n_node) exit
-        first = 3*stiffness%column(k) - 2
-        change = change + matmul(stiffness%value(:, :, k), problem%solution(first:first + 2))
+    step%lambda = -state%lambda
+    associate (stiffness => system%stiffness, phase => model%phase(state%phase))
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        if (.not. holds_row(stiffness, node)) step%lambda(:, c) = 0.0_wp
+        if (.not. holds_row(stiffness, node) .or. system%contact%status(c) == status_gap) cycle
+        change = 0.0_wp
+        do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
+          if (stiffness%column(k) > model%n_node) exit
+          change = change + matmul(stiffness%value(:, :, k), step%x(:, stiffness%column(k)))
+        end do
+        where (phase%prescribed(:, node)) change = 0.0_wp
+        step%lambda(:, c) = -node_residual(phase, system%problem, node, c) - change
       end do
-      where (phase%prescribed(:, node)) change = 0.0_wp
-      increment(:, c) = -node_residual(phase, problem, node, c) - change
-    end do
-    if (allocated(stiffness%owner)) call sum_over_ranks(size(increment), increment)
-  end subroutine contact_force_increment
+    end associate
+    if (system%partition%divided) call sum_over_ranks(size(step%lambda), step%lambda)
+  end subroutine set_node_forces
 
 end module dd3_system_reduced

@@ -5,7 +5,7 @@ module dd3_system_solve
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_lost_tool
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
   use dd3_system_reduced, only : reduce
   use dd3_system_system, only : system_t
   implicit none
@@ -25,13 +25,12 @@ module dd3_system_solve
 contains
 
   !> Build the reduced system from stiffness, contact and right-hand sides, and solve it.
-  subroutine solve_reduced(system, model, phase, x, info, verdict)
+  subroutine solve_reduced(system, model, state, info, verdict)
     !> Gets the solution.
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
+    !> State of the linearisation.
+    type(state_t), intent(in) :: state
     !> Summed over the attempt.
     type(solve_info_t), intent(inout) :: info
     !> Retry if there is no solution.
@@ -40,13 +39,16 @@ contains
     type(solver_report_t) :: report
 
     call system%profile%start()
-    call reduce(model, phase, system%contact, x, system%position, system%stiffness, &
-        system%problem, system%reduced)
+    call reduce(system, model, state)
     call system%profile%add(section_assembly)
     call system%solver%factor(system%reduced, verdict)
     call system%profile%add(section_factorisation)
     if (verdict%outcome /= verdict_converged) then
-      if (verdict%node > model%n_node) call name_tool(model, verdict)
+      if (verdict%node <= model%n_node) return
+      ! Nothing resists a tool whose block row is empty.
+      verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
+      verdict%node = 0
+      verdict%cause = cause_lost_tool
       return
     end if
     call solve_factorised(system, system%problem%solution, info, report)
@@ -74,15 +76,5 @@ contains
     if (len_trim(info%solver) == 0 .or. report%fallback) info%solver = report%method
     if (report%fallback) info%reason = report%reason
   end subroutine solve_factorised
-
-  !> Name the tool instead of its block row, which is empty if nothing resists the tool.
-  subroutine name_tool(model, verdict)
-    type(model_t), intent(in) :: model
-    type(verdict_t), intent(inout) :: verdict
-
-    verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
-    verdict%node = 0
-    verdict%cause = cause_lost_tool
-  end subroutine name_tool
 
 end module dd3_system_solve

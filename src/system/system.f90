@@ -132,28 +132,16 @@ contains
     end do
   end subroutine new_batches
 
-  !> Build the pattern of the stiffness, with the rows of the pressed tools.
+  !> Build the pattern of the stiffness, with the rows of the pressed tools: each couples with its
+  !> candidates and their neighbours.
   subroutine new_stiffness_pattern(stiffness, model)
     type(block_matrix_t), intent(out) :: stiffness
     type(model_t), intent(in) :: model
 
-    integer, allocatable :: first(:), coupled(:)
-
-    call coupled_nodes(model, first, coupled)
-    call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
-  end subroutine new_stiffness_pattern
-
-  !> List the nodes that the row of each pressed tool couples with: its candidates and their
-  !> neighbours.
-  subroutine coupled_nodes(model, first, coupled)
-    type(model_t), intent(in) :: model
-    !> Position of the first node of each tool in `coupled`, `(n_pressed + 1)`.
-    integer, allocatable, intent(out) :: first(:)
-    !> Nodes, ascending within a tool.
-    integer, allocatable, intent(out) :: coupled(:)
-
     logical, allocatable :: member(:), near(:)
-    integer :: tool, e, n, i
+    !> Coupled nodes, ascending within a tool, and the first of each tool among them.
+    integer, allocatable :: coupled(:), first(:)
+    integer :: tool, e, i
 
     allocate (member(model%n_node), near(model%n_node))
     first = [1]
@@ -166,10 +154,10 @@ contains
       do e = 1, model%n_element
         if (any(member(model%connectivity(:, e)))) near(model%connectivity(:, e)) = .true.
       end do
-      n = size(coupled)
       coupled = [coupled, pack([(i, i=1, model%n_node)], near)]
-      first = [first, first(size(first)) + size(coupled) - n]
+      first = [first, size(coupled) + 1]
     end do
-  end subroutine coupled_nodes
+    call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
+  end subroutine new_stiffness_pattern
 
 end module dd3_system_system

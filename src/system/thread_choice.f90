@@ -36,7 +36,6 @@ module dd3_system_thread_choice
   contains
     procedure :: begin_iteration
     procedure :: end_iteration
-    procedure, private :: decide
   end type thread_choice_t
 
 contains
@@ -69,38 +68,32 @@ contains
     self%began = wall_time()
   end subroutine begin_iteration
 
-  !> End that iteration: record its time in a trial and decide after the last one.
+  !> End that iteration: record its time in a trial. After the last one, choose the faster if the
+  !> difference exceeds the scatter, and set when to compare again.
   subroutine end_iteration(self)
     class(thread_choice_t), intent(inout) :: self
 
-    integer :: which
+    integer :: which, faster
 
     if (self%left == 0) return
     which = merge(1, 2, self%now == 1)
     self%seconds(which) = min(self%seconds(which), wall_time() - self%began)
     self%left = self%left - 1
-    if (self%left == 0) call self%decide()
+    if (self%left == 0) then
+      faster = self%chosen
+      if (self%seconds(1) < scatter*self%seconds(2)) faster = 1
+      if (self%seconds(2) < scatter*self%seconds(1)) faster = self%all
+      self%interval = min(2*self%interval, most_interval)
+      if (faster /= self%chosen) then
+        self%interval = first_interval
+        self%news = "threads: "//to_text(faster)//" from here on: an iteration took "// &
+            to_text(self%seconds(1), 3)//" s with one, "//to_text(self%seconds(2), 3)//" s with "// &
+            to_text(self%all)
+      end if
+      self%chosen = faster
+      self%wait = self%interval
+    end if
     call set_threads(self%chosen)
   end subroutine end_iteration
-
-  !> Choose the faster if the difference exceeds the scatter, and set when to compare again.
-  subroutine decide(self)
-    class(thread_choice_t), intent(inout) :: self
-
-    integer :: faster
-
-    faster = self%chosen
-    if (self%seconds(1) < scatter*self%seconds(2)) faster = 1
-    if (self%seconds(2) < scatter*self%seconds(1)) faster = self%all
-    self%interval = min(2*self%interval, most_interval)
-    if (faster /= self%chosen) then
-      self%interval = first_interval
-      self%news = "threads: "//to_text(faster)//" from here on: an iteration took "// &
-          to_text(self%seconds(1), 3)//" s with one, "//to_text(self%seconds(2), 3)//" s with "// &
-          to_text(self%all)
-    end if
-    self%chosen = faster
-    self%wait = self%interval
-  end subroutine decide
 
 end module dd3_system_thread_choice

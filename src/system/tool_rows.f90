@@ -8,8 +8,7 @@ module dd3_system_tool_rows
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
-  use dd3_system_contact_work, only : contact_work_t
-  use dd3_system_linear_problem, only : linear_problem_t
+  use dd3_system_system, only : system_t
   implicit none
   private
   public :: start_tool_rows, share_tool_rows, finish_tool_rows, add_to_tool_row, force_row
@@ -29,60 +28,52 @@ contains
     reduced%value(row, :, k) = reduced%value(row, :, k) + values
   end subroutine add_to_tool_row
 
-  !> Initialise the rows of the tools; those not pressed in this phase have a prescribed motion.
-  subroutine start_tool_rows(model, phase, problem, reduced)
+  !> Begin the force balance of the pressed tools, to which the candidates add.
+  subroutine start_tool_rows(system, model, phase)
+    !> Its reduced matrix is that of the sheet, zero in these rows.
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    !> Prescribed motion and residuals; gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: tool, block, row, k
+    integer :: tool
 
+    system%problem%rhs(3*model%n_node + 1:) = 0.0_wp
     do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
-      do k = reduced%row_start(block), reduced%row_start(block + 1) - 1
-        reduced%value(:, :, k) = 0.0_wp
-      end do
-      problem%rhs(3*block - 2:3*block) = 0.0_wp
-      if (phase%pressed(tool)) then
-        row = force_row(phase%direction(:, tool))
-        problem%rhs(3*(block - 1) + row) = -problem%tool_residual(tool)
-      else
-        reduced%value(:, :, reduced%diagonal(block)) = identity
-        problem%rhs(3*block - 2:3*block) = problem%tool_prescribed(:, tool)
-      end if
+      if (phase%pressed(tool)) system%problem%rhs(3*(model%tool_row(tool) - 1) &
+          + force_row(phase%direction(:, tool))) = -system%problem%tool_residual(tool)
     end do
   end subroutine start_tool_rows
 
-  !> Constrain the pressed tools to their lines of motion; one without contact has a prescribed
-  !> motion.
-  subroutine finish_tool_rows(model, phase, contact, problem, reduced)
+  !> Constrain the pressed tools to their lines of motion. One without contact has a prescribed
+  !> motion, as the tools that are not pressed in this phase.
+  subroutine finish_tool_rows(system, model, phase)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    type(contact_work_t), intent(in) :: contact
-    !> Gets the right-hand side.
-    type(linear_problem_t), intent(inout) :: problem
-    type(block_matrix_t), intent(inout) :: reduced
 
     integer :: tool, block, row, i, k
 
-    do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
-      if (.not. phase%pressed(tool)) cycle
-      row = force_row(phase%direction(:, tool))
-      k = reduced%diagonal(block)
-      do i = 1, 3
-        if (i == row) cycle
-        reduced%value(i, i, k) = 1.0_wp
-        reduced%value(i, row, k) = -phase%direction(i, tool)/phase%direction(row, tool)
+    associate (problem => system%problem, contact => system%contact, value => system%reduced%value)
+      do tool = 1, model%n_tool
+        block = model%tool_row(tool)
+        if (block == 0) cycle
+        k = system%reduced%diagonal(block)
+        if (.not. phase%pressed(tool)) then
+          value(:, :, k) = identity
+          problem%rhs(3*block - 2:3*block) = problem%tool_prescribed(:, tool)
+          cycle
+        end if
+        row = force_row(phase%direction(:, tool))
+        do i = 1, 3
+          if (i == row) cycle
+          value(i, i, k) = 1.0_wp
+          value(i, row, k) = -phase%direction(i, tool)/phase%direction(row, tool)
+        end do
+        if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
+        value(row, row, k) = 1.0_wp
+        problem%rhs(3*(block - 1) + row) = problem%tool_prescribed(row, tool)
       end do
-      if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
-      reduced%value(row, row, k) = 1.0_wp
-      problem%rhs(3*(block - 1) + row) = problem%tool_prescribed(row, tool)
-    end do
+    end associate
   end subroutine finish_tool_rows
 
   !> Return the row of a pressed tool's block that holds its force balance; the other two constrain
@@ -94,20 +85,18 @@ contains
   end function force_row
 
   !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
-  subroutine share_tool_rows(model, phase, reduced)
+  subroutine share_tool_rows(system, model, phase)
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    type(block_matrix_t), intent(inout) :: reduced
 
-    integer :: tool, block, first, last
+    integer :: tool, first, last
 
     do tool = 1, model%n_tool
-      block = model%tool_row(tool)
-      if (block == 0) cycle
       if (.not. phase%pressed(tool)) cycle
-      first = reduced%row_start(block)
-      last = reduced%row_start(block + 1) - 1
-      call sum_over_ranks(9*(last - first + 1), reduced%value(:, :, first:last))
+      first = system%reduced%row_start(model%tool_row(tool))
+      last = system%reduced%row_start(model%tool_row(tool) + 1) - 1
+      call sum_over_ranks(9*(last - first + 1), system%reduced%value(:, :, first:last))
     end do
   end subroutine share_tool_rows
 

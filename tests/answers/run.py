@@ -15,12 +15,13 @@ import re
 import shutil
 import sys
 
+from dd3.errors import Problem
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import read_table
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 REPORT = ROOT / "docs" / "reports" / "answers.md"
-sys.path.insert(0, str(ROOT / "utils"))
-from results import command, launch, parser_of_runs, read_table  # noqa: E402
-from scripts import Problem  # noqa: E402
 
 HEAD = ["deck", "earlier answer", "exit code", "answer"]
 LIMIT = 300.0

@@ -10,14 +10,14 @@ increment that fails.
 """
 import argparse
 import pathlib
-import sys
 
 import numpy as np
 from problems import BENDING, ROOT, with_paths, without
 
-sys.path.insert(0, str(ROOT / "utils"))
-from results import command, find_program, is_whole, launch, read_table  # noqa: E402
-from scripts import Problem, put_table, run  # noqa: E402
+from dd3.errors import Problem, run
+from dd3.pages import put_table
+from dd3.programs import command, find_program, launch
+from dd3.tables import is_whole, read_table
 
 REPORT = ROOT / "docs" / "reports" / "default_settings.md"
 MESHES = {"(a)": "0", "(b)": "1"}

@@ -15,6 +15,7 @@ to an eighth of the default size. Deviations beyond 2 % are bold. The problems a
 import argparse
 import concurrent.futures
 import functools
+import importlib
 import json
 import math
 import os
@@ -27,20 +28,20 @@ import sys
 import time
 from dataclasses import dataclass, field
 
+import numpy as np
+import peer
 import problems
 from problems import CASES, ROOT, merged, of_file, with_paths, without
 
-sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests" / "forming")]
-import studies  # noqa: E402  (first: it changes to the Python environment)
-import numpy as np  # noqa: E402
-import peer  # noqa: E402
-import round_cup  # noqa: E402
-import round_cup_aa6016  # noqa: E402
-import square_cup  # noqa: E402
-from fields import Fields  # noqa: E402
-from results import command, find_program, interpolate, is_whole, made_folder, number, read_table, tools_in, \
-    totals  # noqa: E402
-from scripts import Problem, put_table, run  # noqa: E402
+from dd3.errors import Problem, run
+from dd3.fields import Fields
+from dd3.pages import put_table
+from dd3.programs import command, find_program, made_folder
+from dd3.tables import interpolate, is_whole, number, read_table, tools_in, totals
+
+sys.path.append(str(ROOT / "tests" / "forming"))
+round_cup, round_cup_aa6016, square_cup, studies = map(
+    importlib.import_module, ("round_cup", "round_cup_aa6016", "square_cup", "studies"))
 
 REFERENCE = pathlib.Path(__file__).with_name("envelope_reference.json")
 REPORT = ROOT / "docs" / "reports" / "contact.md"

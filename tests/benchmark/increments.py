@@ -11,19 +11,20 @@ punch force is the root mean square of the difference over that of the reference
 deviation is given.
 """
 import argparse
-import pathlib
+import importlib
 import re
 from dataclasses import dataclass, field
 
+import numpy as np
 from envelope import DRAW_BENDING, ENVELOPE, Job, Results, deviation, draw_in, forces, make, mean_forces, measure, \
     shown, studies, thinnest
 from problems import BENDING, ROOT, of_file, without
 
-import draw_bending  # the paths are set by envelope
-import numpy as np
-from results import find_program, made_folder
-from scripts import put_table, run
+from dd3.errors import run
+from dd3.pages import put_table
+from dd3.programs import find_program, made_folder
 
+draw_bending = importlib.import_module("draw_bending")  # the path is set by envelope
 REPORT = ROOT / "docs" / "reports" / "increments.md"
 LEVELS = ("draft", "standard", "fine")
 BASE = "accuracy = standard"  # limits whose time is the unit

@@ -12,14 +12,15 @@ calculix-ccx of Debian. --write puts the tables between the marks in docs/report
 
 import argparse
 import math
-import sys
 from pathlib import Path
 
+from speed import write
+
+from dd3.errors import Problem, run
+from dd3.programs import command, find_program, launch, made_folder
+from dd3.tables import read_table, read_text
+
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-import results  # noqa: E402
-from scripts import Problem, run  # noqa: E402
-from speed import write  # noqa: E402
 
 BEGIN = "<!-- peer.py -->\n"
 LENGTH, THICKNESS, LAYERS, TRAVEL = 40.0, 1.0, 2, 9.0
@@ -150,11 +151,11 @@ def run_dd3imp(arguments):
     deck = write_deck(arguments)
     options = ["--quiet", "--reproducible", "--threads", 1]
     settings = dict(word.split("=") for word in arguments.set)
-    done = results.launch(results.command(arguments.program, deck, folder, options, settings))
+    done = launch(command(arguments.program, deck, folder, options, settings))
     if done.code:
         raise Problem(f"{deck}: {done.errors}")
-    rows = [row for row in results.read_table(folder / "status.csv") if row.get("outcome")]
-    curve = [(float(row["travel"]), float(row["punch_fz"])) for row in results.read_table(folder / "history.csv")]
+    rows = [row for row in read_table(folder / "status.csv") if row.get("outcome")]
+    curve = [(float(row["travel"]), float(row["punch_fz"])) for row in read_table(folder / "history.csv")]
     good = sum(row["outcome"] == "accepted" for row in rows)
     return good, len(rows), sum(int(row["iterations"]) for row in rows), done.cpu, curve
 
@@ -262,9 +263,9 @@ def read_forces(path):
 def run_calculix(arguments):
     """Return increments, attempts, iterations, processor time and (travel, force) of CalculiX."""
     path = write_input(arguments)
-    done = results.launch([arguments.ccx, "-i", path.name], arguments.timeout, folder=arguments.work)
+    done = launch([arguments.ccx, "-i", path.name], arguments.timeout, folder=arguments.work)
     path.with_suffix(".log").write_text(done.output + done.errors, encoding="utf-8")
-    rows = [line.split() for line in results.read_text(path.with_suffix(".sta")).splitlines()[2:]]
+    rows = [line.split() for line in read_text(path.with_suffix(".sta")).splitlines()[2:]]
     curve = read_forces(path.with_suffix(".dat"))
     if curve[-1][0] < TRAVEL * (1 - 1e-6):
         raise Problem(f"CalculiX ended at {curve[-1][0]:.4g} mm after {done.cpu:.1f} s of processor time; "
@@ -302,8 +303,8 @@ def tables(ours, theirs, version):
 def command_line():
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=results.find_program, help="the program dd3imp")
-    parser.add_argument("--work", required=True, type=results.made_folder, help="folder of the runs")
+    parser.add_argument("--program", required=True, type=find_program, help="the program dd3imp")
+    parser.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
     parser.add_argument("--ccx", default="ccx", help="the program CalculiX (ccx)")
     parser.add_argument("--columns", type=int, default=160, help="elements along the strip (160)")
     parser.add_argument("--friction", type=float, default=0.0, help="coefficient of friction (0)")
@@ -323,7 +324,7 @@ def command_line():
 def main():
     """Run both, print, and write if asked."""
     arguments = command_line().parse_args()
-    version = results.launch([arguments.ccx, "-v"]).output.split()[-1]
+    version = launch([arguments.ccx, "-v"]).output.split()[-1]
     text = tables(run_dd3imp(arguments), run_calculix(arguments), version)
     print(text)
     if arguments.write:

@@ -18,9 +18,9 @@ import tempfile
 from pathlib import Path
 
 import speed
-from scripts import Problem, run
 
-import results
+from dd3 import programs
+from dd3.errors import Problem, run
 
 PAGE = speed.ROOT / "docs" / "reports" / "solvers.md"
 SYSTEMS = ["800:0", "800:1", "800:20", "1800:1", "3200:1", "7200:1", "20000:0"]
@@ -39,7 +39,7 @@ def make_systems(build, deck, wanted, folder):
         travel = sorted((name[1] for name in missing if name[0] == elements), key=float)
         words = [str(build / "tests" / "benchmark" / "benchmark_write_matrices"), str(folder / f"cup{elements}"),
                  ",".join(travel), str(deck), f"divisions={n} {n} 2"]
-        done = results.launch(words)
+        done = programs.launch(words)
         if done.code != 0:
             raise Problem(f"{' '.join(words)}: {done.output}{done.errors}")
     return files
@@ -47,7 +47,7 @@ def make_systems(build, deck, wanted, folder):
 
 def methods(build, file):
     """Return the number of unknowns of a system and the rows of benchmark_solvers: name and columns."""
-    done = results.launch([str(build / "tests" / "benchmark" / "benchmark_solvers"), "--default", str(file)])
+    done = programs.launch([str(build / "tests" / "benchmark" / "benchmark_solvers"), "--default", str(file)])
     if done.code != 0:
         raise Problem(f"{file}: {done.output}{done.errors}")
     rows = []
@@ -87,7 +87,7 @@ def table(build, files):
 
 def table_of_job(build, job):
     """Return the table that benchmark_run_matrices prints of a job's solvers."""
-    done = results.launch([str(build / "tests" / "benchmark" / "benchmark_run_matrices"), str(job)])
+    done = programs.launch([str(build / "tests" / "benchmark" / "benchmark_run_matrices"), str(job)])
     if done.code != 0:
         raise Problem(f"{job}: {done.output}{done.errors}")
     return done.output[done.output.index("| solver |"):].strip() + "\n\n"

@@ -16,15 +16,14 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
+from dd3 import programs, tables
+from dd3.errors import Problem, run
+
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-import results  # noqa: E402
-from scripts import Problem, run  # noqa: E402
 
 CUP = ROOT / "input_files" / "square_cup" / "square_cup.dat"
 PAGE = ROOT / "docs" / "reports" / "speed.md"
@@ -50,13 +49,13 @@ def accepted(folder):
     """Return the number of accepted increments and of all iterations in status.csv; zeros before there is one."""
     if not (folder / "status.csv").exists():
         return 0, 0
-    rows = [row for row in results.read_table(folder / "status.csv") if row.get("outcome")]
+    rows = [row for row in tables.read_table(folder / "status.csv") if row.get("outcome")]
     return sum(row["outcome"] == "accepted" for row in rows), sum(int(row["iterations"]) for row in rows)
 
 
 def part_of_run(program, deck, folder, settings, arguments):
     """Make a number of increments and stop; return iterations, processor time (s) and peak memory (MB)."""
-    words = results.command(program, deck, folder, ["--quiet", "--reproducible", "--threads", arguments.now], settings)
+    words = programs.command(program, deck, folder, ["--quiet", "--reproducible", "--threads", arguments.now], settings)
     with subprocess.Popen(words, stderr=subprocess.DEVNULL) as child:
         while child.poll() is None and accepted(folder)[0] < arguments.increments:
             time.sleep(0.2)
@@ -72,7 +71,7 @@ def measure(program, deck, elements, arguments):
     """Return the row of a mesh: elements, unknowns, iterations, time of one (s), memory stated and used (MB)."""
     n = round(math.sqrt(elements / 2))
     settings = {"divisions": f"{n} {n} 2"}
-    checked = results.launch(results.command(program, deck, None, ["--check"], settings))
+    checked = programs.launch(programs.command(program, deck, None, ["--check"], settings))
     size = re.search(r"(\d+) unknowns.*\nmemory: about (\d+) MB", checked.output)
     if not size:
         raise Problem(f"--check of {2 * n * n} elements:\n{checked.errors}")
@@ -108,7 +107,7 @@ def write(text, page=PAGE, begin=BEGIN):
 def main():
     """Measure and print, and write if asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=results.find_program, help="the program dd3imp")
+    parser.add_argument("--program", required=True, type=programs.find_program, help="the program dd3imp")
     parser.add_argument("--elements", nargs="+", type=int, default=[800, 1800, 3200, 7200, 20000],
                         help="numbers of elements (800 1800 3200 7200 20000)")
     parser.add_argument("--threads", nargs="+", type=int, default=[1], help="numbers of threads (1)")

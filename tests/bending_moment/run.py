@@ -15,9 +15,11 @@ import pathlib
 import re
 import sys
 
+from dd3.programs import command, find_program, launch
+from dd3.tables import interpolate, number, read_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
-from results import command, find_program, interpolate, launch, number, read_table  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests"))
 from run_description import check_description  # noqa: E402
 
 THICKNESS, YOUNG, POISSON = 0.78, 2.1e5, 0.3

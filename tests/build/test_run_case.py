@@ -11,7 +11,7 @@ RUNNER = TESTS / "run_case.py"
 SCHEMA = json.loads((TESTS.parent / "docs" / "run.schema.json").read_text(encoding="utf-8"))
 sys.path.insert(0, str(TESTS))
 from run_description import check_description, jsonschema  # noqa: E402
-from scripts import Problem  # noqa: E402
+from dd3.errors import Problem  # noqa: E402
 
 PROGRAM = """#!{python}
 import pathlib, sys

@@ -14,11 +14,13 @@ import pathlib
 import re
 import sys
 
+from dd3.programs import command, find_program, launch
+from dd3.tables import number, read_table, totals
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
 REPORT = ROOT / "docs" / "reports" / "capstan.md"
-sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
-from results import command, find_program, launch, number, read_table, totals  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests"))
 from run_description import check_description  # noqa: E402
 
 EXACT = math.exp(0.144 * math.pi / 2)

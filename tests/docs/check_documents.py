@@ -5,7 +5,7 @@
 
 - docs/keywords.md is the output of `dd3imp --help markdown`; to update it: `dd3imp --help markdown >docs/keywords.md`.
 - Links and pictures lead to files and headings that exist.
-- Scripts, input files and presets named in the documents exist, and the program and the scripts have every `--option`
+- Scripts, input files and presets named in the documents exist, and the program, dd3 and the scripts have every `--option`
   that is used there.
 - Code blocks that are complete input files pass `dd3imp --check`; those of single points run to their end.
 - docs/status.md has the remedies that the program proposes when a run stops.
@@ -20,6 +20,10 @@ import re
 import subprocess
 import sys
 import tempfile
+from functools import cache
+from itertools import takewhile
+
+from dd3.command import COMMANDS
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -30,9 +34,11 @@ LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")
 REMEDY = re.compile(r"parameter :: \w+_remedy = (.*?)\n(?! {6})", re.DOTALL)
+GROUPS = [name for name, row in COMMANDS.items() if isinstance(row[-1], dict)]
 SCRIPT = re.compile(r"(?:utils|tests)/[\w/]+\.(?:py|sh)")
 
 
+@cache
 def run(*command):
     """Return output and exit code of a command."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -83,6 +89,11 @@ def broken_commands(program, text):
         words = line.split(" #")[0].split()
         if re.match(r"(build/\w+/)?dd3imp$", words[0]) if words else False:
             known = run(program, "--help")[0]
+        elif words and words[0] == "dd3":
+            known, code = run(sys.executable, "-m", "dd3", *takewhile(str.isalpha, words[1:2 + (words[1] in GROUPS)]),
+                              "--help")
+            if code:
+                yield f"there is no such command: {line}"
         else:
             found = SCRIPT.search(line)
             known = (ROOT / found[0]).read_text(encoding="utf-8") if found and (ROOT / found[0]).exists() else None
@@ -113,10 +124,10 @@ def broken_examples(program, text):
 def missing_remedies():
     """Yield the remedies of messages that docs/status.md does not contain."""
     text = " ".join((ROOT / "docs" / "status.md").read_text(encoding="utf-8").split())
-    source = (ROOT / "src" / "process" / "remedy.f90").read_text(encoding="utf-8")
+    source = (ROOT / "src" / "process" / "attempt_report.f90").read_text(encoding="utf-8")
     found = ["".join(re.findall(r'"(.*?)"', value)) for value in REMEDY.findall(source)]
     if not found:
-        yield "src/process/remedy.f90 has no remedy"
+        yield "src/process/attempt_report.f90 has no remedy"
     for remedy in found:
         if remedy not in text:
             yield f"docs/status.md does not contain the remedy {remedy!r}"
@@ -180,7 +191,7 @@ def broken_page(program, kind, law):
             yield f"the parameter {name} has {table.get(name)} in the table, {wanted.get(name)} by dd3imp --help {law}"
     picture = ROOT / "docs" / "images" / "laws" / f"{law}.png"
     if f"](../images/laws/{law}.png)" not in text:
-        yield "its picture is missing; draw it: utils/law_pictures.py"
+        yield "its picture is missing; draw it: utils/dev/law_pictures.py"
     elif picture.exists() and picture.stat().st_size > 60000:
         yield f"its picture has {picture.stat().st_size} bytes, more than 60000"
     if f"](laws/{law}.md)" not in (ROOT / "docs" / GATHERED[kind]).read_text(encoding="utf-8"):

@@ -10,8 +10,10 @@ import sys
 
 import numpy as np
 import studies
-from fields import Fields
-from scripts import put_table, run
+
+from dd3.errors import run
+from dd3.fields import Fields
+from dd3.pages import put_table
 
 DECK, REPORT, PICTURE = studies.paths("draw_bending")
 DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not count, half length of the bottom, mm

@@ -5,22 +5,20 @@ Checked besides the end of each run: the holder force of the clamp, the centre o
 the height of the round cup's script on a profile that is known.
 """
 import argparse
-import importlib.util
 import math
 import pathlib
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-if any(importlib.util.find_spec(name) is None for name in ("h5py", "matplotlib", "numpy", "scipy")):
-    print("skipped: the packages of utils/requirements.txt are not installed")
-    sys.exit(77)
+import numpy as np
 
-import numpy as np  # noqa: E402
-import scripts  # noqa: E402
-from fields import Fields  # noqa: E402
-from results import command, find_program, launch, read_table  # noqa: E402
+from dd3.errors import run
+from dd3.fields import Fields
+from dd3.programs import command, find_program, launch
+from dd3.tables import read_table
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
 
 # Deck, parameters, force of the holder (N).
 RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
@@ -57,7 +55,7 @@ def check_tools(work):
     assert len(shapes) == 10, shapes
     for shape in shapes:
         target = work / f"{shape.stem}.bez"
-        subprocess.run([ROOT / "utils" / "tool.py", shape, target], check=True, capture_output=True)
+        subprocess.run([sys.executable, "-m", "dd3", "tool", shape, target], check=True, capture_output=True)
         new, old = (path.read_text(encoding="utf-8").splitlines()[1:] for path in (target, shape.with_suffix(".bez")))
         assert new == old, shape
 
@@ -86,4 +84,4 @@ def main():
 
 
 if __name__ == "__main__":
-    scripts.run(main)
+    run(main)

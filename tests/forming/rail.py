@@ -10,8 +10,10 @@ import sys
 
 import numpy as np
 import studies
-from fields import Fields
-from scripts import put_table, run
+
+from dd3.errors import run
+from dd3.fields import Fields
+from dd3.pages import put_table
 
 DECK, REPORT, PICTURE = studies.paths("rail")
 DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm

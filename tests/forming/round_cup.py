@@ -10,10 +10,12 @@ import sys
 
 import numpy as np
 import studies
-from fields import Fields
-from plot_point import r_value
-from results import run_points
-from scripts import put_table, run
+
+from dd3.errors import run
+from dd3.fields import Fields
+from dd3.pages import put_table
+from dd3.plot.point import r_value
+from dd3.programs import run_points
 
 DECK, REPORT, PICTURE = studies.paths("round_cup")
 BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall, mm

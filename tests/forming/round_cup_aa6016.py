@@ -9,7 +9,9 @@ import sys
 import numpy as np
 import studies
 from round_cup import ANGLES, Cup, row
-from scripts import put_table, run
+
+from dd3.errors import run
+from dd3.pages import put_table
 
 DECK, REPORT, PICTURE = studies.paths("round_cup_aa6016")
 BLANK = 53.75  # radius of the blank, mm

@@ -1,22 +1,20 @@
 #!/usr/bin/env python3
-"""Compare the results of forming in fields.vtkhdf and history.csv with closed forms. Skipped (77) without the packages.
+"""Compare the results of forming in fields.vtkhdf and history.csv with closed forms.
 
     run.py --program build/release/dd3imp --work build/forming
 """
-import importlib.util
 import math
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
-if any(importlib.util.find_spec(name) is None for name in ("h5py", "numpy")):
-    print("skipped: the packages of utils/requirements.txt are not installed")
-    sys.exit(77)
+import numpy as np
 
-import numpy as np  # noqa: E402
-from fields import Fields  # noqa: E402
-from results import command, launch, parser_of_runs, read_table  # noqa: E402
+from dd3.fields import Fields
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import read_table
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
 from run_description import check_description  # noqa: E402
 
 K, E0, N, YOUNG, POISSON = 565.0, 0.007117, 0.259, 2.1e5, 0.3

@@ -9,8 +9,10 @@ import sys
 
 import numpy as np
 import studies
-from fields import Fields
-from scripts import put_table, run
+
+from dd3.errors import run
+from dd3.fields import Fields
+from dd3.pages import put_table
 
 DECK, REPORT, PICTURE = studies.paths("square_cup")
 ALUMINIUM = DECK.with_name("aluminium.dat")

@@ -1,13 +1,11 @@
 """What the studies of this folder share: runs that are kept, and tables in reports. Needs the Python environment."""
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-import scripts  # noqa: E402
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import read_table, read_text, totals
 
-scripts.need("h5py", "matplotlib", "numpy")
-from results import command, launch, parser_of_runs, read_table, read_text, totals  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
+
 
 
 def arguments(description):

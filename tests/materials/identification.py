@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Check utils/identify.py. The exit code is 77 if there is no .venv and packages are missing.
+"""Check dd3 identify and dd3 fit.
 
     identification.py --program build/release/dd3imp
 
@@ -10,7 +10,6 @@
 """
 import argparse
 import contextlib
-import importlib.util
 import io
 import os
 import re
@@ -18,17 +17,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-if not all(importlib.util.find_spec(name) for name in ("numpy", "scipy", "matplotlib")):
-    print("the packages of utils/requirements.txt are not installed: run utils/install_needed.sh")
-    sys.exit(1 if (ROOT / ".venv").exists() else 77)
+import numpy as np
 
-import fit  # noqa: E402
-import identify  # noqa: E402
-import numpy as np  # noqa: E402
-from measurements import TENSION, Datum  # noqa: E402
-from scripts import Problem  # noqa: E402
+from dd3.command import dispatch
+from dd3.errors import Problem, run
+from dd3.identify import least_squares as fit
+from dd3.identify.measurements import TENSION, Datum
+
+ROOT = Path(__file__).resolve().parents[2]
+
 
 fit.BORDER, fit.EVALUATIONS = 5, 25  # enough to see that it works
 ANGLES = range(0, 91, 15)
@@ -125,7 +122,7 @@ FILES = {
 
 
 class Trial:
-    """Runs of identify.py in a folder, and their failures."""
+    """Identifications in a folder, and their failures."""
 
     def __init__(self, program):
         self.program, self.points, self.wrong = program, fit.Points(program, 2.1e5, 0.3), []
@@ -135,24 +132,21 @@ class Trial:
         if not true:
             self.wrong.append(what)
 
-    def call(self, *words):
+    def call(self, *words, command="identify"):
         """Return exit code, messages and the file written."""
-        before, sys.argv = sys.argv, ["identify.py", "found", "--program", self.program, *words]
         Path("found.dat").unlink(missing_ok=True)
         code, out, err = 0, io.StringIO(), io.StringIO()
         try:
             with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-                identify.main()
+                run(lambda: dispatch([command, "found", *words, *([] if "--program" in words else ["--program", self.program])]))
         except SystemExit as end:
             code = end.code
-        finally:
-            sys.argv = before
         text = Path("found.dat").read_text(encoding="utf-8") if code == 0 else ""
         return code, out.getvalue() + err.getvalue(), text
 
-    def fit(self, *words):
+    def fit(self, *words, command="identify"):
         """Return parameters and rows of the table (measured, identified) of a fit that must succeed."""
-        code, said, text = self.call("--starts", "2", *words)
+        code, said, text = self.call(*words, *([] if "--starts" in words else ["--starts", "2"]), command=command)
         self.expect(code == 0, f"{words}: exit code {code}\n{said}")
         back, told, _ = self.points.run(text + "*POINT p\n  material = found\n  control = " + TENSION
                                         + "\n  target = 1e-6 0 0 0 0 0 steps=1\n")
@@ -276,6 +270,9 @@ def check_hardening(trial):
     write_curve(zip(plastic, 350 - 200 * np.exp(-12 * plastic)))
     found, _, _ = trial.fit("--hardening", "voce", "--curve", "curve.csv", "--plastic-strain")
     trial.near("voce, plastic strain", found, of_law(LAWS[2]), 1e-4)
+    found, _, text = trial.fit("voce", "curve.csv", "--plastic-strain", "--yield", "hosford m=6", command="fit")
+    trial.near("voce by fit", found, of_law(LAWS[2]), 1e-4)
+    trial.expect("yield = hosford m=6" in text, f"fit: {text}")
 
 
 def check_reversal(trial):

@@ -14,9 +14,9 @@ import pathlib
 import re
 import sys
 
+from dd3.programs import run_points
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-from results import run_points  # noqa: E402
 
 FOLDER = ROOT / "input_files" / "materials"
 UNIAXIAL, THICKNESS = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"

@@ -6,12 +6,10 @@
 Both materials undergo the same random strain paths, in all six components, with a change of direction.
 """
 import argparse
-import pathlib
 import random
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "utils"))
-from results import run_points  # noqa: E402
+from dd3.programs import run_points
 
 PATHS = 12
 UNIT = "perfect Y0=100"

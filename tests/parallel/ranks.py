@@ -10,9 +10,9 @@ import shutil
 import subprocess
 import sys
 
+from dd3.tables import read_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-from results import read_table  # noqa: E402
 
 CASES = ROOT / "tests" / "cases"
 # Largest difference of a column of history.csv, as a fraction of its scale: see `scale_of`.

@@ -13,12 +13,12 @@ may differ by the sum of their fractions. Released by `unload` alone the strip h
 increments; if the holder is eased before, it slides and bends a little while it is still in contact.
 """
 import pathlib
-import sys
+
+from dd3.errors import check
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import number, read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "utils"))
-from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
-from scripts import check  # noqa: E402
 
 DECK = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
 SETTINGS = ["--set", "divisions=90 1 1", "--set", "points=7", "--set", "depth=12"]

@@ -12,11 +12,13 @@ import pathlib
 import re
 import sys
 
+from dd3.errors import check
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import number, read_table
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "utils"), str(HERE.parents[0])]
-from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
+sys.path.insert(0, str(HERE.parent))
 from run_description import check_description  # noqa: E402
-from scripts import check  # noqa: E402
 
 MODEL = """
 *MATERIAL steel

@@ -12,12 +12,15 @@ import math
 import pathlib
 import sys
 
+from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to
+
+from dd3.errors import check
+from dd3.programs import command, launch, parser_of_runs
+from dd3.tables import number, read_table
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "utils"), str(HERE.parents[0])]
-from results import command, launch, number, parser_of_runs, read_table  # noqa: E402
-from ring import POISSON, STEPS, SWIFT_E0, SWIFT_K, SWIFT_N, THICKNESS, YOUNG, bend_to  # noqa: E402
+sys.path.insert(0, str(HERE.parent))
 from run_description import check_description  # noqa: E402
-from scripts import check  # noqa: E402
 
 TOLERANCE = 0.02
 RADII = (10.0, 50.0, 100.0)

@@ -7,12 +7,14 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from dd3.errors import Problem
+from dd3.programs import command, launch
+from dd3.tables import number, read_table, read_text
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "utils"), str(ROOT / "tests")]
-from results import command, launch, number, read_table, read_text  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests"))
 from run_description import check_description  # noqa: E402
-from scripts import Problem, need  # noqa: E402
 
 VALUE_HEAD = ["quantity", "expected", "computed", "error", "tolerance"]
 STUDY_HEAD = ["element", "mesh", "unknowns", "seconds", "computed", "error", "order"]

@@ -1,11 +1,8 @@
 """The sections of the manual that use cases of tests/cases, which are not repeated here."""
 import math
-import pathlib
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import closed_forms as exact  # noqa: E402
-from frame import HERE, ROOT, Outcome, Section, Value  # noqa: E402
+import closed_forms as exact
+from frame import HERE, ROOT, Outcome, Section, Value
 
 CASES = ROOT / "tests" / "cases"
 

@@ -15,8 +15,9 @@ folder here, beside its deck.
 import re
 import sys
 
-from frame import HERE, ROOT, STUDY_HEAD, VALUE_HEAD, Bench, Problem, load, need, study_rows
-from results import parser_of_runs
+from frame import HERE, ROOT, STUDY_HEAD, VALUE_HEAD, Bench, Problem, load, study_rows
+
+from dd3.programs import parser_of_runs
 
 PAGE = ROOT / "docs" / "verification.md"
 PICTURES = ROOT / "docs" / "images" / "verification"
@@ -202,8 +203,6 @@ def main():
     parser.add_argument("--write", action="store_true", help="write the page and the pictures")
     parser.add_argument("--only", default="", help="a word of the headings of the sections to run")
     options = parser.parse_args()
-    if options.slow:
-        need("h5py", "numpy", *(["matplotlib"] if options.write else []))
     bench, old, parts, wrong = Bench(options.program, options.work), old_parts(), {}, []
     for section in sections():
         page = old.get(section.heading, "")

@@ -19,11 +19,10 @@ balance by up to 8 N at a node, and the program gives -0.3882 mm: hence the tole
 """
 
 import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "utils"))
-import numpy as np  # noqa: E402
-from fields import Fields  # noqa: E402
+import numpy as np
+
+from dd3.fields import Fields
 
 YOUNG, POISSON = 2.1e5, 0.3
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1],

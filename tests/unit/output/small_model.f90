@@ -88,8 +88,14 @@ contains
     model%phase(1)%name = "clamp"
     model%phase(2)%name = "draw"
     model%phase(2)%control = 1
-    allocate (model%load_set(0))
-    model%output%history_every = 1
+    allocate (model%load_set(0), model%pressure_set(0), model%drawbead(0), model%contact_face(0))
+    allocate (model%face_point(4, 0))
+    allocate (model%candidate(2, 2), source=.false.)
+    do i = 1, 2
+      allocate (model%phase(i)%active(2), source=.true.)
+      model%phase(i)%mixed = .true.
+    end do
+    model%output%history = 1
     model%axes = reshape(identity, [3, 3, 1])
     call new_state(state, model)
   end subroutine make_small_model

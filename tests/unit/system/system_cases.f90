@@ -110,7 +110,7 @@ contains
 
     penalty = model%phase(trial%phase)%penalty
     do c = 1, model%n_contact
-      system%contact%committed_x(:, c) = model%point_position(c, committed%x)
+      system%contact%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     end do
     trial%hint%due = .true.
     call evaluate_contact(system%contact, model, committed, trial)

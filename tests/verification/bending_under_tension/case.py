@@ -1,14 +1,12 @@
 """A strip drawn over a cylinder under back tension: the force of bending and unbending, and that of friction."""
 import math
 import pathlib
-import sys
+
+from frame import Outcome, Section, Value, load
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-sys.path.insert(1, str(HERE))
-import fibres  # noqa: E402
-from frame import Outcome, Section, Value  # noqa: E402
 
+fibres = load(HERE / "fibres.py")
 TENSION, RADIUS = 60.0, 5.0
 MIDDLE = RADIUS + fibres.THICKNESS / 2
 STEADY = 0.6  # fraction of the draw from which the force is steady

@@ -12,7 +12,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "strip_bending"))
-from ring import THICKNESS, update  # noqa: E402
+from ring import THICKNESS, update
 
 FIBRES, STEPS = 40, 60
 

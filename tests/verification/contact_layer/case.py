@@ -1,11 +1,10 @@
 """A block on a table with a contact layer: pressure of the gap, elastic slip, Coulomb's cone and energy."""
 import math
 import pathlib
-import sys
+
+from frame import Outcome, Section, Value
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-from frame import Outcome, Section, Value  # noqa: E402
 
 HEIGHT, FORCE = 0.01, 1e-5 * 2.1e5 * 100.0  # of the layer: h, mm, and p_0 A, N
 FRICTION, STICK = 0.144, 0.16  # progress of the drag at which the block still sticks

@@ -1,12 +1,11 @@
 """A graded sheet between two flat tools: uniform deformation, and the gap of the contact layer (patch test)."""
 import math
 import pathlib
-import sys
+
+from closed_forms import POISSON, YOUNG, bisect
+from frame import Outcome, Section, Value
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-from closed_forms import POISSON, YOUNG, bisect  # noqa: E402
-from frame import Outcome, Section, Value  # noqa: E402
 
 FRICTION, PRESSED, STICK, BACK = 0.144, 20.0, 0.0015, 0.001  # pressure, MPa, and elastic slips of the drag, mm
 # Parts of the lower face, 12 x 9 mm, that belong to the corner and to an inner node, mm2: of four nodes, of nine.

@@ -1,11 +1,10 @@
 """Stretching over a hemispherical punch: height at given forces against published readings; place of the thinning."""
 import math
 import pathlib
-import sys
+
+from frame import Outcome, Section, Value, interpolate
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-from frame import Outcome, Section, Value, interpolate  # noqa: E402
 
 # Force, kN, and displacement of the punch, mm, without friction.
 PUBLISHED = ((10, 10.6), (20, 15.4), (30, 20.0), (40, 24.7), (50, 28.2), (60, 33.0), (70, 37.4))
@@ -15,7 +14,7 @@ def run(bench, friction):
     """Run the quarter; return displacement of the punch, mm, force of the whole sheet, kN, and thickness by radius."""
     found = bench.run(f"punch_{friction:g}", HERE / "case.dat", {"friction": friction})
     heights, forces = found.column("travel"), [4e-3 * force for force in found.column("punch_fz")]
-    from fields import Fields  # needs h5py
+    from dd3.fields import Fields
     fields = Fields(found.folder)
     step = fields.nearest_step(30.0)
     start, thickness = fields.points(0), fields.values(step, "thickness")[0]

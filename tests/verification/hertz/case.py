@@ -1,11 +1,10 @@
 """A rigid cylinder on an elastic half-space, without and with a contact layer: half-width and largest pressure."""
 import math
 import pathlib
-import sys
+
+from frame import Mesh, Outcome, Section, Value, geometric, load
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-from frame import Mesh, Outcome, Section, Value, geometric, load  # noqa: E402
 
 RADIUS, LOAD, YOUNG, POISSON = 10.0, 500.0, 2.1e5, 0.3
 WIDTH = math.sqrt(4 * LOAD * RADIUS * (1 - POISSON**2) / (math.pi * YOUNG))
@@ -31,7 +30,7 @@ def run(bench, element, n, layer=None):
         deck = deck.read_text(encoding="utf-8").replace("formulation = mixed", f"layer = {layer:g}")
         deck = deck.replace("cylinder.bez", str(HERE / "cylinder.bez"))
     found = bench.run(name, deck, settings)
-    from fields import Fields  # needs h5py
+    from dd3.fields import Fields
     fields = Fields(found.folder)
     step = fields.count - 1
     forces = {}

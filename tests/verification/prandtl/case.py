@@ -1,11 +1,10 @@
 """Prandtl's punch: the limit pressure under a rigid strip."""
 import math
 import pathlib
-import sys
+
+from frame import Mesh, Outcome, Section, Value, geometric
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-from frame import Mesh, Outcome, Section, Value, geometric  # noqa: E402
 
 YIELD = 1.0
 EXPECTED = (2 + math.pi) / math.sqrt(3)  # over the yield stress

@@ -1,11 +1,10 @@
 """Pure bending of a perfectly plastic strip in plane strain, and its springback."""
 import pathlib
-import sys
+
+import closed_forms as exact
+from frame import ROOT, Mesh, Outcome, Section, Value
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-import closed_forms as exact  # noqa: E402
-from frame import ROOT, Mesh, Outcome, Section, Value  # noqa: E402
 
 CASE = ROOT / "tests" / "cases" / "bending_perfectly_plastic" / "case.dat"
 YOUNG, POISSON, YIELD, LENGTH = 2e5, 0.4999, 4.0, 3.0  # of the deck; thickness and width 1

@@ -1,15 +1,14 @@
 """An elastic strip on the contact layer of a table or a cylinder: a linear foundation, and a nonlinear one."""
 import math
 import pathlib
-import sys
+
+import closed_forms as exact
+from frame import Outcome, Section, Value
+from frame import load as module_of
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-sys.path.insert(1, str(HERE))
-import beam  # noqa: E402
-import closed_forms as exact  # noqa: E402
-from frame import Outcome, Section, Value  # noqa: E402
 
+beam = module_of(HERE / "beam.py")
 RADIUS = 40.0  # of the cylinder, mm
 HEIGHT = 0.02  # of the layer: h over the thickness of 1 mm
 SOFT, PRESSURE, LINE = 0.2, 0.05, 0.006  # h, mm; pressure on the strip, MPa, and line load on its half, N/mm

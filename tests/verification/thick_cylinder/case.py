@@ -1,15 +1,13 @@
 """Thick cylinder under internal pressure, perfectly plastic, in plane strain."""
 import math
 import pathlib
-import sys
+
+import meshes
+from frame import Mesh, Outcome, Section, Value, load
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-sys.path.insert(1, str(HERE))
-import meshes  # noqa: E402
-import radial  # noqa: E402
-from frame import Mesh, Outcome, Section, Value  # noqa: E402
 
+radial = load(HERE / "radial.py")
 INNER, OUTER, YOUNG, YIELD = 100.0, 200.0, 2.1e5, 240.0
 RADII = (120.0, 150.0, 180.0)
 SMALL = 0.01  # factor on yield stress and pressures, for small strains

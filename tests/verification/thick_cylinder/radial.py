@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "strip_bending"))
-from ring import solve_tridiagonal, update  # noqa: E402
+from ring import solve_tridiagonal, update
 
 LAYERS, STEPS = 100, 20
 

@@ -1,0 +1,278 @@
+!> Norm that decides the convergence of a trial state: the residuals of nodes, contact and enhanced
+!> strains, the balance of the pressed tools, and the free body in springback. All its factors and
+!> tolerances stand here; they have no unit.
+!> Source: Oliveira and Menezes 2004, eq. (19), scaled by the norm of the internal forces where it
+!> exceeds that of the contact forces, and such that a residual that is round-off has converged.
+!> Round-off: a node's position is the multiple of `spacing` nearest to the solution, and the
+!> stiffness turns that difference into a force that no iteration removes. Tisseur 2001, Newton's
+!> method in floating point arithmetic, SIAM J. Matrix Anal. Appl. 22, 1038-1057: the residual of
+!> Newton's method stalls at u |J| |x|, u the unit round-off and J the Jacobian. Here the
+!> differences are random, uniform in the interval of rounding, so that their variance is
+!> spacing**2/12 and the squares of their forces add.
+module dd3_process_norm
+  use dd3_base_kinds, only : wp
+  use dd3_contact_operator, only : status_gap
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_process_forces, only : evaluate_forces
+  use dd3_system_linear_problem, only : unknowns_t
+  use dd3_system_partition, only : partition_t
+  use dd3_system_system, only : system_t
+  implicit none
+  private
+  public :: residual_t, evaluate_norm, convergence_tolerance, attainable_residual, tool_imbalance
+
+  !> Norm of the residuals.
+  type :: residual_t
+    !> N.
+    real(wp) :: norm = 0.0_wp
+    !> Norm of residuals and step over their scale.
+    real(wp) :: scaled = 0.0_wp
+    !> Node with the largest residual, and that residual, N.
+    integer :: worst_node = 0
+    real(wp) :: worst = 0.0_wp
+  end type residual_t
+
+  !> Largest tolerance of the norm when all tools are released: the residual stresses, by which it
+  !> is scaled, are far larger than those that bend a slender sheet. Smaller: a more accurate shape
+  !> for more iterations; a strip drawn by 30 mm and released ends 0.06 mm elsewhere with 1e-2,
+  !> 0.01 mm with 1e-3. It bounds the tolerance and does not weigh the norm, whose value tells the
+  !> corrector how far from the solution a state is.
+  real(wp), parameter :: free_tolerance = 1.0e-5_wp
+  !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
+  !> sheet at rest all forces are round-off. Larger: smaller forces count as zero.
+  real(wp), parameter :: negligible_strain = 1.0e-6_wp
+  !> Residual over the scale above which it is not round-off, which is not evaluated then.
+  real(wp), parameter :: largest_round_off = 1.0e-3_wp
+  !> Residual that counts as zero, over the root mean square of the round-off. In S-shaped rails
+  !> (input_files/rail, 48 to 1080 elements) residuals stall at 1.0 to 3.5 times the latter, as the
+  !> parameters of the enhanced strains, the stresses and the forces are rounded too.
+  real(wp), parameter :: multiple = 5.0_wp
+  !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
+  !> an increment is a step in the force of the next. Larger: smaller steps for more iterations.
+  real(wp), parameter :: tool_weight = 10.0_wp
+  !> Fraction of other forces that scales the force of a tool if its own force is smaller.
+  real(wp), parameter :: small = 1.0e-3_wp
+  !> Residuals of a pressed tool, over its force, between which the motion of the tool alone reduces
+  !> it. Larger ones are left to the iterations, smaller ones balance.
+  real(wp), parameter :: largest = 1.0e-3_wp, balanced = 1.0e-6_wp
+  !> Largest number of such motions.
+  integer, parameter :: most_motions = 4
+
+contains
+
+  !> Return the value that the scaled norm has to fall below.
+  pure real(wp) function convergence_tolerance(phase) result(tolerance)
+    type(phase_t), intent(in) :: phase
+
+    tolerance = phase%newton%tolerance
+    if (size(phase%active) > 0 .and. .not. any(phase%active)) &
+        tolerance = min(tolerance, free_tolerance)
+  end function convergence_tolerance
+
+  !> Evaluate the norm: eq. (19), or the imbalance of a pressed tool if that is larger and the
+  !> former has met the tolerance.
+  subroutine evaluate_norm(model, committed, trial, system, step, balance, residual)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    !> Evaluated at the trial state.
+    type(system_t), intent(inout) :: system
+    !> The last step.
+    type(unknowns_t), intent(in) :: step
+    !> Whether the tools are balanced first.
+    logical, intent(in) :: balance
+    type(residual_t), intent(out) :: residual
+
+    logical :: moved
+
+    call evaluate_residual(model, trial, system, residual)
+    call scale_norm(model, trial, system, step, residual)
+    associate (phase => model%phase(trial%phase))
+      if (residual%scaled >= convergence_tolerance(phase)) return
+      moved = .false.
+      if (balance .and. phase%mixed) call balance_tools(model, committed, trial, system, moved)
+    end associate
+    if (moved) then
+      call evaluate_residual(model, trial, system, residual)
+      call scale_norm(model, trial, system, step, residual)
+    end if
+    residual%scaled = max(residual%scaled, tool_imbalance(model, trial, system))
+  end subroutine evaluate_norm
+
+  !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
+  !> of the enhanced strains and of the pressed tools in contact.
+  subroutine evaluate_residual(model, trial, system, found)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    type(system_t), intent(in) :: system
+    type(residual_t), intent(out) :: found
+
+    real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares
+    integer :: node, c, tool
+
+    associate (phase => model%phase(trial%phase), problem => system%problem)
+      equilibrium = problem%residual + model%nodal_contact_forces(trial%x, problem%contact_residual)
+      contribution = sum(equilibrium**2, mask=.not. phase%prescribed, dim=1)
+      do c = 1, model%n_contact
+        node = model%contact_node(c)
+        contribution(node) = contribution(node) + sum(problem%contact_residual(:, c)**2)
+      end do
+      found%worst_node = maxloc(contribution, dim=1)
+      found%worst = sqrt(max(contribution(found%worst_node), 0.0_wp))
+      sum_of_squares = sum(contribution) &
+          + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
+      do tool = 1, model%n_tool
+        if (phase%pressed(tool) .and. trial%touches(tool)) &
+            sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
+      end do
+    end associate
+    found%norm = sqrt(sum_of_squares)
+  end subroutine evaluate_residual
+
+  !> Set the norm of residuals and step over their scale, eq. (19). In the compliant formulation the
+  !> reduced matrix is that of the sheet and the contact layers.
+  subroutine scale_norm(model, trial, system, step, residual)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    type(system_t), intent(in) :: system
+    type(unknowns_t), intent(in) :: step
+    type(residual_t), intent(inout) :: residual
+
+    real(wp) :: force, scale, round_off
+
+    associate (phase => model%phase(trial%phase))
+      force = norm2(step%lambda) + residual%norm
+      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
+          negligible_strain*model%least_shear()*model%thickness**2)
+      if (force >= convergence_tolerance(phase)*scale .and. force < largest_round_off*scale) then
+        if (phase%mixed) then
+          round_off = attainable_residual(system%stiffness, trial%x, system%partition)
+        else
+          round_off = attainable_residual(system%reduced, trial%x, system%partition)
+        end if
+        scale = max(scale, round_off/convergence_tolerance(phase))
+      end if
+    end associate
+    residual%scaled = force/scale
+  end subroutine scale_norm
+
+  !> Return the norm of the residual below which it is round-off, N.
+  function attainable_residual(stiffness, x, partition) result(residual)
+    !> Of the sheet; its first rows are those of the nodes, N/mm.
+    type(block_matrix_t), intent(in) :: stiffness
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    type(partition_t), intent(in) :: partition
+    real(wp) :: residual
+
+    real(wp) :: variance(3, size(x, 2)), square(1, size(x, 2))
+    integer :: node, k, i
+
+    variance = spacing(x)**2/12.0_wp
+    square = 0.0_wp
+    do node = 1, size(x, 2)
+      do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
+        associate (neighbour => stiffness%column(k))
+          if (neighbour > size(x, 2)) cycle
+          do i = 1, 3
+            square(1, node) = square(1, node) &
+                + sum(stiffness%value(:, i, k)**2)*variance(i, neighbour)
+          end do
+        end associate
+      end do
+    end do
+    call partition%share_nodes(square)
+    residual = multiple*sqrt(sum(square))
+  end function attainable_residual
+
+  !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has
+  !> converged. Where many nodes lie flat under a tool, the last of them open and close for many
+  !> iterations with forces far below the tolerance of the nodes, but not below that of the tool. An
+  !> increment that began with a tool out of balance would take many iterations too.
+  subroutine balance_tools(model, committed, trial, system, moved)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    type(system_t), intent(inout) :: system
+    !> A tool was moved.
+    logical, intent(out) :: moved
+
+    real(wp) :: fraction, distance
+    integer :: k, tool
+    logical :: moves
+
+    moved = .false.
+    associate (phase => model%phase(trial%phase))
+      do k = 1, most_motions
+        moves = .false.
+        do tool = 1, model%n_tool
+          if (.not. phase%pressed(tool)) cycle
+          fraction = abs(system%problem%tool_residual(tool))/pressed_force(trial, tool)
+          if (fraction <= balanced .or. fraction > largest) cycle
+          distance = distance_to_balance(system, phase%direction(:, tool), tool)
+          moves = moves .or. abs(distance) > 0.0_wp
+          trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
+              + distance*phase%direction(:, tool)
+        end do
+        if (.not. moves) exit
+        moved = .true.
+        call evaluate_forces(model, committed, trial, system)
+      end do
+    end associate
+  end subroutine balance_tools
+
+  !> Return the largest weighted residual of a pressed tool in contact, over its force; 0 if all
+  !> balance.
+  pure real(wp) function tool_imbalance(model, trial, system) result(imbalance)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    type(system_t), intent(in) :: system
+
+    integer :: tool
+
+    imbalance = 0.0_wp
+    do tool = 1, model%n_tool
+      if (.not. model%phase(trial%phase)%pressed(tool)) cycle
+      if (trial%touches(tool)) imbalance = max(imbalance, &
+          abs(system%problem%tool_residual(tool))/pressed_force(trial, tool))
+    end do
+    if (imbalance <= balanced) imbalance = 0.0_wp
+    imbalance = tool_weight*imbalance
+  end function tool_imbalance
+
+  !> Return the scale of the force on a pressed tool, N. The scale of one that is eased to zero is a
+  !> fraction of its force at the start of the phase and of the internal forces.
+  pure real(wp) function pressed_force(trial, tool)
+    type(state_t), intent(in) :: trial
+    integer, intent(in) :: tool
+
+    pressed_force = max(norm2(trial%tool_load(:, tool)), &
+        small*norm2(trial%start%tool_load(:, tool)), &
+        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force), &
+        tiny(1.0_wp))
+  end function pressed_force
+
+  !> Return the distance along its line at which the force of a pressed tool is balanced, mm; zero
+  !> if nothing resists it.
+  pure real(wp) function distance_to_balance(system, line, tool) result(distance)
+    type(system_t), intent(in) :: system
+    !> Unit vector along the line of motion.
+    real(wp), intent(in) :: line(3)
+    integer, intent(in) :: tool
+
+    real(wp) :: stiffness
+    integer :: c
+
+    stiffness = 0.0_wp
+    do c = 1, size(system%contact%tool)
+      if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
+      stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
+    end do
+    distance = 0.0_wp
+    if (stiffness > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness
+  end function distance_to_balance
+
+end module dd3_process_norm

@@ -1,0 +1,189 @@
+"""Meshes from files: a blank written to a file and read again gives the same results bit for bit, also with its
+elements turned or numbered otherwise within round-off; models of other programs are read by `dd3 mesh`."""
+
+import itertools
+import random
+import re
+import subprocess
+from pathlib import Path
+
+import gmsh
+import numpy as np
+import pytest
+from helpers import ROOT, call
+
+from dd3 import mesh as meshes
+from dd3.tables import number, read_table
+
+CORNERS = meshes.NATURAL[:8]
+SETS = {"x_min": "plane = x 0", "y_min": "plane = y 0"}
+GEOMETRY = """R = 20; Mesh.RecombineAll = 1; Mesh.Algorithm = 8; Mesh.MeshSizeMax = 5; Mesh.MeshSizeMin = 5;
+Point(1) = {0,0,0}; Point(2) = {R,0,0}; Point(3) = {0,R,0};
+Line(1) = {1,2}; Circle(2) = {2,1,3}; Line(3) = {3,1};
+Curve Loop(1) = {1,2,3}; Plane Surface(1) = {1};
+e[] = Extrude {0,0,1} { Surface{1}; Layers{2}; Recombine; };
+Physical Volume("disc") = {e[1]}; Physical Surface("at y 0") = {e[2]}; Physical Surface("at x 0") = {e[4]};
+"""
+MODEL = """*Heading
+ Another program's model
+*Part, name=Sheet
+*Node
+ 11, 0., 0., 0.
+ 12, 0.01, 0., 0.
+ 13, 0.01, 0.01, 0.
+ 14, 0., 0.01, 0.
+ 15, 0., 0., 0.001
+ 16, 0.01, 0., 0.001
+ 17, 0.01, 0.01, 0.001
+ 18, 0., 0.01, 0.001
+ 99, 1., 1., 1.
+*Element, type=C3D8R
+ 5, 15, 16, 17, 18, 11,
+ 12, 13, 14
+*Element, type=S4R
+ 6, 11, 12, 13, 14
+*Nset, nset=Fixed, generate
+ 11, 17, 3
+*Elset, elset="The Sheet"
+ 5, 6
+*Solid Section, elset=Sheet, material=Steel
+*End Part
+*Assembly, name=Assembly
+*Instance, name=Sheet-1, part=Sheet
+ 0., 0., 5.
+*End Instance
+*Nset, nset=Tip, instance=Sheet-1
+ 12, 13
+*End Assembly
+*Step
+*Static
+*End Step
+"""
+DECK = """*MESH sheet
+  file = "{file}"
+  material = steel
+*MATERIAL steel
+  young = 2.1e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = perfect Y0=200
+*BOUNDARY fixed
+  set = {fixed}
+  fix = x y z
+*PHASE pull
+  control = load
+  trial = 1
+  load = {tip} 1 0 0
+"""
+
+
+def launch(program, deck, out, *options):
+    """Run a deck; return the rows of its history."""
+    done = subprocess.run([program, "--quiet", "--output", out, *options, deck], capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+    return read_table(out / "history.csv")
+
+
+def with_mesh(deck, file, sets):
+    """Return the text of a deck with its blank replaced by a mesh file, and paths made absolute."""
+    text = re.sub(r'patches = "(.*?)"', lambda found: f'patches = "{(deck.parent / found[1]).resolve()}"',
+                  deck.read_text())
+    start = text.index("*BLANK")
+    end = text.index("*", start + 1)
+    material = re.search(r"material = (\w+)", text[start:end])[1]
+    block = f'*MESH sheet\n  file = "{file}"\n  material = {material}\n'
+    block += "".join(f"*SET {name}\n  {where}\n" for name, where in sets.items())
+    return text[:start] + block + text[end:]
+
+
+def rotations():
+    """Return the 24 orders of the nodes of a turned hexahedron."""
+    for axes in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            order = [CORNERS.index(tuple(s * node[a] for a, s in zip(axes, signs))) for node in CORNERS]
+            if meshes.volume_sign([CORNERS[i] for i in order]) > 0:
+                yield order
+
+
+@pytest.mark.parametrize("case, sets, options", (
+    ("round_cup", SETS, ("--set", "depth=2")), ("bending_start", {**SETS, "x_min": "plane = x 0"}, ())))
+def test_round_trip(program, tmp_path, case, sets, options):
+    """Write the mesh of a run to a file, and run the file instead; then with turned and renumbered elements."""
+    deck = ROOT / "tests" / "cases" / case / "case.dat"
+    blank = launch(program, deck, tmp_path / "blank.out", *options)
+    source = meshes.read_run(tmp_path / "blank.out" / "fields.vtkhdf")
+    meshes.renumber(source)
+    meshes.write_inp(tmp_path / "sheet.inp", source, Path("fields.vtkhdf"))
+    copy = tmp_path / "mesh.dat"
+    copy.write_text(with_mesh(deck, "sheet.inp", sets))
+    assert launch(program, copy, tmp_path / "mesh.out", *options) == blank, f"{deck}: other results with the mesh file"
+    random.seed(1)
+    orders = list(rotations())
+    assert len(orders) == 24
+    for label, nodes in source.elements.items():
+        source.elements[label] = [nodes[i] for i in random.choice(orders)]
+    nodes, elements = list(source.nodes), list(source.elements)
+    random.shuffle(nodes)
+    random.shuffle(elements)
+    source.nodes = {label: source.nodes[label] for label in nodes}
+    source.elements = {label: source.elements[label] for label in elements}
+    meshes.write_inp(tmp_path / "sheet.inp", source, Path("fields.vtkhdf"))
+    other = launch(program, copy, tmp_path / "turned.out", *options)
+    for column in blank[-1]:
+        if column.endswith("_fz"):
+            one, two = number(blank[-1], column, "blank"), number(other[-1], column, "turned")
+            assert abs(one - two) <= 1e-3 * abs(one), f"{deck}: {column} {one} and {two} with turned elements"
+
+
+def test_model(program, tmp_path):
+    """Read the model of another program: units, sets of the assembly, turned element."""
+    (tmp_path / "model.inp").write_text(MODEL)
+    said = call("mesh", "--scale", "1000", "model.inp", "part.inp")
+    for text in ("8 nodes, 1 elements", "fixed tip", "the_sheet", "turned: 1", "S4R: 1", "without hexahedra: 1"):
+        assert text in said
+    (tmp_path / "part.dat").write_text(DECK.format(file="part.inp", fixed="fixed", tip="tip"))
+    launch(program, tmp_path / "part.dat", tmp_path / "part.out")
+    for wrong, text in (("*Element, type=C3D8\n1, 1, 2, 3\n", "an element with 3 nodes"),
+                        ("*Node\n1, a, b\n", "cannot be read"),
+                        ("*Node\n1, 0, 0, 0\n", "expected one part with hexahedra")):
+        (tmp_path / "wrong.inp").write_text(wrong)
+        assert text in call("mesh", "wrong.inp", "part.inp", expect=2)
+
+
+def test_gmsh(program, tmp_path):
+    """Mesh a geometry by Gmsh and read its mesh in several formats."""
+    (tmp_path / "disc.geo").write_text(GEOMETRY)
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(str(tmp_path / "disc.geo"))
+    gmsh.model.mesh.generate(3)
+    for name in ("disc.msh", "disc.vtk", "disc.unv"):
+        gmsh.write(str(tmp_path / name))
+    gmsh.finalize()
+    found = []
+    for name in ("disc.geo", "disc.msh", "disc.vtk", "disc.unv"):
+        mesh = meshes.read_gmsh(tmp_path / name)
+        meshes.renumber(mesh)
+        found.append((len(mesh.nodes), len(mesh.elements)))
+        meshes.turn_mirrored(mesh)
+        meshes.write_inp(tmp_path / "disc.inp", mesh, Path(name))
+        sets = name != "disc.vtk"
+        names = set(map(meshes.set_name, mesh.node_sets))
+        assert names == ({"at_y_0", "at_x_0"} if sets else set()), names
+        fixed = "at_x_0" if sets else "z_min"
+        (tmp_path / "disc.dat").write_text(DECK.format(file="disc.inp", fixed=fixed, tip="z_max"))
+        launch(program, tmp_path / "disc.dat", tmp_path / "disc.out")
+    assert len(set(found)) == 1 and found[0][1] > 20, found
+
+
+def test_merge():
+    """Check that nodes within the tolerance of an earlier one are replaced by it, and volumes by their sign."""
+    nodes = {10 + i: tuple(place) for i, place in enumerate([*CORNERS, *np.add(CORNERS, (2 + 1e-5, 0, 0))])}
+    mesh = meshes.Mesh(nodes, {1: list(range(10, 18)), 2: list(range(18, 26))}, {"face": {18, 21}})
+    assert meshes.merge_nodes(mesh, 1e-4) == 4 and meshes.merge_nodes(mesh, 1e-6) == 0
+    assert mesh.elements[2][:4] == [11, 19, 20, 12] and mesh.node_sets["face"] == {11, 12}
+    meshes.renumber(mesh)
+    assert len(mesh.nodes) == 12 and meshes.turn_mirrored(mesh) == 0
+    mesh.elements[1] = mesh.elements[1][4:] + mesh.elements[1][:4]
+    assert meshes.turn_mirrored(mesh) == 1

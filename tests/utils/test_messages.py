@@ -1,0 +1,55 @@
+"""Messages on wrong names, missing files and incomplete results: one line, exit code 2; help with examples."""
+
+import subprocess
+import sys
+
+import pytest
+from helpers import ROOT, UTILS, call
+
+from dd3.command import COMMANDS
+
+NAMES = [(name, *other) for name, row in COMMANDS.items()
+         for other in ([()] if isinstance(row[-1], str) else [(), *((key,) for key in row[-1])])]
+
+
+@pytest.mark.parametrize("words, said", (
+    (("study", "command", "nosuch"), "no case 'nosuch'"), (("study", "case", "nosuch"), "no case 'nosuch'"),
+    (("study", "case", "b-1e3", "--program", "nosuch"), "nosuch: no such program"),
+    (("study", "table"), "no case is done"), (("study", "table", "--cases", "none.csv"), "none.csv: No such file"),
+    (("study", "report", "page.md"), "results.csv: No such file"),
+    (("study", "report", "page.md", "--work", "incomplete"), "is missing; `dd3 study run`"),
+    (("study", "run", "--program", "nosuch"), "nosuch: no such program"),
+    (("study", "run", "--sets"), "--sets: expected one argument"),
+    (("study", "run", "--cores", "x"), "--cores: takes a number"), ((), "a command is missing; expected tool, mesh"),
+    (("tol",), "no command 'tol'; did you mean 'tool'?"), (("plot", "increment"), "did you mean 'increments'?"),
+    (("plot", "sheet", "job.dat", "--set", "x"), "--set: takes NAME=VALUE")))
+def test_messages(tmp_path, words, said):
+    """Check the last line."""
+    (tmp_path / "incomplete").mkdir()
+    (tmp_path / "incomplete" / "results.csv").write_text("case,set,travel,code,seconds,program\na-1e2,fig3,1,3,1,abc\n")
+    (tmp_path / "page.md").write_text("no tables\n")
+    cases = ["--cases", ROOT / "input_files/bending_study/cases.csv"] if words[:1] == ("study",) else []
+    more = cases if words[1:2] in (("command",), ("case",), ("table",)) and "--cases" not in words else []
+    line = call(*words, *more, expect=2).strip().splitlines()[-1]
+    assert said in line and "error: " in line
+    assert not list(tmp_path.glob("*/done.json"))
+
+
+@pytest.mark.parametrize("script", ("first_run.sh", "run_tests.sh", "install_needed.sh", "dev/benchmark.py",
+                                    "dev/bending_tables.py"))
+def test_scripts(script):
+    """Check the help and the messages of the scripts."""
+    first = [sys.executable] if script.endswith(".py") else ["bash"]
+    for words, code, said in (("--help",), 0, f"utils/{script}"), (("--program", "nosuch"), 2, ""):
+        done = subprocess.run([*first, UTILS / script, *words], capture_output=True, text=True, timeout=60, check=False)
+        lines = (done.stdout + done.stderr).strip().splitlines()
+        assert done.returncode == code and said in "\n".join(lines) and "Traceback" not in "\n".join(lines)
+        assert code == 0 or lines[-1].startswith(("error: unknown argument --program", "error: nosuch: no such"))
+
+
+@pytest.mark.parametrize("words", [(), *NAMES])
+def test_help(words):
+    """Check that each command has a help with an example of its own name."""
+    said = call(*words, "--help")
+    assert f"\n    {' '.join(('dd3', *words))} " in said
+    assert call("--version").startswith("dd3 ")

@@ -1,0 +1,134 @@
+"""Sections, forming limits and reports of a made-up run of a U profile, and wrong input."""
+
+import csv
+import math
+import re
+
+import numpy as np
+import pytest
+from helpers import call, write_run
+
+from dd3.forming_limit import ZONES, keeler_brazier, read_curve
+
+# Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
+PARTS = [(20.0, 0.0), (5 * math.radians(80), math.radians(80)), (40.0, 0.4), (5 * math.radians(75), -math.radians(75)),
+         (20.0, 0.0)]
+ENDS = np.concatenate(([0.0], np.cumsum([part[0] for part in PARTS])))
+HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-,mm2,MPa,mJ,mJ,mJ,mJ,N,mm
+increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts,punch_area,\
+punch_pressure,tool_work,external_work,friction_work,energy_error,rib_restraint,rib_length
+0,draw,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0
+1,draw,2,1,0,0,-2,0,0,2500,4,10,250,5000,0,100,5,300,10
+"""
+STATUS = "phase,travel,outcome,iterations,solver_iterations,limiter\ndraw,2,accepted,5,0,rotation\n"
+MATERIALS = [{"name": "steel", "hardening": {"name": "swift", "parameters": [{"name": "n", "value": 0.2}]}}]
+BLOCKS = [{"keyword": "material", "name": "steel", "entries": [
+    {"key": "young", "text": "2.1e5", "unit": "MPa", "default": False}]}]
+
+
+def profile(count=10):
+    """Return the lengths along the profile, and position and direction there."""
+    length, points, angles = [0.0], [np.zeros(2)], [0.0]
+    for part, turn in PARTS:
+        for _ in range(count):
+            step, half = part / count, turn / count / 2
+            chord = step * (math.sin(half) / half if half else 1.0)
+            angle = angles[-1] + half
+            points.append(points[-1] + chord * np.array([math.cos(angle), math.sin(angle)]))
+            angles.append(angle + half)
+            length.append(length[-1] + step)
+    return np.array(length), np.array(points), np.array(angles)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Write the results of a flat strip that became the profile at its upper face."""
+    length, points, angles = profile()
+    n, widths = len(length), (0.0, 5.0, 10.0)
+    normal = np.column_stack([-np.sin(angles), np.cos(angles)])
+    start, now = [], []
+    for y in widths:
+        for z in (0.0, 1.0):
+            start.append(np.column_stack([length, np.full(n, y), np.full(n, z)]))
+            place = points - (1 - z) * normal
+            now.append(np.column_stack([place[:, 0], np.full(n, y), place[:, 1]]))
+    start, now = np.concatenate(start), np.concatenate(now)
+    cells = [[2 * j * n + i + a for a in (0, 1, 2 * n + 1, 2 * n, n, n + 1, 3 * n + 1, 3 * n)]
+             for j in range(2) for i in range(n - 1)]
+    one, x = np.ones(len(start)), start[:, 0]
+    fields = {name: (first * one, last * one) for name, (first, last) in {
+        "thickness": (1, 1 - x / 1000), "thinning": (0, x / 1000), "draw_in": (0, 0.5),
+        "equivalent_plastic_strain": (0, 0.1), "major_strain_middle": (0, x / 200), "minor_strain_middle": (0, -0.02),
+    }.items()}
+    warnings = [{"text": "the mesh is coarse", "at": {"file": "job.dat", "line": 3}}]
+    return write_run(tmp_path / "job.out", start, now, cells, HISTORY, STATUS, fields, title="A profile & its <report>",
+                     materials=MATERIALS, input={"blocks": BLOCKS}, warnings=warnings)
+
+
+def test_section(run, tmp_path):
+    """Check table, lines of nodes, and angles and radius of the profile."""
+    words = [word for name, part in (("bottom", 0), ("wall", 2), ("flange", 4))
+             for word in (f"--{name}", ENDS[part], ENDS[part + 1])]
+    for plane in ("y=0", "y=2.5"):
+        said = call("section", run, "--plane", plane, *words, "--table", tmp_path / "s.csv",
+                    "--output", tmp_path / "s.png")
+        for name, value in (("angle between bottom and wall", 100), ("angle between wall and flange", 105),
+                            ("radius of the wall", 100)):
+            found = float(re.search(f"{name}: ([0-9.]+)", said)[1])
+            assert abs(found - value) < 0.05, f"{plane}: {name} {found}, expected {value}"
+        rows = list(csv.DictReader((tmp_path / "s.csv").open()))
+        assert abs(float(rows[-1]["length0"]) - ENDS[-1]) < 1e-3 and len(rows) == 51
+        for row in rows:
+            assert abs(float(row["thickness"]) - 1 + float(row["x0"]) / 1000) < 1e-6, row
+    call("section", run, "--nodes", 1, 2, 3, "--table", tmp_path / "s.csv", "--output", tmp_path / "s.svg")
+    assert len((tmp_path / "s.csv").read_text().splitlines()) == 4
+    for words, said in ((("--plane", "y=50"), "does not cut the sheet"), (("--plane", "q=1"), "plane 'q=1'"),
+                        (("--nodes", 1, 9999), "the nodes are 1 to"), (("--field", "nosuch"), "no field 'nosuch'"),
+                        (("--wall", 0, 1), "expected 3 or more"), (("--flange", 0, 1), "need --wall")):
+        assert said in call("section", run, *words, "--output", tmp_path / "s.png", expect=2), words
+
+
+def test_limit(tmp_path):
+    """Check the curve of Keeler and Brazier, the zones, and measured curves."""
+    curve = keeler_brazier(1.0, 0.21)
+    plane = math.log(1.3743)
+    assert abs(curve.limit(0.0) - plane) < 1e-12 and abs(curve.limit(-0.9) - plane - 0.9) < 1e-12
+    assert abs(curve.limit(0.6) - plane - 0.36) < 1e-12 and keeler_brazier(1.0, 0.5).limit(0.0) == curve.limit(0.0)
+    assert abs(keeler_brazier(0.8, 0.105).limit(0.0) - math.log1p(0.5 * 0.34604)) < 1e-12
+    major, minor = np.array([0.4, 0.25, 0.15, 0.2, 0.001]), np.array([0.0, 0.0, 0.0, -0.3, 0.0])
+    names = [ZONES[zone] for zone in curve.zones(major, minor, 0.1)]
+    assert names == ["critical", "marginal", "safe", "wrinkling", "no strain"], names
+    file = tmp_path / "curve.csv"
+    file.write_text("# minor, major\n0.3, 0.45\n-0.2 0.5\n0, 0.3\n")
+    assert abs(read_curve(file).limit(-0.1) - 0.4) < 1e-12
+    assert abs(read_curve(file, engineering=True).limit(0.0) - math.log(1.3)) < 1e-12
+
+
+def test_diagram(run):
+    """Check the forming limit diagram of a run, and requests that cannot be met."""
+    said = call("fld", run)
+    assert "fld.png" in said and "nodes critical" in said
+    assert "No forming limit curve" not in said
+    assert "no field 'major_strain_upper'" in call("fld", run, "--surface", "upper", expect=2)
+    assert "--n takes a positive number" in call("fld", run, "--n", -1, expect=2)
+
+
+def test_report(run, tmp_path):
+    """Check that the page is complete and needs no other file."""
+    call("report", run, "--mirror", "x", "y", "--output", tmp_path / "report")
+    text = (tmp_path / "report" / "report.html").read_text()
+    for title in ("Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
+                  "Outline and draw-in", "Forces in phase draw", "Draw-beads", "Warnings", "Run", "Set-up"):
+        assert f"<h2>{title}</h2>" in text, title
+    assert "A profile &amp; its &lt;report&gt;" in text and "the mesh is coarse" in text
+    assert "Keeler-Brazier" not in text and "10 kN, 250 MPa" in text and "0.1 %" in text
+    assert all(source.startswith("data:image/png") for source in re.findall(r'src="([^"]{20})', text))
+    assert "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most" in text
+    assert not re.search(r"(href|url)\b", text)
+    for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force", "beads"):
+        assert (tmp_path / "report" / f"{name}.png").read_bytes()[:4] == b"\x89PNG", name
+    (tmp_path / "bad.csv").write_text("0 0.3\n0.1 a\n")
+    assert "bad.csv:2: error: expected minor" in call("report", run, "--curve", tmp_path / "bad.csv", "--output",
+                                                      tmp_path / "report", expect=2)
+    assert "No such file" in call("report", tmp_path / "none.out", "--output", tmp_path / "other", expect=2)
+    assert not (tmp_path / "other").exists()

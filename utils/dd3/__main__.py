@@ -1,0 +1,5 @@
+"""The command as `python -m dd3`."""
+
+from dd3.command import main
+
+main()

@@ -1,0 +1,73 @@
+"""The command dd3: its subcommands, and the parsers of their options."""
+
+import argparse
+import difflib
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from dd3.errors import Problem, run
+
+# Name: module and summary. A group has the summary, an example and the table of its own.
+COMMANDS = {
+    "tool": ("dd3.tool", "make a tool surface from CAD, STL, a mesh or a profile"),
+    "mesh": ("dd3.mesh", "bring a mesh of hexahedra into the form that *MESH reads"),
+    "report": ("dd3.report", "make a page about a forming run"),
+    "plot": ("draw results, materials, or the sheet before a run", "dd3 plot force bending.out", {
+        "force": ("dd3.plot.force", "tool force against tool displacement"),
+        "increments": ("dd3.plot.increments", "size of the increments and what limits it"),
+        "sheet": ("dd3.plot.sheet", "deformed sheet between its tools, coloured by a field"),
+        "point": ("dd3.plot.point", "response of materials at a point: curves, r-values, yield surfaces"),
+    }),
+    "section": ("dd3.section", "write and draw fields along a section; measure springback"),
+    "fld": ("dd3.forming_limit", "draw the forming limit diagram of a run"),
+    "identify": ("dd3.identify.command", "identify a yield criterion, with a hardening law, from measured values"),
+    "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
+    "study": ("run the bending study, gather and draw its results", "dd3 study run --quick", {
+        "run": ("dd3.study.run", "run all cases, gather the table and draw the figures"),
+        "command": ("dd3.study.cases:print_command", "print the command of a case"),
+        "case": ("dd3.study.cases:run_case", "run a case unless it is done"),
+        "table": ("dd3.study.cases:gather", "gather the finished cases in results.csv"),
+        "figures": ("dd3.study.figures", "draw the figures from results.csv"),
+        "report": ("dd3.study.tables", "rewrite the tables of the document from results.csv"),
+    }),
+}
+USAGE = "dd3 plot force bending.out"
+
+
+def new_parser(name: str, text: str | None) -> argparse.ArgumentParser:
+    """Return the parser of a subcommand; `text` describes it, with examples."""
+    return argparse.ArgumentParser(f"dd3 {name}", description=text,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def overview(name: str, summary: str, example: str, table: dict) -> str:
+    """Return the help of a group of commands."""
+    rows = "\n".join(f"  {key:<12} {row[1] if isinstance(row[-1], str) else row[0]}" for key, row in table.items())
+    return (f"usage: {name} COMMAND ...\n\n{summary[:1].upper() + summary[1:]}.\n\n{rows}\n\n"
+            f"`{name} COMMAND --help` explains each. Example:\n\n    {example}")
+
+
+def dispatch(words: Sequence[str], name: str = "dd3", summary: str = "Tools for dd3imp", example: str = USAGE,
+             table: dict = COMMANDS) -> None:
+    """Call the command that the words name."""
+    first, *others = words or [""]
+    if first in ("-h", "--help"):
+        print(overview(name, summary, example, table))
+    elif first == "--version" and table is COMMANDS:
+        from dd3 import __version__
+        print(f"dd3 {__version__}")
+    elif first not in table:
+        near = difflib.get_close_matches(first, table, 1)
+        said = f"no command '{first}'" if first else "a command is missing"
+        raise Problem(f"{name}: {said}; " + (f"did you mean '{near[0]}'?" if near else f"expected {', '.join(table)}"))
+    elif isinstance(table[first][-1], dict):
+        dispatch(others, f"{name} {first}", *table[first])
+    else:
+        module, _, function = table[first][0].partition(":")
+        getattr(import_module(module), function or "main")(others)
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the command of the words, by default those of the command line."""
+    run(lambda: dispatch(sys.argv[1:] if words is None else words))

@@ -1,0 +1,103 @@
+"""Fields of a run, fields.vtkhdf."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+
+from dd3.errors import Problem
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+
+COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
+
+
+class Fields:
+    """The sheet at its steps; `fields[i]` is a grid of pyvista with all fields of a step.
+
+    count: number of steps. travel: the travel of each, mm.
+    """
+
+    def __init__(self, run: str | Path) -> None:
+        path = Path(run)
+        path = path / "fields.vtkhdf" if path.is_dir() else path
+        try:
+            self.file = h5py.File(path, "r", locking=False)  # a run may still be writing
+            self.grid: Any = self.file["VTKHDF"]
+            self.steps: Any = self.grid["Steps"]
+            self.count = int(self.steps.attrs["NSteps"])
+        except FileNotFoundError:
+            raise Problem(f"{path}: No such file") from None
+        except (OSError, KeyError):
+            raise Problem(f"{path}: not the field file of a run") from None
+        if self.count == 0:
+            raise Problem(f"{path}: no steps")
+        self.path, self.folder = path, path.parent
+        self.travel: np.ndarray = self.steps["Values"][: self.count]
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, step: int) -> "pv.UnstructuredGrid":
+        if not -self.count <= step < self.count:
+            raise IndexError(f"step {step} of {self.count}")
+        step %= self.count
+        mesh = self.shape(step)
+        for place, data in (("PointData", mesh.point_data), ("CellData", mesh.cell_data)):
+            for name in self.grid.get(place, ()):
+                data[name] = self.values(step, name, place == "CellData")[0]
+        return mesh
+
+    def __iter__(self) -> Iterator["pv.UnstructuredGrid"]:
+        return (self[step] for step in range(self.count))
+
+    def shape(self, step: int) -> "pv.UnstructuredGrid":
+        """Return the deformed sheet at a step without fields."""
+        import pyvista as pv
+        offsets = self.grid["Offsets"][...]
+        cells = np.insert(self.grid["Connectivity"][...], offsets[:-1], np.diff(offsets))
+        return pv.UnstructuredGrid(cells, self.grid["Types"][...], self.points(step))
+
+    def nearest_step(self, travel: float) -> int:
+        """Return the last of the steps whose travel is nearest."""
+        distance = np.abs(self.travel - travel)
+        return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
+
+    def points(self, step: int) -> np.ndarray:
+        """Return the positions of the nodes at a step."""
+        first = int(self.steps["PointOffsets"][step])
+        points: np.ndarray = self.grid["Points"][first:first + int(self.grid["NumberOfPoints"][0])]
+        return points
+
+    def values(self, step: int, name: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
+        """Return a field at a step, and its unit."""
+        where, rows = ("CellData", "NumberOfCells") if at_cells else ("PointData", "NumberOfPoints")
+        if name not in self.grid[where]:
+            raise Problem(f"{self.path}: no field '{name}'; there are: {', '.join(self.grid[where])}")
+        data = self.grid[where][name]
+        first = int(self.steps[where + "Offsets"][name][step])
+        return data[first:first + int(self.grid[rows][0])], text_of(data.attrs.get("unit", "")).strip()
+
+    def component(self, step: int, field: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
+        """Return a field, or a component such as stress:11 or displacement:z, and its label; without a component the
+        magnitude of a vector."""
+        name, _, chosen = field.partition(":")
+        values, unit = self.values(step, name, at_cells)
+        values, label, unit = values.astype(float), name.replace("_", " "), f" ({unit})" if unit else ""
+        if values.ndim == 1:
+            return values, label + unit
+        names = COMPONENTS.get(name, tuple("xyz"[: values.shape[1]]))
+        if chosen in names:
+            return values[:, names.index(chosen)], f"{label} {chosen}{unit}"
+        if chosen in ("", "magnitude"):
+            return np.linalg.norm(values, axis=1), f"{label}, magnitude{unit}"
+        raise Problem(f"{self.path}: no component '{chosen}' of '{name}'; there are: {', '.join(names)}, magnitude")
+
+
+def text_of(attribute: str | bytes) -> str:
+    """Return a text attribute as str."""
+    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)

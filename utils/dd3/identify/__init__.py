@@ -1,0 +1,1 @@
+"""Identification of parameters of materials from measured values."""

@@ -1,0 +1,30 @@
+"""Fit a hardening law, with back-stresses, to a tension curve.
+
+    dd3 fit steel voce tension.csv --plot steel.png
+    dd3 fit steel swift tension.csv --yield "hill48 r0=1.79 r45=1.51 r90=2.27"
+    dd3 fit steel voce reversal.csv --backstress lemaitre_chaboche
+
+The curve is a table of logarithmic strain and true stress (MPa) along rolling, see `dd3 identify --help`, which also
+identifies the yield criterion; here it is given. A back-stress requires a curve that continues in compression.
+"""
+
+from collections.abc import Sequence
+
+from dd3.command import new_parser
+from dd3.identify.command import add_curve, check_options, identify
+from dd3.identify.hardening import LAWS
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Fit the law of the command line."""
+    parser = new_parser("fit", __doc__)
+    parser.add_argument("name", help="name of the material")
+    parser.add_argument("hardening", metavar="LAW", choices=LAWS, help="law: " + ", ".join(LAWS))
+    parser.add_argument("curve", metavar="FILE", help="tension curve along rolling")
+    parser.add_argument("--yield", dest="yields", metavar="LAW", default="von_mises",
+                        help="yield criterion with its parameters (von_mises)")
+    add_curve(parser)
+    parser.set_defaults(criterion=None)
+    options = parser.parse_args(words)
+    check_options(parser, options)
+    identify(options, options.yields)

@@ -1,0 +1,377 @@
+"""Draw the deformed sheet between its tools, coloured by a field, and its draw-beads. No display is needed.
+
+    dd3 plot sheet bending.out
+    dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+    dd3 plot sheet bending.dat --program build/release/dd3imp   # before a run
+
+The sheet is read from fields.vtkhdf, the tools' displacements from the results, their surfaces from the .bez files that
+the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Of an
+input file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do
+the tools lie where they should?
+"""
+
+import argparse
+import contextlib
+import math
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkLogger
+
+from dd3.command import new_parser
+from dd3.errors import Problem
+from dd3.fields import Fields, text_of
+from dd3.plot.beads import draw_beads
+from dd3.programs import command, find_program, launch, setting
+from dd3.progress import each
+from dd3.run import file_of, read_frame, read_job
+from dd3.tables import tools_in
+from dd3.tools.blocks import lines_of
+from dd3.tools.surface import read_lines
+
+VECTOR = ["x", "y", "z"]
+VIEWS = {  # direction from the sheet to the camera, and the upward direction
+    "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
+    "front": ((0, -1, 0), (0, 0, 1)),
+    "back": ((0, 1, 0), (0, 0, 1)),
+    "side": ((-1, 0, 0), (0, 0, 1)),
+    "top": ((0, 0, 1), (0, 1, 0)),
+    "bottom": ((0, 0, -1), (0, 1, 0)),
+    "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
+}
+BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
+POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
+MANY_PATCHES = 300  # number above which only the outer edges of a tool are drawn
+TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
+
+
+Patches = list[tuple[np.ndarray, np.ndarray]]  # points (v, u, 3) and weights (v, u)
+Box = tuple[np.ndarray, np.ndarray]
+
+
+class Run(Fields):
+    """A run: the sheet at its steps, the tools' displacements, and the lines of the draw-beads to draw."""
+
+    def __init__(self, run: str | Path, job: dict[str, Any] | None = None) -> None:
+        super().__init__(run)
+        self.job = read_job(self.folder) if job is None else job
+        self.beads = {bead["name"]: np.array(bead["points"]) for bead in self.job["drawbeads"]}
+
+    def step_at(self, travel: float) -> int:
+        """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
+        if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
+            raise Problem(f"{self.path}: no travel {travel:g} mm; "
+                          f"there is {self.travel.min():g} to {self.travel.max():g}")
+        return self.nearest_step(travel)
+
+    def mesh(self, step: int, field: str, at_cells: bool = False) -> tuple[pv.UnstructuredGrid, str]:
+        """Return the sheet at a step with its field as `shown`, and the label of the field."""
+        mesh = self.shape(step)
+        data = mesh.cell_data if at_cells else mesh.point_data
+        data["shown"], label = self.component(step, field, at_cells)
+        return mesh, label
+
+    def tool_displacement(self, step: int) -> dict[str, np.ndarray]:
+        """Return the displacement of each tool at a step: from the fields, or from history.csv."""
+        job = self.file.get("job")
+        if job is not None and "tool_displacement" in job:
+            names = text_of(job.attrs["tools"]).split()
+            return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3), strict=True))
+        history = read_frame(self.folder, "history.csv", "travel")
+        row = history.loc[(history["travel"] - self.travel[step]).abs().idxmin()]
+        return {tool: np.array([row[f"{tool}_u{axis}"] for axis in VECTOR], float) for tool in tools_in(history)}
+
+
+def read_patches(path: Path) -> Patches:
+    """Return the patches of a .bez file."""
+    try:
+        return read_lines([line.split() for line, _ in lines_of(path)])
+    except (ValueError, IndexError):
+        raise Problem(f"{path}: not a file of Bézier patches") from None
+
+
+def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
+    """Return the Bernstein polynomials of a degree at t."""
+    return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
+
+
+def tool_surface(patches: Patches, shift: np.ndarray) -> tuple[pv.PolyData, pv.PolyData]:
+    """Return the surface of a tool moved by `shift`, and the edges of its patches; of many patches its outer edges."""
+    finest = max(2, min(24, round(math.sqrt(POINTS / len(patches)))))
+    points, faces, lines, first = [], [], [], 0
+    for shape in {weights.shape for _, weights in patches}:
+        alike = [patch for patch in patches if patch[1].shape == shape]
+        weights = np.array([weights for _, weights in alike])
+        counts = [1 if size == 2 else finest for size in shape]
+        bv, bu = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size, count in zip(shape, counts))
+        total = np.einsum("pji,jb,ia->pba", weights, bv, bu)
+        xyz = np.einsum("pji,pjid,jb,ia->pbad", weights, np.array([p for p, _ in alike]), bv, bu) / total[..., None]
+        points.append(xyz.reshape(-1, 3) + shift)
+        number = first + np.arange(total.size).reshape(total.shape)
+        corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
+        faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
+        for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
+            lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
+        first += total.size
+    xyz, cells, edges = map(np.concatenate, (points, faces, lines))
+    skin = pv.PolyData(xyz, np.insert(cells, 0, 4, axis=1))
+    if len(patches) <= MANY_PATCHES:
+        return skin, pv.PolyData(xyz, lines=np.insert(edges, 0, 2, axis=1))
+    joined = skin.clean(tolerance=1e-6)
+    return skin, joined.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
+                                              non_manifold_edges=False, feature_angle=30)
+
+
+def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
+    """Return the mesh and its mirror images in the planes normal to the axes."""
+    parts = [mesh]
+    for axis in axes:
+        normal = tuple(float(axis == a) for a in VECTOR)
+        parts += [part.reflect(normal, point=(0.0, 0.0, 0.0)) for part in parts]
+    return parts
+
+
+def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
+         limits: Sequence[float], box: Box) -> None:
+    """Draw one picture."""
+    mesh = run.mesh(step, options.field, options.cells)[0]
+    for part in reflected(mesh, options.mirror):
+        skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
+        plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
+                         edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
+                         lighting=True, ambient=0.25)
+    # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
+    behind = -0.006 * diagonal(box) * eye(options)[0]
+    displacement = run.tool_displacement(step)
+    for number, (name, patches) in enumerate(tools.items()):
+        if name not in displacement:
+            continue
+        skin, edges = tool_surface(patches, displacement[name])
+        for part in reflected(skin, options.mirror):
+            plotter.add_mesh(part.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
+                             opacity=options.tool_opacity, smooth_shading=False, ambient=0.2)
+        for part in reflected(edges, options.mirror):
+            plotter.add_mesh(part.translate(behind), color="#444444", line_width=1.5)
+    towards = 0.006 * diagonal(box) * eye(options)[0]
+    draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, options.mirror))
+    aim(plotter, box, options)
+    text = plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
+    text.prop.SetBackgroundColor(1, 1, 1)
+    text.prop.SetBackgroundOpacity(1)
+
+
+def draw_bar(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
+    """Draw the colour bar in a strip below the pictures."""
+    table = pv.LookupTable(options.colours, scalar_range=limits)
+    mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
+    mapper.lookup_table = table
+    plotter.add_scalar_bar(title=label + "\n", mapper=mapper, vertical=False, position_x=0.3, width=0.4, position_y=0.2,
+                           height=0.7, title_font_size=20, label_font_size=17, fmt="%.3g", color="black")
+
+
+def diagonal(box: Box) -> float:
+    """Return the length of the diagonal of a box."""
+    return float(np.linalg.norm(box[1] - box[0]))
+
+
+def box_of(run: Run, steps: Sequence[int], options: argparse.Namespace, tools: dict[str, Patches]) -> Box:
+    """Return the corners of the box that holds the sheet at all steps drawn; before a run, the tools as well."""
+    points = np.concatenate([run.points(step) for step in steps])
+    if is_deck(options.run):
+        places = run.tool_displacement(0)
+        points = np.concatenate([points] + [patch.reshape(-1, 3) + places[name] for name in tools if name in places
+                                            for patch, _ in tools[name]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    for axis in options.mirror:
+        i = VECTOR.index(axis)
+        low[i], high[i] = min(low[i], -high[i]), max(high[i], -low[i])
+    return low, high
+
+
+def eye(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit vector towards the camera and the upward direction."""
+    place, up = VIEWS[options.view] if options.view in VIEWS else (tuple(map(float, options.view.split())), (0, 0, 1))
+    return np.array(place) / np.linalg.norm(place), np.array(up)
+
+
+def aim(plotter: Any, box: Box, options: argparse.Namespace) -> None:
+    """Point the camera at the sheet."""
+    (place, up), (low, high) = eye(options), box
+    centre = np.array(options.focus) if options.focus else (low + high) / 2
+    plotter.camera_position = [centre + 2 * diagonal(box) * place, centre, up]
+    plotter.enable_parallel_projection()
+    right = np.cross(up, place)
+    right /= np.linalg.norm(right)
+    over = np.cross(place, right)
+    width, height = np.subtract(plotter.renderer.viewport[2:], plotter.renderer.viewport[:2]) * plotter.window_size
+    half_width = np.abs(right) @ (high - low) / 2
+    half_height = np.abs(over) @ (high - low) / 2
+    plotter.camera.parallel_scale = max(1.15 * half_height, 1.1 * half_width * height / width, 1e-3) / options.zoom
+    plotter.reset_camera_clipping_range()
+
+
+def direction(text: str) -> bool:
+    """Check for three numbers that are not a direction parallel to z, the upward direction."""
+    try:
+        place = [float(word) for word in text.split()]
+    except ValueError:
+        return False
+    return len(place) == 3 and any(place[:2])
+
+
+def command_line() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = new_parser("plot sheet", __doc__)
+    parser.add_argument("run", metavar="RUN", help="folder of results, its fields.vtkhdf, or an input file")
+    parser.add_argument("--program", type=Path, default=Path("dd3imp"),
+                        help="the program, for an input file (default: the one on the path)")
+    parser.add_argument("--set", action="append", type=setting, default=[], metavar="NAME=VALUE",
+                        help="parameter of an input file")
+    parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
+                        help="travel in mm, the nearest step is drawn; may be repeated (default: the last step)")
+    parser.add_argument("--field", help="field, or field:component, such as stress:11 or displacement:z "
+                        "(equivalent_plastic_strain; of an input file thickness)")
+    parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
+    parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
+    parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
+    parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
+    parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
+    parser.add_argument("--mirror", action="append", default=[], choices=["x", "y", "z", "xy"],
+                        help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
+    parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
+    parser.add_argument("--hide", action="append", default=[], metavar="NAME",
+                        help="tool or draw-bead to leave out, or 'all'")
+    parser.add_argument("--tool-opacity", type=float, default=0.35)
+    parser.add_argument("--no-edges", action="store_true", help="leave out the elements' edges")
+    parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
+    parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
+                        help="size of one picture in pixels")
+    parser.add_argument("--list", action="store_true", help="list the steps and fields, draw nothing")
+    return parser
+
+
+def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
+    """Return the options after their checks."""
+    parser = command_line()
+    options = parser.parse_args(words)
+    options.mirror = sorted(set("".join(options.mirror)))
+    if options.view not in VIEWS and not direction(options.view):
+        parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
+    if options.limits and not options.limits[0] < options.limits[1]:
+        parser.error("--limits takes the lower one first")
+    if options.colours not in matplotlib.colormaps:
+        parser.error(f"no colour map '{options.colours}'; some are viridis, plasma, cividis, turbo, coolwarm")
+    if min(options.size) < 1 or not options.zoom > 0:
+        parser.error("--size and --zoom take positive numbers")
+    if any("=" not in item for item in options.tool):
+        parser.error("--tool takes NAME=FILE")
+    return options
+
+
+def find_tools(run: Run, options: argparse.Namespace) -> dict[str, Patches]:
+    """Return the patches of the tools to draw, and leave out the draw-beads that are hidden."""
+    if "all" in options.hide:
+        run.beads = {}
+        return {}
+    files = {tool["name"]: file_of(run.job, run.folder, tool["patches"]) for tool in run.job["tools"]}
+    for item in options.tool:
+        name, _, file = item.partition("=")
+        files[name.lower()] = Path(file)
+    options.hide = [name.lower() for name in options.hide]
+    unknown = [name for name in options.hide if name not in files and name not in run.beads]
+    if unknown:
+        raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join([*files, *run.beads]) or 'none'}")
+    run.beads = {name: line for name, line in run.beads.items() if name not in options.hide}
+    shown = {name: file for name, file in files.items() if name not in options.hide}
+    for name, file in shown.items():
+        if not file.is_file():
+            print(f"{file}: no such file; without it the tool '{name}' is not drawn, see --tool", file=sys.stderr)
+    return {name: read_patches(file) for name, file in shown.items() if file.is_file()}
+
+
+def is_deck(run: str | Path) -> bool:
+    """Check for an input file in place of results."""
+    return Path(run).is_file() and Path(run).suffix != ".vtkhdf"
+
+
+@contextlib.contextmanager
+def opened(options: argparse.Namespace) -> Iterator[Run]:
+    """Yield the run; of an input file, the initial state, written by the program into a folder removed afterwards."""
+    if not is_deck(options.run):
+        options.field = options.field or "equivalent_plastic_strain"
+        yield Run(options.run)
+        return
+    options.field = options.field or "thickness"
+    settings = dict(options.set)
+    with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
+        done = launch(command(find_program(options.program), options.run, None,
+                              ["--check", "--quiet", "--initial", folder], settings))
+        if done.code != 0:
+            if not (Path(folder) / "fields.vtkhdf").exists():
+                raise Problem(done.errors.strip())
+            print(done.errors.strip(), file=sys.stderr)
+        yield Run(folder, read_job(Path(folder), settings, Path(options.run)))
+
+
+def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Sequence[float]:
+    """Return the range of the colours: that of --limits, or of all values drawn."""
+    if options.limits:
+        return list(options.limits)
+    ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
+    low, high = min(r.min() for r in ranges), max(r.max() for r in ranges)
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        high = low + max(1e-3, 1e-3 * abs(low))
+    return [low, high]
+
+
+def new_plotter(options: argparse.Namespace, count: int) -> Any:
+    """Return the plotter of `count` pictures and the strip of the colour bar."""
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    pv.OFF_SCREEN = True
+    window = [options.size[0], options.size[1] * count]
+    bar = min(BAR_HEIGHT, window[1] / 2)
+    plotter: Any = pv.Plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
+                         off_screen=True, border=False, window_size=window)
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    return plotter
+
+
+def make_picture(run: Run, options: argparse.Namespace) -> None:
+    """Draw the steps of the options and write the picture."""
+    tools = find_tools(run, options)
+    steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
+    limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
+    plotter = new_plotter(options, len(steps))
+    for row, step in enumerate(each(steps, "pictures")):
+        plotter.subplot(row, 0)
+        draw(plotter, run, step, options, tools, limits, box)
+    plotter.subplot(len(steps), 0)
+    draw_bar(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits)
+    try:
+        plotter.screenshot(options.output)
+    except (OSError, ValueError) as error:
+        raise Problem(f"{options.output}: {error}") from None
+    finally:
+        plotter.close()
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Draw the picture of the command line."""
+    options = arguments(words)
+    with opened(options) as run:
+        if options.list:
+            print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
+            print("at nodes: " + ", ".join(run.grid["PointData"]))
+            print("at cells: " + ", ".join(run.grid["CellData"]))
+            return
+        make_picture(run, options)
+        print(options.output)
+

@@ -1,0 +1,132 @@
+"""Runs of dd3imp: the program, its command line, single points."""
+
+import argparse
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from dd3.errors import Problem
+from dd3.tables import read_points
+
+POINTS = "points.dat"  # input file of run_points, as its messages name it
+
+
+@dataclass
+class Finished:
+    """A run that has ended: exit code, what it printed, seconds and largest memory (MB)."""
+
+    code: int
+    output: str
+    errors: str
+    wall: float
+    cpu: float
+    memory: float
+
+
+def find_program(path: str | Path) -> Path:
+    """Return the program's absolute path; it is looked up as the shell does."""
+    found = shutil.which(path)
+    if not found:
+        raise Problem(f"{path}: no such program; give --program FILE")
+    return Path(found).resolve()
+
+
+def made_folder(path: str | Path) -> Path:
+    """Return the path of a folder, which is made if it is not there."""
+    path = Path(path)
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def parser_of_runs(description: str | None) -> argparse.ArgumentParser:
+    """Return the parser of a script that makes runs: `program`, looked up, and `work`, the folder of the runs."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=find_program, help="the program dd3imp")
+    parser.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
+    return parser
+
+
+def setting(text: str) -> tuple[str, str]:
+    """Return name and value of an argument of --set."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError("takes NAME=VALUE")
+    return name, value
+
+
+def command(program: str | Path, deck: str | Path, folder: str | Path | None = None, options: Iterable[object] = (),
+            settings: Mapping[str, object] | None = None) -> list[str]:
+    """Return the words of a run: results go to `folder`, `settings` are the parameters of --set."""
+    words = [str(program), *map(str, options)] + (["--output", str(folder)] if folder else [])
+    for name, value in (settings or {}).items():
+        words += ["--set", f"{name}={value}"]
+    return [*words, str(deck)]
+
+
+def launch(words: Sequence[str | Path], timeout: float | None = None, folder: str | Path | None = None,
+           one_core: bool = True) -> Finished:
+    """Run a command to its end, in a folder; a Problem after `timeout` seconds.
+
+    With `one_core` it takes one thread unless its own options ask for more.
+    """
+    environment = {**os.environ, **({"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"} if one_core else {})}
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        began = time.perf_counter()
+        child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, env=environment,
+                                 cwd=folder)
+        usage = wait(child, timeout)
+        wall = time.perf_counter() - began
+        said = []
+        for stream in (output, errors):
+            stream.seek(0)
+            said.append(stream.read().decode("utf-8", errors="replace"))
+    return Finished(child.returncode, said[0], said[1], wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+
+
+def wait(child: "subprocess.Popen[bytes]", timeout: float | None) -> resource.struct_rusage:
+    """Wait for a process and return its use of resources; kill it after `timeout` seconds or on an interrupt."""
+    late, shown = threading.Event(), " ".join(map(str, child.args)) if isinstance(child.args, list) else str(child.args)
+
+    def kill() -> None:
+        late.set()
+        os.kill(child.pid, signal.SIGKILL)
+
+    timer = threading.Timer(timeout or 0, kill)
+    if timeout:
+        timer.start()
+    try:
+        _, status, usage = os.wait4(child.pid, 0)
+    except BaseException:
+        child.kill()
+        child.wait()
+        raise
+    finally:
+        timer.cancel()
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if late.is_set():
+        raise Problem(f"{shown}: not finished after {timeout} s")
+    return usage
+
+
+def run_points(program: str | Path, text: str, *options: str, timeout: float | None = None
+               ) -> tuple[Finished, dict[str, list[dict[str, float]]]]:
+    """Run an input file of single points, given as a text; return the finished run and its rows by point."""
+    program = find_program(program)
+    with tempfile.TemporaryDirectory() as name:
+        deck, folder = Path(name) / POINTS, Path(name) / "out"
+        deck.write_text(text, encoding="utf-8")
+        done = launch(command(program, deck, folder, ["--quiet", *options]), timeout)
+        done.errors = done.errors.replace(str(deck), POINTS)
+        written = (folder / "history.csv").is_file()
+        if done.code not in (0, 2, 3) or (done.code == 0 and not written and "--check" not in options):
+            raise Problem(f"{program}: error: exit code {done.code}, and no results\n"
+                          "  expected: --program with the path of dd3imp")
+        return done, read_points(folder) if done.code == 0 and written else {}

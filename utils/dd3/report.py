@@ -1,0 +1,367 @@
+"""Make a page about a forming run: one HTML file with its pictures inside, and the pictures as PNG files.
+
+    dd3 report cup.out --mirror x y
+    dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
+
+The page has the set-up, statistics of the run, the tool's force, the thinning, the forming limit diagram, thickness
+along sections, the outline before and after, the deformed sheet between its tools, and the warnings. --mirror completes
+a model at its planes of symmetry; forces are multiplied accordingly. The forming limit is the curve of Keeler and
+Brazier (for low-carbon steel) from the thickness and the exponent n of the hardening law or --n, or a measured one:
+--curve with minor and major logarithmic strain in each line. The strains are those at the middle of the sheet.
+"""
+
+import argparse
+import base64
+import html
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from dd3 import forming_limit
+from dd3.command import new_parser
+from dd3.plot import force as forces
+from dd3.plot import sheet as pictures
+from dd3.plot.figures import new_figure, save
+from dd3.progress import each
+from dd3.run import read_frame
+from dd3.section import Section, in_plane
+from dd3.sheet import AXES, Sheet, plane
+from dd3.tables import tools_in
+
+STYLE = """body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7;margin:0}
+main{max-width:1100px;margin:0 auto;padding:1em 1.5em}h1{margin:.4em 0 0}h2{margin:0 0 .5em;font-size:1.2em}
+section{background:#fff;border:1px solid #dde;border-radius:6px;padding:1em 1.2em;margin:1em 0}
+img{max-width:100%;height:auto;display:block;margin:auto}table{border-collapse:collapse}
+td,th{padding:.15em .9em .15em 0;text-align:left;vertical-align:top}td.n{text-align:right}
+.row{display:flex;flex-wrap:wrap;gap:1em 3em}.bar{display:inline-block;height:.8em;background:#5b8fd6}
+.key{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.warn{color:#8a4b00}
+pre{overflow-x:auto;font-size:13px}
+"""
+
+
+class Report:
+    """A run with the options of the command line, and the parts of its page."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.options = options
+        self.sheet = Sheet(options.run)
+        self.folder = self.sheet.folder
+        self.run = pictures.Run(self.folder)
+        self.job = self.run.job
+        self.history = read_frame(self.folder, "history.csv", "phase", "travel", "progress")
+        self.tools = tools_in(self.history)
+        self.last = self.sheet.last
+        self.pictures = options.output or self.folder / "report"
+        self.pictures.mkdir(parents=True, exist_ok=True)
+        self.whole = 2 ** len(options.mirror)  # number of images of the model
+        self.parts: list[str] = []
+        self.limit = ""  # result of the forming limit diagram
+
+    def field(self, name: str) -> np.ndarray:
+        """Return a field at the last step."""
+        return self.sheet.values(self.last, name)[0]
+
+    def column(self, name: str) -> np.ndarray:
+        """Return a column of the history."""
+        return self.history[name].to_numpy(float)
+
+    def add(self, title: str, content: str) -> None:
+        """Add a section to the page."""
+        self.parts.append(f"<section><h2>{html.escape(title)}</h2>\n{content}\n</section>")
+
+    def image(self, name: str, alt: str) -> str:
+        """Return the element of a picture that has been written."""
+        data = base64.b64encode((self.pictures / f"{name}.png").read_bytes()).decode()
+        return f'<img alt="{html.escape(alt)}" src="data:image/png;base64,{data}">'
+
+    def figure(self, name: str, figure: Figure, alt: str) -> str:
+        """Write a figure and return its element."""
+        save(figure, self.pictures / f"{name}.png", 130)
+        return self.image(name, alt)
+
+    def sheet_options(self, name: str, *more: str) -> argparse.Namespace:
+        """Return the options of a picture of the sheet."""
+        options = pictures.arguments([str(self.folder), "--output", str(self.pictures / f"{name}.png"),
+                                      "--size", "1300", "650", *more])
+        options.mirror = self.options.mirror
+        return options
+
+
+def table(rows: Iterable[tuple[str, Any]]) -> str:
+    """Return a table of names and values."""
+    return "<table>" + "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(value))}</td></tr>"
+                               for name, value in rows) + "</table>"
+
+
+def columns(*tables: str) -> str:
+    """Return tables beside each other."""
+    return '<div class="row">' + "".join(f"<div>{part}</div>" for part in tables) + "</div>"
+
+
+def add_summary(report: Report) -> None:
+    """Add the numbers that a reader looks for first."""
+    nodes, thickness, thinning = report.sheet.points(report.last), report.field("thickness"), report.field("thinning")
+    thin = thinning.argmax()
+    rows = [("thickness", f"{thickness.min():.4g} to {thickness.max():.4g} mm"),
+            ("largest thinning", f"{100 * thinning.max():.3g} % at ({', '.join(f'{x:.1f}' for x in nodes[thin])}) mm"),
+            ("largest thickening", f"{max(0.0, -100 * thinning.min()):.3g} %"),
+            ("equivalent plastic strain", f"{report.field('equivalent_plastic_strain').max():.4g}")]
+    if report.limit:
+        rows.append(("forming limit", report.limit))
+    tools = [(f"{tool}: largest force along z, largest pressure",
+              f"{report.whole * np.abs(report.column(f'{tool}_fz')).max() / 1000:.4g} kN, "
+              f"{report.column(f'{tool}_pressure').max():.3g} MPa") for tool in report.tools]
+    work = report.column("tool_work")[-1] + report.column("external_work")[-1]
+    if abs(work) > 0:
+        tools.append(("error of the energy balance", f"{100 * report.column('energy_error')[-1] / work:.2g} %"))
+    report.add("Result", columns(table(rows), table(tools)))
+
+
+def add_setup(report: Report) -> None:
+    """Add the set-up: program, input file, and the values of the input with all defaults."""
+    job, lines = report.job, []
+    for block in job["input"]["blocks"]:
+        lines.append(f"*{block['keyword'].upper()} {block['name']}".rstrip())
+        for entry in block["entries"]:
+            remark = ", ".join(filter(None, (entry["unit"], "default" if entry["default"] else "")))
+            lines.append(f"  {entry['key']} = {entry['text']}".ljust(52) + (f"# {remark}" if remark else ""))
+    heading = [f"{job['program']['name']} {job['program']['version']}: {job['command']['file']}",
+               f"started {job['started']}"]
+    if sheet := job.get("sheet"):
+        heading.append(f"{sheet['elements']} elements {sheet['element']}, {sheet['nodes']} nodes, "
+                       f"{sheet['contact_points']} candidates for contact with {len(report.tools)} tools")
+    report.add("Set-up", "<p>" + "<br>".join(map(html.escape, heading)) + "</p><details><summary>All input values"
+               "</summary><pre>" + html.escape("\n".join(map(str.rstrip, lines))) + "</pre></details>")
+
+
+def add_statistics(report: Report) -> None:
+    """Add what the run cost: increments, iterations, time by section."""
+    status = read_frame(report.folder, "status.csv", "outcome", "limiter", "phase")
+    accepted, seconds = status[status["outcome"] == "accepted"], report.job["sections"]
+    limiters = accepted["limiter"].value_counts()
+    rows: list[tuple[str, Any]] = [
+        ("end of the run", end_of(report)), ("increments", len(accepted)),
+        ("cut-backs", int((status["outcome"] == "retry").sum())), ("iterations", int(status["iterations"].sum()))]
+    if report.job["seconds"]:
+        rows.append(("wall-clock time", f"{report.job['seconds']:.4g} s"))
+    rows.append(("limited by", ", ".join(f"{name} {count}" for name, count in limiters.items())))
+    most = max(sum(seconds.values()), 1e-9)
+    bars = "<table>" + "".join(
+        f'<tr><th>{name}</th><td class="n">{value:.3g} s</td>'
+        f'<td><span class="bar" style="width:{220 * value / most:.0f}px"></span> {100 * value / most:.0f} %</td></tr>'
+        for name, value in seconds.items()) + "</table>"
+    report.add("Run", columns(table(rows), bars))
+
+
+def end_of(report: Report) -> str:
+    """Return how the run ended."""
+    outcome = report.job["outcome"]
+    return str(outcome["message"] or outcome["state"])
+
+
+def add_force(report: Report) -> None:
+    """Add the force of the controlling tool, and of the others in the same phases."""
+    if not report.tools:
+        return
+    history, phase = report.history, forces.last_phase(report.history)
+    leader, rows = forces.controlling_tool(history), forces.rows_of(history, [phase])
+    place = forces.vector(history, leader, "u")[rows]
+    path = np.linalg.norm(place - place[0], axis=1)
+    left = [axis not in report.options.mirror for axis in AXES]  # the others are zero on the whole part
+    found = {tool: report.whole * np.linalg.norm(forces.vector(history, tool, "f")[rows][:, left], axis=1)
+             for tool in report.tools}
+    unit, scale = ("kN", 1000) if max(force.max() for force in found.values()) >= 1000 else ("N", 1)
+    figure, axes = new_figure((8, 4))
+    for tool, force in found.items():
+        axes.plot(path, force / scale, linewidth=2 if tool == leader else 1, label=tool.replace("_", " "))
+    axes.set_xlabel(f"displacement of {leader.replace('_', ' ')} (mm)")
+    axes.set_ylabel(f"force ({unit})" + (f", whole part, {report.whole} times the model" if report.whole > 1 else ""))
+    axes.grid(True, color="0.9")
+    axes.legend(frameon=False)
+    report.add(f"Forces in phase {phase}", report.figure("force", figure, "tool forces over displacement"))
+
+
+def add_beads(report: Report) -> None:
+    """Add the restraining forces of the draw-beads over the travel, and their lengths on the sheet."""
+    beads = [name.removesuffix("_restraint") for name in map(str, report.history) if name.endswith("_restraint")]
+    if not beads:
+        return
+    along = "travel" if np.ptp(report.column("travel")) > 0 else "increment"
+    figure, axes = new_figure((8, 3.5))
+    rows = []
+    for bead in beads:
+        force, length = (report.whole * report.column(f"{bead}_{name}") for name in ("restraint", "length"))
+        axes.plot(report.column(along), force / 1000, label=bead.replace("_", " "))
+        rows.append((bead, f"at most {force.max() / 1000:.4g} kN, at the end {force[-1] / 1000:.4g} kN; on the sheet "
+                     f"{length.max():.4g} mm at most, {length[-1]:.4g} mm at the end"))
+    axes.set(xlabel="travel (mm)" if along == "travel" else along,
+             ylabel="restraining force (kN)" + (", whole part" if report.whole > 1 else ""))
+    axes.grid(True, color="0.9")
+    axes.legend(frameon=False)
+    report.add("Draw-beads", report.figure("beads", figure, "restraining forces of the draw-beads") + table(rows))
+
+
+def add_limit_diagram(report: Report) -> None:
+    """Add the forming limit diagram and the map of its zones."""
+    figure, axes = new_figure((8, 5.2))
+    curve = forming_limit.find_curve(report.sheet, report.job, report.options)
+    zone, said = forming_limit.draw(axes, report.field("major_strain_middle"), report.field("minor_strain_middle"),
+                                    curve, report.options.margin)
+    content = report.figure("limit", figure, "forming limit diagram")
+    if zone is None:
+        content += f"<p>{html.escape(said)}</p>"
+    else:
+        report.limit = said
+        content += zone_map(report, zone) + f"<p>{html.escape(said)}. Marginal: less than " \
+            f"{report.options.margin:g} below the curve; wrinkling: thicker than before, the major strain is smaller " \
+            "than minus the minor one.</p>"
+    report.add("Forming limit", content)
+
+
+def zone_map(report: Report, zone: np.ndarray) -> str:
+    """Draw the zones on the sheet and return the element."""
+    options = report.sheet_options("zones", "--hide", "all")
+    plotter = pictures.new_plotter(options, 1)
+    plotter.subplot(0, 0)
+    mesh = report.run.shape(report.last)
+    # A cell has the worst zone of its nodes.
+    mesh.cell_data["zone"] = np.array([zone[mesh.get_cell(i).point_ids].max() for i in range(mesh.n_cells)])
+    for part in pictures.reflected(mesh, options.mirror):
+        skin = part.extract_surface(algorithm="dataset_surface")
+        plotter.add_mesh(skin, scalars="zone", cmap=list(forming_limit.COLOURS), show_edges=True, edge_color="#444444",
+                         clim=[-0.5, len(forming_limit.ZONES) - 0.5], show_scalar_bar=False, ambient=0.3)
+    pictures.aim(plotter, pictures.box_of(report.run, [report.last], options, {}), options)
+    plotter.screenshot(options.output)
+    plotter.close()
+    keys = " ".join(f'<span class="key" style="background:{colour}"></span>{name}&emsp;'
+                    for name, colour in zip(forming_limit.ZONES, forming_limit.COLOURS, strict=True))
+    return report.image("zones", "zones of the forming limit diagram on the sheet") + f"<p>{keys}</p>"
+
+
+def section_planes(report: Report) -> list[str]:
+    """Return the planes of --section, by default those through the middle of the whole sheet."""
+    if report.options.section:
+        return list(report.options.section)
+    points = report.sheet.points(0)
+    middle = {axis: 0.0 if axis in report.options.mirror else float(points[:, i].min() + points[:, i].max()) / 2
+              for i, axis in enumerate(AXES)}
+    planes = [f"y={middle['y']:.6g}", f"x={middle['x']:.6g}"]
+    return [*planes, "45"] if {"x", "y"} <= set(report.options.mirror) else planes
+
+
+def add_sections(report: Report) -> None:
+    """Add thickness and shape along sections."""
+    planes = section_planes(report)
+    figure, axes = new_figure((8, 7), 2)
+    for text in planes:
+        normal, distance = plane(text)
+        line = report.sheet.cut(normal, distance)[0]
+        section = Section(report.sheet, line, report.last)
+        name = text if "=" in text else f"{text} degrees"
+        axes[0].plot(section.length0, section.field("thickness")[0], ".-", markersize=3, label=name)
+        axes[1].plot(*in_plane(section.now, normal).T, ".-", markersize=3, label=name)
+    axes[0].set(xlabel="initial length along the section (mm)", ylabel="thickness (mm)")
+    axes[1].set(xlabel="in the plane of the section (mm)", ylabel="z (mm)")
+    axes[0].ticklabel_format(useOffset=False)
+    axes[1].set_aspect("equal", adjustable="datalim")
+    axes[0].legend(frameon=False)
+    for place in axes:
+        place.grid(True, color="0.9")
+    report.add("Thickness along sections", report.figure("sections", figure, "thickness and shape along sections"))
+
+
+def images(points: np.ndarray, mirror: Sequence[str]) -> list[np.ndarray]:
+    """Return points and their mirror images."""
+    parts = [points]
+    for axis in mirror:
+        factor = np.where(np.arange(3) == AXES.index(axis), -1.0, 1.0)
+        parts += [part * factor for part in parts]
+    return parts
+
+
+def add_outline(report: Report) -> None:
+    """Add the outline before and after, and the draw-in along it."""
+    figure, (axes, along) = new_figure((11, 5), 1, 2)
+    start, now, value = report.sheet.points(0), report.sheet.points(report.last), report.field("draw_in")
+    for line in report.sheet.outline(True, report.options.mirror):
+        for points, colour, width in ((start, "0.5", 1), (now, "#d64541", 1.6)):
+            for part in images(points[line], report.options.mirror):
+                axes.plot(part[:, 0], part[:, 1], color=colour, linewidth=width)
+        middle = (start.min(axis=0) + start.max(axis=0)) / 2
+        middle = [0.0 if axis in report.options.mirror else middle[i] for i, axis in enumerate(AXES)]
+        angle = np.degrees(np.unwrap(np.arctan2(start[line, 1] - middle[1], start[line, 0] - middle[0])))
+        along.plot(angle - 360 * np.floor(angle.min() / 360 + 1e-9), value[line], ".-", markersize=3)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    axes.legend(handles=[Patch(color="0.5", label="before"), Patch(color="#d64541", label="after")], frameon=False)
+    along.set(xlabel="angle from x at the start (degrees)", ylabel="draw-in (mm)")
+    for place in (axes, along):
+        place.grid(True, color="0.9")
+    report.add("Outline and draw-in", report.figure("outline", figure, "outline before and after, draw-in"))
+
+
+def add_pictures(report: Report) -> None:
+    """Add the thinning and the sheet between its tools."""
+    for title, name, field, alt, more in (
+            ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("--hide", "all")),
+            ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", ())):
+        options = report.sheet_options(name, "--field", field, *more)
+        pictures.make_picture(pictures.Run(report.folder, report.job), options)
+        report.add(title, report.image(name, alt))
+
+
+def add_warnings(report: Report) -> None:
+    """Add the warnings of the run."""
+    found = [f"{warning['at']['file']}:{warning['at']['line']}: {warning['text']}" if warning["at"] else warning["text"]
+             for warning in report.job["warnings"]]
+    content = "<ul class=warn>" + "".join(f"<li>{html.escape(line)}</li>" for line in found) + "</ul>"
+    report.add("Warnings", content if found else "<p>None.</p>")
+
+
+def page(report: Report) -> str:
+    """Return the text of the page."""
+    title = html.escape(report.job["title"] or report.folder.resolve().name)
+    images_of = f"; completed at the planes {', '.join(report.options.mirror)} = 0" if report.options.mirror else ""
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title><style>{STYLE}</style></head><body><main>
+<h1>{title}</h1><p>State at a travel of {report.sheet.travel[report.last]:.4g} mm{images_of}.</p>
+{chr(10).join(report.parts)}
+</main></body></html>
+"""
+
+
+STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_force, add_beads, add_warnings, add_statistics,
+         add_setup)
+
+
+def write(options: argparse.Namespace) -> Path:
+    """Write the page and return its path."""
+    report = Report(options)
+    for step in each(STEPS, "report"):
+        step(report)
+    add_summary(report)
+    report.parts.insert(0, report.parts.pop())
+    path: Path = report.pictures / "report.html"
+    path.write_text(page(report), encoding="utf-8")
+    return path
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Write the page of the command line."""
+    parser = new_parser("report", __doc__)
+    parser.add_argument("run", metavar="RUN", help="folder of results")
+    parser.add_argument("--mirror", nargs="+", default=[], choices=list(AXES), metavar="AXIS",
+                        help="planes of symmetry x = 0, y = 0 or z = 0 to complete the model at")
+    forming_limit.add_options(parser)
+    parser.add_argument("--section", action="append", default=[], metavar="PLANE",
+                        help="x=0, y=12.5 or an angle in degrees; may be repeated (default: through the middle)")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of page and pictures (default: RUN/report)")
+    options = parser.parse_args(words)
+    options.mirror = sorted(set(options.mirror))
+    forming_limit.check_options(parser, options)
+    print(write(options))

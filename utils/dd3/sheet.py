@@ -1,0 +1,142 @@
+"""The sheet of a run as surfaces: its faces, outline, sections, and lines of nodes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dd3.errors import Problem
+from dd3.fields import Fields
+
+AXES = "xyz"
+LOWER, UPPER = np.arange(4), np.arange(4, 8)  # corners of a hexahedron in VTK's order
+SHIFT = 1e-6  # of the sheet's size: planes through nodes are cut beside them
+
+
+@dataclass
+class Line:
+    """Points of a sheet along a line, each between two nodes a and b at a fraction from a to b."""
+
+    a: np.ndarray
+    b: np.ndarray
+    fraction: np.ndarray
+
+    def at(self, values: np.ndarray) -> np.ndarray:
+        """Interpolate values of nodes."""
+        fraction = self.fraction.reshape(-1, *(1,) * (values.ndim - 1))
+        return (1 - fraction) * values[self.a] + fraction * values[self.b]
+
+
+class Sheet(Fields):
+    """A run with the connectivity of its sheet. Faces are given by their four corners."""
+
+    def __init__(self, run: str | Path) -> None:
+        super().__init__(run)
+        offsets = self.grid["Offsets"][...]
+        if np.unique(np.diff(offsets)).size != 1 or offsets[1] < 8:
+            raise Problem(f"{self.path}: the cells are no hexahedra")
+        self.corners = self.grid["Connectivity"][...].reshape(-1, offsets[1])[:, :8]
+        self.last = self.count - 1
+
+    def faces(self, upper: bool = True) -> np.ndarray:
+        """Return the corners of the upper or the lower face of the sheet, counter-clockwise seen from outside."""
+        mine, other = (UPPER, LOWER) if upper else (LOWER, UPPER)
+        inner = {tuple(sorted(face)) for face in self.corners[:, other]}
+        quads = np.array([face for face in self.corners[:, mine] if tuple(sorted(face)) not in inner])
+        return quads if upper else quads[:, ::-1]
+
+    def rim(self, upper: bool = True) -> np.ndarray:
+        """Return the nodes of the edges that belong to one face only, as rows of two."""
+        quads = self.faces(upper)
+        edges = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])
+        _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+        return edges[first[count == 1]]
+
+    def outline(self, upper: bool = True, mirror: Sequence[str] = ()) -> list[np.ndarray]:
+        """Return the lines of nodes around the sheet, without the edges on planes of symmetry."""
+        start = self.points(0)
+        edges = self.rim(upper)
+        for axis in mirror:
+            on = np.abs(start[:, AXES.index(axis)]) <= SHIFT * self.size()
+            edges = edges[~on[edges].all(axis=1)]
+        return [np.array(line) for line in chains([tuple(edge) for edge in edges])]
+
+    def size(self) -> float:
+        """Return the largest extent of the sheet at the start, mm."""
+        return float(np.ptp(self.points(0), axis=0).max())
+
+    def cut(self, normal: np.ndarray, distance: float, upper: bool = True, points: np.ndarray | None = None
+            ) -> list[Line]:
+        """Return the lines in which a plane cuts a face of the sheet, the longest first.
+
+        The plane is normal.x = distance; it cuts the initial shape unless other `points` are given.
+        """
+        points = self.points(0) if points is None else points
+        quads = self.faces(upper)
+        for shift in (SHIFT, -SHIFT, 0.0):
+            height = points @ np.asarray(normal, float) - distance - shift * self.size()
+            lines = [self.edge_line(line, height) for line in chains(crossed(quads, height))]
+            if lines:
+                return sorted(lines, key=lambda line: -length(line.at(points))[-1])
+        raise Problem(f"{self.path}: the plane does not cut the sheet")
+
+    @staticmethod
+    def edge_line(edges: Sequence[tuple[int, int]], height: np.ndarray) -> Line:
+        """Return the line through points of edges."""
+        a, b = np.array(edges).T
+        return Line(a, b, height[a] / (height[a] - height[b]))
+
+    def line_of_nodes(self, nodes: Sequence[int]) -> Line:
+        """Return a line through nodes, given by their numbers from 1."""
+        number = np.array(nodes, int) - 1
+        if number.min() < 0 or number.max() >= len(self.points(0)):
+            raise Problem(f"{self.path}: the nodes are 1 to {len(self.points(0))}")
+        return Line(number, number, np.zeros(len(number)))
+
+
+def crossed(quads: np.ndarray, height: np.ndarray) -> list[tuple[Any, Any]]:
+    """Return pairs of edges of faces that a plane crosses; an edge is the sorted pair of its nodes."""
+    above = height > 0
+    pairs: list[tuple[Any, Any]] = []
+    for quad in quads[above[quads].any(axis=1) & ~above[quads].all(axis=1)]:
+        edges = [tuple(sorted((int(quad[i]), int(quad[i - 1])))) for i in range(4)
+                 if above[quad[i]] != above[quad[i - 1]]]
+        pairs += zip(edges[::2], edges[1::2], strict=True)
+    return pairs
+
+
+def chains(pairs: Sequence[tuple[Any, Any]]) -> list[list[Any]]:
+    """Join pairs of equal ends to chains; open chains begin at an end."""
+    neighbours: dict[Any, list[Any]] = {}
+    for a, b in pairs:
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
+    lines = []
+    for start in sorted(neighbours, key=lambda end: (len(neighbours[end]), end)):
+        line = [start]
+        while neighbours[line[-1]]:
+            following = neighbours[line[-1]].pop(0)
+            neighbours[following].remove(line[-1])
+            line.append(following)
+        if len(line) > 1:
+            lines.append(line)
+    return lines
+
+
+def length(points: np.ndarray) -> np.ndarray:
+    """Return the length along a line of points, from 0."""
+    return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
+
+
+def plane(text: str) -> tuple[np.ndarray, float]:
+    """Return normal and distance of a plane: "y=0", or the angle from x of a plane through the z axis, in degrees."""
+    axis, equals, value = text.replace(" ", "").partition("=")
+    try:
+        if equals and axis in AXES and axis:
+            return np.eye(3)[AXES.index(axis)], float(value)
+        angle = np.radians(float(text))
+        return np.array([-np.sin(angle), np.cos(angle), 0.0]), 0.0
+    except ValueError:
+        raise Problem(f"plane '{text}': expected such as y=0, or an angle in degrees") from None

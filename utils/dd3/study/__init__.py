@@ -1,0 +1,1 @@
+"""The bending study of docs/reports/bending_study.md."""

@@ -1,0 +1,65 @@
+"""Run every case of the bending study of docs/reports/bending_study.md, gather the table and draw the figures.
+
+    dd3 study run                        all cases of input_files/bending_study/cases.csv
+    dd3 study run --quick                the four cases of quick.csv, to 5 mm, into bending_study_quick.out
+    dd3 study run --sets "fig3 fig6"     selected sets of cases
+    dd3 study run -- --profile utils/dd3/study/slurm        options of snakemake after --, such as --dry-run
+
+Call it in the project's folder, or give --cases. All cores are used. After an interruption the same command continues;
+finished cases are not repeated. `pip install --editable "./utils[study]"` installs snakemake, the workflow engine.
+"""
+
+import argparse
+import fcntl
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from dd3.command import new_parser
+from dd3.errors import Problem
+from dd3.programs import find_program, made_folder
+from dd3.study.runs import NOTE
+
+
+def cores(text: str) -> str:
+    """Return a number of cores, or `all`."""
+    if not re.fullmatch("[1-9][0-9]*|all", text):
+        raise argparse.ArgumentTypeError(f"takes a number, not {text}")
+    return text
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the workflow of the command line."""
+    parser = new_parser("study run", __doc__)
+    parser.add_argument("--quick", action="store_true", help="the cases of quick.csv, without figures")
+    parser.add_argument("--sets", default="", help="sets of cases, separated by blanks (default: all)")
+    parser.add_argument("--cores", type=cores, default="all", help="runs at a time (default: the number of cores)")
+    parser.add_argument("--work", type=Path, help="folder of the results (bending_study.out, bending_study_quick.out)")
+    parser.add_argument("--program", default="build/release/dd3imp", help="the program (build/release/dd3imp)")
+    parser.add_argument("--cases", type=Path, help="table of the cases (input_files/bending_study/cases.csv)")
+    parser.add_argument("options", nargs="*", metavar="-- OPTION", help="further options of snakemake")
+    options = parser.parse_args(words)
+    program = find_program(options.program)
+    if importlib.util.find_spec("snakemake") is None:
+        raise Problem('snakemake is missing: pip install --editable "./utils[study]"')
+    name = "quick" if options.quick else "cases"
+    cases = options.cases or Path(f"input_files/bending_study/{name}.csv")
+    work = made_folder(options.work or ("bending_study_quick.out" if options.quick else "bending_study.out"))
+    settings = [f"program={program}", f"cases={cases.resolve()}", f"sets={options.sets}"]
+    with (work / ".lock").open("w") as lock:
+        try:  # unlike the lock of snakemake it is released when the process is killed
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Problem(f"{work}: another run of the study is under way there") from None
+        print(f"== {len(list(work.glob(f'*/{NOTE}')))} cases are done in {work}; running the others", flush=True)
+        os.set_inheritable(lock.fileno(), True)
+        done = subprocess.run([
+            sys.executable, "-m", "snakemake", "--snakefile", str(Path(__file__).with_name("workflow.smk")),
+            "--directory", str(work), "--cores", options.cores, "--keep-going", "--nolock", "--rerun-incomplete",
+            "--rerun-triggers", "mtime", "params", "input", "--quiet", "all", *options.options, "--config", *settings,
+            *(["figures=no"] if options.quick else [])], check=False)
+    sys.exit(done.returncode)

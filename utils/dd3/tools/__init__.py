@@ -1,0 +1,1 @@
+"""Tool surfaces for dd3imp from CAD, meshes and profiles; the command is dd3 tool."""

@@ -1,0 +1,412 @@
+"""CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package.
+
+The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each
+is one patch of degree 2 x 2, so the surface has no gaps however the faces are trimmed. Faces with four edges get a
+regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
+below the tolerance.
+"""
+import argparse
+import os
+import re
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from dd3.errors import Problem
+from dd3.progress import Progress
+from dd3.tools.closest import closest
+from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
+from dd3.tools.division import Division
+from dd3.tools.joints import find_joints, folded, kinks, to_chords
+from dd3.tools.limits import limited
+from dd3.tools.parameters import filled, parameters_of
+from dd3.tools.report import MOST_NAMES, REACH, up
+from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
+
+SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+# Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
+NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
+MOST_ROUNDS = 8
+# Patches of a face beyond which it is not divided further.
+MOST_PATCHES = 2000
+# Kink inside a face above which it is divided further, degrees, in this many rounds.
+KINK, KINK_ROUNDS = 0.5, 2
+# Processor time after which OpenCASCADE and Gmsh are given up, s: reading, sewing, and on top of each for a MB of the
+# file; a mesh of all faces. They do not end on some files.
+READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
+# Part of the largest distance above which a face that closes in itself is cut.
+WORST = 0.1
+# Points of the distance: between the nodes.
+PLACES = grid(5)
+
+
+@dataclass
+class Model:
+    """What was meshed: patches' nodes (patch, v, u, 3), their parameters on the CAD's face (patch, v, u, 2; NaN where
+    unknown), node numbers and faces; per face its tag, its name and its largest distance from the CAD, mm."""
+
+    nodes: np.ndarray = None
+    uv: np.ndarray = None
+    labels: np.ndarray = None
+    face: np.ndarray = None
+    tags: list = field(default_factory=list)
+    names: list = field(default_factory=list)
+    distance: np.ndarray = None
+    parts: list = field(default_factory=list)
+    notes: list = field(default_factory=list)
+
+
+@contextmanager
+def silence() -> Iterator[None]:
+    """Discard what OpenCASCADE prints on the standard output."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with Path(os.devnull).open("wb") as null:
+        os.dup2(null.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def load(gmsh: Any, path: Path) -> None:
+    """Read the shapes of a file."""
+    gmsh.clear()
+    refuse_cut(path)
+    # Shapes are kept as they are; the lengths become mm by the unit that the file states.
+    try:
+        with silence(), limited(allowed(READ_TIME, path), f"{path}: OpenCASCADE does not end reading the file: it is "
+                                "damaged, or too large"):
+            gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+            gmsh.model.occ.synchronize()
+    except Exception as error:  # Gmsh raises nothing more specific
+        raise Problem(f"{path}: not a CAD file that OpenCASCADE reads: {error}") from None
+    if not gmsh.model.getEntities(2):
+        kind = "curves or points only" if gmsh.model.getEntities(0) else "no shapes"
+        raise Problem(f"{path}: no faces; the file holds {kind}")
+
+
+def allowed(seconds: float, path: Path) -> float:
+    """Return the processor time for the file, s."""
+    return seconds + TIME_PER_MB * path.stat().st_size / 1e6
+
+
+def refuse_cut(path: Path) -> None:
+    """Refuse BREP and IGES texts without their end: OpenCASCADE does not end reading the one, and takes the part of the
+    other that is there."""
+    data = path.read_bytes()
+    lines = data[-400:].split(b"\n")
+    if path.suffix.lower() in (".brep", ".brp"):
+        text = b"CASCADE Topology" in data[:200] and data.lstrip()[:4] != b"Open"
+        cut = text and not re.search(rb"\*\s+[-+]\d+ \d+\s*$", data[-200:])
+    else:  # the section of a line of IGES is in column 73: S is the first, T the last
+        text = path.suffix.lower() in (".iges", ".igs") and data[72:73] == b"S"
+        cut = text and not any(line[72:73] == b"T" for line in lines)
+    if cut:
+        raise Problem(f"{path}: the file is cut off")
+
+
+def free_edges(gmsh: Any) -> list[int]:
+    """Return the edges with one face, those without length and seams left out."""
+    single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
+    return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
+
+
+def refuse_gaps(gmsh: Any, path: Path, sewn: float | None) -> None:
+    """Refuse free edges that run beside each other: the faces were not joined, or not sewn within `sewn` mm."""
+    single = free_edges(gmsh)
+    if not single:
+        return
+    fine = []
+    for tag in single:
+        low, high = gmsh.model.getParametrizationBounds(1, tag)
+        fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
+    worst, where, count = 0.0, None, 0
+    for i, (tag, points) in enumerate(zip(single, fine)):
+        limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
+        for j, other in enumerate(fine):
+            gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
+            if gap <= limit:
+                count += 1
+                if gap >= worst:
+                    worst, where = gap, (tag, single[j])
+    if count:
+        faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
+        raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
+                      f"{faces[0]} and {faces[1]}; "
+                      + (f"--sew {up(worst):g} joins them" if worst > (sewn or 0.0)
+                         else "their courses differ, so --sew does not join them; mend the CAD"))
+
+
+def is_seam(gmsh: Any, edge: int) -> bool:
+    """Tell whether the only face of an edge has it on both sides."""
+    up = gmsh.model.getAdjacencies(1, edge)[0]
+    both = [abs(tag) for _, tag in gmsh.model.getBoundary([(2, up[0])], combined=False, oriented=True)]
+    return both.count(edge) > 1
+
+
+def sew(gmsh: Any, path: Path, tolerance: float, wanted: bool) -> list[str]:
+    """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
+    before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
+    if not before:
+        return []
+    faces = len(gmsh.model.getEntities(2))
+    try:
+        with silence(), limited(allowed(SEW_TIME, path), f"{path}: the faces are not sewn within {tolerance:g} mm in "
+                                f"{allowed(SEW_TIME, path):.0f} s of processor time: take a smaller --sew, or sew them "
+                                "in the CAD program"):
+            gmsh.model.occ.healShapes([], tolerance, False, False, False, True, True)
+            gmsh.model.occ.synchronize()
+        after = len(free_edges(gmsh))
+        lost = faces - len(gmsh.model.getEntities(2))
+    except Exception as error:
+        if wanted:
+            raise Problem(f"{path}: the faces cannot be sewn within {tolerance:g} mm: {error}") from None
+        after, lost = before, 0
+    if after >= before or (lost > 0 and not wanted):
+        load(gmsh, path)
+        return []
+    return [f"sewn: {before - after} of {before} free edges of the CAD, within {tolerance:g} mm"]
+
+
+def part_names(gmsh: Any) -> list[tuple[str, set[int]]]:
+    """Return the parts of the model: the name and the faces of each solid, or of each set of connected faces."""
+    parts = []
+    for number, (_, tag) in enumerate(gmsh.model.getEntities(3), 1):
+        name = gmsh.model.getEntityName(3, tag).split("/")[-1] or f"solid {number}"
+        faces = {abs(face) for _, face in gmsh.model.getBoundary([(3, tag)], combined=False, oriented=False)}
+        parts.append((name, faces))
+    inside = set().union(*(faces for _, faces in parts))
+    loose = [tag for _, tag in gmsh.model.getEntities(2) if tag not in inside]
+    edges = defaultdict(list)
+    for tag in loose:
+        for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+            edges[abs(edge)].append(tag)
+    while loose:
+        group, waiting = set(), [loose[0]]
+        while waiting:
+            tag = waiting.pop()
+            if tag in group:
+                continue
+            group.add(tag)
+            for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+                waiting += edges[abs(edge)]
+        name = next((gmsh.model.getEntityName(2, tag).split("/")[-1] for tag in sorted(group)
+                     if gmsh.model.getEntityName(2, tag)), "")
+        parts.append((name or f"shell {len(parts) + 1}", group))
+        loose = [tag for tag in loose if tag not in group]
+    return parts
+
+
+def choose(path: Path, parts: list[tuple[str, set[int]]], wanted: list[str] | None) -> list[int]:
+    """Return the tags of the faces of the parts wanted, by name or number; all by default."""
+    if not wanted:
+        return sorted(set().union(*(faces for _, faces in parts)))
+    chosen = set()
+    for word in wanted:
+        found = [faces for number, (name, faces) in enumerate(parts, 1)
+                 if word.lower() == name.lower() or word == str(number)]
+        if not found:
+            there = ", ".join(f"{number} '{name}'" for number, (name, _) in enumerate(parts, 1))
+            raise Problem(f"{path}: no part '{word}'; there are {there}")
+        chosen.update(*found)
+    return sorted(chosen)
+
+
+def doubled(gmsh: Any, tags: list[int]) -> list[tuple[int, int]]:
+    """Return the faces that lie on an earlier one: same area, centre and box."""
+    box = np.array([gmsh.model.getBoundingBox(2, tag) for tag in tags]).reshape(-1, 6)
+    centre = np.array([gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags]).reshape(-1, 3)
+    area = np.array([gmsh.model.occ.getMass(2, tag) for tag in tags])
+    size = np.linalg.norm(box[:, 3:] - box[:, :3], axis=1)
+    result = {}
+    for i, near in enumerate(cKDTree(centre).query_ball_point(centre, 2e-5 * size)):
+        for j in sorted(near):
+            if j < i and tags[j] not in result and abs(area[i] - area[j]) <= 1e-5 * area[i] and \
+                    max(np.abs(box[i] - box[j]).max(), np.abs(centre[i] - centre[j]).max()) <= 1e-5 * size[i]:
+                result[tags[i]] = tags[j]
+                break
+    return list(result.items())
+
+
+def collect(gmsh: Any, model: Model) -> None:
+    """Take the quadrilaterals of the mesh."""
+    label, xyz, _ = gmsh.model.mesh.getNodes()
+    place = np.zeros(int(label.max()) + 1, int)
+    place[label.astype(int)] = np.arange(len(label))
+    xyz = np.reshape(xyz, (-1, 3))
+    labels, parameters, face = [], [], []
+    for index, tag in enumerate(model.tags):
+        types, _, members = gmsh.model.mesh.getElements(2, tag)
+        table = parameters_of(gmsh, tag, len(place))
+        for kind, member in zip(types, members):
+            if kind != 10:
+                raise Problem(f"{model.names[index]}: Gmsh left elements that are no quadrilaterals")
+            member = np.reshape(member, (-1, 9)).astype(int)[:, NINE]
+            labels.append(member)
+            parameters.append(filled(table[member]))
+            face.append(np.full(len(member), index))
+    if not labels:
+        raise Problem("Gmsh made no mesh of the faces")
+    model.labels, model.uv, model.face = (np.concatenate(part) for part in (labels, parameters, face))
+    model.nodes = xyz[place[model.labels]]
+
+
+def measure(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.ndarray:
+    """Return the largest distance of the patches from the CAD for each face, mm.
+
+    With a shift, the distance from the surface at that distance along the patches' normals.
+    """
+    distance = np.zeros(len(model.tags))
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        if not len(chosen):
+            continue
+        point = points_at(net[chosen], *PLACES)
+        foot = closest(gmsh, tag, point, model.uv[chosen])[0]
+        if shift:
+            normal = areas_at(net[chosen], *PLACES)
+            normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-300)
+            distance[index] = np.abs(((point - foot) * normal).sum(axis=2) - shift).max()
+        else:
+            distance[index] = np.linalg.norm(foot - point, axis=2).max()
+    return distance
+
+
+def normals(gmsh: Any, model: Model) -> np.ndarray:
+    """Return the unit normals of the CAD at the nodes (patch, v, u, 3)."""
+    result = np.zeros_like(model.nodes)
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        if len(chosen):
+            points = model.nodes[chosen].reshape(-1, 9, 3)
+            uv = closest(gmsh, tag, points, model.uv[chosen], at_nodes=True)[1]
+            normal = np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3, 3, 3))
+            result[chosen] = normal
+    return result
+
+
+def middle_normals(model: Model) -> np.ndarray:
+    """Return normals in the middle of the patches, not of unit length."""
+    nodes = model.nodes
+    return np.cross(nodes[:, 1, 2] - nodes[:, 1, 0], nodes[:, 2, 1] - nodes[:, 0, 1])
+
+
+def worst_kinks(net: np.ndarray, face: np.ndarray, count: int) -> np.ndarray:
+    """Return the largest kink inside each face, degrees."""
+    joints = find_joints(net)
+    angle = kinks(net, joints)
+    a, b = face[joints.first // 4], face[joints.second // 4]
+    result = np.zeros(count)
+    np.maximum.at(result, a[a == b], angle[a == b])
+    return result
+
+
+def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, progress: Progress) -> None:
+    """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
+    division = Division(gmsh, model.tags)
+    best, start = None, time.process_time()
+    for rounds in range(MOST_ROUNDS):
+        failed = mesh_once(gmsh, path, model, division)
+        progress((rounds + 1) / MOST_ROUNDS)
+        if not failed:
+            kink, bent = faults(model, rounds)
+            score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).sum())
+            if best is None or score < best[0]:
+                best = score, model.nodes, model.uv, model.labels, model.face, model.distance
+            if not any(score):
+                break
+            full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
+            if not division.refine(np.where(full, 0.0, model.distance / tolerance), np.where(full, 0.0, kink / KINK),
+                                   bent - set(np.flatnonzero(full).tolist())):
+                break
+        if time.process_time() - start > MESH_TIME:
+            break
+    if best is None:
+        raise Problem(f"{path}: Gmsh cannot mesh {', '.join(model.names[model.tags.index(tag)] for tag in failed)}; "
+                      "divide or mend it in the CAD program, leave its part out by --part, or convert an STL export")
+    _, model.nodes, model.uv, model.labels, model.face, model.distance = best
+
+
+def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[Any]:
+    """Mesh the faces and measure their distance; return the faces where that failed."""
+    with limited(MESH_TIME, f"{path}: the faces are not meshed in {MESH_TIME:.0f} s of processor time: leave out "
+                            "what the sheet does not touch, in the CAD program or by --part"):
+        failed = division.mesh(gmsh)
+        if not failed:
+            collect(gmsh, model)
+            model.distance = measure(gmsh, model, from_nodes(model.nodes))
+    return failed
+
+
+def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
+    """Return the largest kink inside each face, degrees, 0 after the first rounds; and the faces with folds."""
+    net = from_nodes(model.nodes)
+    count = len(model.tags)
+    kink = worst_kinks(net, model.face, count) if rounds < KINK_ROUNDS else np.zeros(count)
+    return kink, set(model.face[folded(net)].tolist())
+
+
+def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
+    """Return the model of a CAD file, meshed within the tolerance."""
+    model = Model()
+    load(gmsh, path)
+    model.notes += sew(gmsh, path, options.sew or options.tolerance, options.sew is not None)
+    if options.scale != 1.0:
+        gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
+        gmsh.model.occ.synchronize()
+    refuse_gaps(gmsh, path, options.sew)
+    model.parts = part_names(gmsh)
+    tags = choose(path, model.parts, options.part)
+    twins = doubled(gmsh, tags)
+    if twins:
+        model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
+    model.tags = [tag for tag in tags if tag not in {twin for twin, _ in twins}]
+    others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]
+    owner = {tag: name for name, faces in model.parts for tag in faces}
+    model.names = [f"face {tag} ({gmsh.model.getType(2, tag)}"
+                   + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
+    gmsh.model.removeEntities(gmsh.model.getEntities(3))
+    gmsh.model.removeEntities(others)
+    tolerance = max(options.tolerance, options.sew or 0.0)
+    around = {tag: planes for tag in model.tags if (planes := planes_through_pole(gmsh, tag))}
+    if around:
+        cut_closed(gmsh, path, model, list(around), list(chain.from_iterable(around.values())))
+    mesh_within(gmsh, path, model, tolerance, progress)
+    # The worst faces: the others gain from the same cuts.
+    limit = max(tolerance, WORST * model.distance.max())
+    closed = [tag for tag, distance in zip(model.tags, model.distance) if distance > limit and is_closed(gmsh, tag)]
+    if closed:
+        boxes = [np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3)) for tag in closed]
+        cut_closed(gmsh, path, model, closed, planes_through(boxes))
+        mesh_within(gmsh, path, model, tolerance, progress)
+    return model
+
+
+def cut_closed(gmsh: Any, path: Path, model: Model, closed: list[int], planes: list[tuple[np.ndarray, np.ndarray]]
+              ) -> None:
+    """Cut faces, all by planes, as some close in themselves; the parts keep the names."""
+    gmsh.model.mesh.clear()
+    with silence(), limited(allowed(SEW_TIME, path), f"{path}: faces that close in themselves are not cut in "
+                            f"{allowed(SEW_TIME, path):.0f} s of processor time; cut them in the CAD program"):
+        parts = cut(gmsh, model.tags, planes)
+    model.notes.append("faces that close in themselves were cut: "
+                       + ", ".join(model.names[model.tags.index(tag)] for tag in closed[:MOST_NAMES])
+                       + (f" and {len(closed) - MOST_NAMES} more" if len(closed) > MOST_NAMES else ""))
+    model.names = [name for name, part in zip(model.names, parts) for _ in part]
+    model.tags = [tag for part in parts for tag in part]
+
+
+def surface_of(model: Model, nodes: np.ndarray | None = None) -> Surface:
+    """Return the surface of a model, or with its nodes moved."""
+    return Surface(from_nodes(model.nodes if nodes is None else nodes), model.face, model.names, list(model.notes))

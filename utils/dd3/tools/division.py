@@ -1,0 +1,172 @@
+"""Division of CAD faces into quadrilaterals: how often each edge is divided, and which faces have a regular mesh."""
+from collections import defaultdict
+from typing import Any
+
+import numpy as np
+
+# Turn of the normal or of the tangent over an edge's division before it is halved, degrees.
+TURN = 45.0
+# Corner angles of a face with a regular mesh, degrees.
+CORNERS = 25.0, 155.0
+# Fraction of its last value that the distance of a divided face must fall below; divisions without that before it is
+# given up: rounded up, the division of one edge of a face may stay the same.
+STAGNANT, MOST_STAGNANT = 0.8, 2
+# Points at which an edge is examined.
+SAMPLES = 17
+OPTIONS = {"Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 1, "Mesh.SubdivisionAlgorithm": 1,
+           "Mesh.MeshSizeFromCurvature": 360 / TURN, "Mesh.MeshSizeExtendFromBoundary": 1, "Mesh.Algorithm": 6,
+           "Mesh.ElementOrder": 1, "Mesh.HighOrderOptimize": 0, "Mesh.MeshSizeFromPoints": 0}
+
+
+def turning(vectors: np.ndarray) -> float:
+    """Return the sum of the angles between consecutive vectors, degrees."""
+    a, b = vectors[:-1], vectors[1:]
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)).sum())
+
+
+class Division:
+    """Numbers of divisions of the edges; a factor on them for each face, which `refine` raises."""
+
+    def __init__(self, gmsh: Any, tags: list[int]) -> None:
+        self.tags = tags
+        self.factor = dict.fromkeys(tags, 1.0)
+        self.last = {}  # the distance of a face when it was divided further
+        self.stagnant = defaultdict(int)
+        self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
+        self.turn = {}
+        for tag, loop in self.loops.items():
+            for edge in set(map(abs, loop)):
+                self.turn[edge, tag] = self.edge_turn(gmsh, edge, tag)
+        low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+        self.size = float(np.linalg.norm(high - low))
+        self.length = {edge: gmsh.model.occ.getMass(1, edge) for edge, _ in self.turn}
+        self.corners = {tag: self.corners_of(gmsh, loop) for tag, loop in self.loops.items()}
+        self.regular = {tag for tag, corners in self.corners.items() if corners}
+        self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}
+
+    @staticmethod
+    def loop(gmsh: Any, tag: int) -> list[int]:
+        """Return the edges of a face, signed."""
+        return [edge for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
+
+    @staticmethod
+    def edge_turn(gmsh: Any, edge: int, tag: int) -> float:
+        """Return the turn of the tangent or of the face's normal along an edge, the larger one, degrees."""
+        low, high = gmsh.model.getParametrizationBounds(1, edge)
+        t = np.linspace(low[0], high[0], SAMPLES)
+        tangent = np.reshape(gmsh.model.getDerivative(1, edge, t), (-1, 3))
+        try:
+            uv = gmsh.model.reparametrizeOnSurface(1, edge, t, tag)
+            normal = np.reshape(gmsh.model.getNormal(tag, uv), (-1, 3))
+        except Exception:  # an edge whose curve on the surface is missing
+            normal = np.zeros((1, 3))
+        return max(turning(tangent), turning(normal))
+
+    def corners_of(self, gmsh: Any, loop: list[int]) -> list[int]:
+        """Return the corners of a face with a regular mesh: of four different edges, or of three that end at a pole,
+        an edge without length, which is the first corner. They meet at clear angles; else there are no corners."""
+        lengths = [self.length[abs(edge)] > 1e-9 * self.size for edge in loop]
+        if len(loop) != 4 or len(set(map(abs, loop))) != 4 or sum(lengths) < 3:
+            return []
+        first = 0 if all(lengths) else lengths.index(False) + 1
+        edges = [edge for edge in loop[first:] + loop[:first] if lengths[loop.index(edge)]]
+        ends = [self.ends_of(gmsh, edge) for edge in edges]
+        size = max(np.linalg.norm(point[1] - point[0]) for point, _ in ends)
+        for (point, along), (point_next, along_next) in zip(ends, ends[1:] + ends[:1]):
+            a, b = -along[1], along_next[0]
+            scale = np.linalg.norm(a) * np.linalg.norm(b)
+            if np.linalg.norm(point[1] - point_next[0]) > 1e-4 * size or scale == 0.0 or \
+                    not CORNERS[0] < np.degrees(np.arccos(np.clip(a @ b / scale, -1, 1))) < CORNERS[1]:
+                return []
+        return [gmsh.model.getBoundary([(1, edge)], combined=False)[0][1] for edge in edges]
+
+    @staticmethod
+    def ends_of(gmsh: Any, edge: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the points and tangents at the start and the end of a signed edge."""
+        low, high = gmsh.model.getParametrizationBounds(1, abs(edge))
+        place = np.array([low[0], high[0]])
+        tangent = np.reshape(gmsh.model.getDerivative(1, abs(edge), place), (2, 3))
+        point = np.reshape(gmsh.model.getValue(1, abs(edge), place), (2, 3))
+        return (point, tangent) if edge > 0 else (point[::-1], -tangent[::-1])
+
+    def counts(self) -> dict[int, int]:
+        """Return the divisions of each edge; opposite edges of regular faces have the same."""
+        need = defaultdict(lambda: 1)
+        for (edge, tag), turn in self.turn.items():
+            if self.length[edge] <= 1e-9 * self.size:
+                continue
+            count = max(1.0, turn / TURN - 1e-6)
+            if self.curved[tag] and tag not in self.regular:
+                # Divisions of a trimmed face are at most four times as long as the curvature allows.
+                widest = max((self.turn[other, tag] / self.length[other] for other in set(map(abs, self.loops[tag]))
+                              if self.length[other] > 1e-3 * self.size), default=0.0)
+                count = max(count, widest * self.length[edge] / TURN / 4)
+            if not self.curved[tag] and self.factor[tag] > 1.0:
+                count = max(count, self.length[edge] / self.size * 4)
+            need[edge] = max(need[edge], int(np.ceil(count * self.factor[tag])))
+        group = {edge: edge for edge, _ in self.turn}
+
+        def leader(edge: int) -> int:
+            while group[edge] != edge:
+                edge = group[edge]
+            return edge
+
+        for tag in self.regular:
+            a, b, c, d = (abs(edge) for edge in self.loops[tag])
+            # At a pole the edge without length and the one opposite are not alike.
+            group[leader(a)] = leader(c)
+            group[leader(b)] = leader(d)
+        largest = defaultdict(int)
+        for edge in group:
+            largest[leader(edge)] = max(largest[leader(edge)], need[edge])
+        return {edge: largest[leader(edge)] for edge in group}
+
+    def mesh(self, gmsh: Any) -> list[Any]:
+        """Make the mesh of second order; return the faces where that failed, divided further for another try."""
+        gmsh.model.mesh.clear()
+        gmsh.model.mesh.removeConstraints()
+        for name, value in OPTIONS.items():
+            gmsh.option.setNumber(name, value)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", self.size / 3)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", self.size * 1e-5)
+        for edge, count in self.counts().items():
+            if self.length[edge] > 1e-9 * self.size:
+                gmsh.model.mesh.setTransfiniteCurve(edge, count + 1)
+        for tag in self.regular:
+            corners = self.corners[tag]
+            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
+        gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size / self.factor.get(tag, 1.0)
+                                        if dim == 2 else size)
+        try:
+            gmsh.model.mesh.generate(2)
+        except Exception:  # Gmsh raises nothing more specific
+            failed = [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2] or self.tags
+            for tag in failed:
+                self.factor[tag] *= 1.6
+                self.regular.discard(tag)
+            return failed
+        gmsh.model.mesh.setOrder(2)
+        return []
+
+    def refine(self, distance: np.ndarray, kink: np.ndarray, folded: set[int]) -> bool:
+        """Raise the factors of faces whose relative distance or kink exceeds 1, or that have folded patches; return
+        whether any changed."""
+        changed = False
+        for index, tag in enumerate(self.tags):
+            wanted = 1.0
+            if distance[index] >= STAGNANT * self.last.get(tag, np.inf):
+                self.stagnant[tag] += 1
+            # A distance that does not fall is a gap of the CAD between edge and face.
+            if distance[index] > 1.0 and self.stagnant[tag] < MOST_STAGNANT:
+                self.last[tag] = distance[index]
+                wanted = float(np.clip(1.1 * distance[index]**0.3, 1.25, 2.5))
+            elif kink[index] > 1.0:
+                wanted = float(np.clip(1.1 * kink[index]**0.5, 1.2, 2.0))
+            if index in folded:
+                if tag in self.regular and self.factor[tag] > 1.5:
+                    self.regular.discard(tag)
+                wanted = max(wanted, 1.6)
+            if wanted > 1.0 and self.factor[tag] < 60.0:
+                self.factor[tag] *= wanted
+                changed = True
+        return changed

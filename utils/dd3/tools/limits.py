@@ -1,0 +1,57 @@
+"""Calls of a library that on some damaged files does not end, or ends the process by a fault."""
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+INTERVAL = 0.2  # between looks at the clock, s
+
+
+@contextmanager
+def limited(seconds: float, message: str) -> Iterator[None]:
+    """End the program with exit code 2 and a message if the body takes longer, in processor time of the process, s."""
+    done, stop = threading.Event(), time.process_time() + seconds
+
+    def watch() -> None:
+        while not done.wait(INTERVAL):
+            if time.process_time() > stop:
+                print(f"error: {message}", file=sys.stderr, flush=True)
+                os._exit(2)  # the body holds the main thread
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        done.set()
+        watcher.join()
+
+
+def supervised(body: Callable[..., Any], message: str) -> None:
+    """Call a function in a child process; end the program with its exit code, or with 2 and a message if a fault ended
+    it."""
+    if not hasattr(os, "fork"):
+        body()
+        return
+    sys.stdout.flush()
+    child = os.fork()
+    if not child:
+        body()
+        return
+    status = wait_for(child)
+    if os.WIFSIGNALED(status) and os.WTERMSIG(status) not in (2, 13, 15):  # interrupted, pipe closed, terminated
+        print(f"error: {message}", file=sys.stderr, flush=True)
+        sys.exit(2)
+    sys.exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 128 + os.WTERMSIG(status))
+
+
+def wait_for(child: int) -> int:
+    """Return the status of a child, which gets the interrupts too."""
+    while True:
+        try:
+            return os.waitpid(child, 0)[1]
+        except KeyboardInterrupt:
+            pass

@@ -1,0 +1,50 @@
+"""Tools as CAD by Gmsh: profiles with fillets, and STEP files of parts."""
+import sys
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import gmsh
+
+from dd3.errors import run
+from dd3.gmsh_session import session
+from dd3.tools.cad import silence
+
+
+def edges(chosen: Callable[..., Any]) -> list[int]:
+    """Return the edges whose box (x, y, z of its two corners) is chosen."""
+    gmsh.model.occ.synchronize()
+    return [tag for _, tag in gmsh.model.getEntities(1) if chosen(gmsh.model.getBoundingBox(1, tag))]
+
+
+def wire(corners: list[tuple[float, float]], radius: float) -> list[tuple[int, int]]:
+    """Return the curves of a profile: points (y, z) in the plane x = 0, the inner ones rounded."""
+    occ = gmsh.model.occ
+    lines = []
+    for (y0, z0), (y1, z1) in pairwise(corners):
+        lines.append(occ.addLine(occ.addPoint(0, y0, z0), occ.addPoint(0, y1, z1)))
+    curves = lines[:1]
+    for line in lines[1:]:
+        arc = occ.fillet2D(curves[-1], line, radius)
+        curves += [arc, line]
+    return [(1, curve) for curve in curves]
+
+
+def write(parts: dict[str, Callable[..., Any]]) -> None:
+    """Call the function of each part and write what it has made as <name>.step into the folder of the command line."""
+    run(lambda: write_into(parts, sys.argv[1:]))
+
+
+def write_into(parts: dict[str, Callable[..., Any]], words: list[str]) -> None:
+    """Write the parts into the only folder that is named."""
+    if len(words) != 1:
+        sys.exit("error: expected the folder of the files")
+    folder = Path(words[0])
+    folder.mkdir(parents=True, exist_ok=True)
+    with session(), silence():
+        for name, make in parts.items():
+            make()
+            gmsh.model.occ.synchronize()
+            gmsh.write(str(folder / f"{name}.step"))
+            gmsh.clear()
