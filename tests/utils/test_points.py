@@ -36,10 +36,10 @@ def close(value, wanted, tolerance=1e-3):
 
 def test_values(program, files):
     """Check tension, r-values, surface and normals against Hill's and Swift's formulas."""
-    path, names = point.names_in(f"{files / 'steel.dat'}:STEEL")
+    path, names = point.names_in(f"{files / 'steel.dat'}:STEEL", program)
     assert (path, names) == (str(files / "steel.dat"), ["steel"]), (path, names)
     ratios = np.radians([0, 30, 80, 200])
-    points = point.run(program, point.deck(path, names, [0, 45, 90], ratios, 0.2))
+    points = point.run(program, point.deck(path, names, [0, 45, 90], ratios, 0.2))[1]
     stress = points["t0_0"][-1]["s11"]
     close(stress, 565 * (0.007117 + 0.2 - stress / 2.1e5) ** 0.259, 1e-6)
     for angle, r, stress in ((0, H / G, 1), (45, N / (F + G) - 0.5, 2 / math.sqrt(F + G + 2 * N)),

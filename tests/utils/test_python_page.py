@@ -23,4 +23,5 @@ def test_examples(program, tmp_path):
     assert isinstance(last, pv.UnstructuredGrid) and last.n_cells == run.fields[0].n_cells
     assert "thickness" in last.cell_data and "stress" in last.point_data
     assert {tool["name"] for tool in run.job["tools"]} == {"punch", "die", "blank_holder"}
+    assert run.job["outcome"]["exit_code"] == 0 and run.job["phases"][-1]["result"]["travel"] > 39
     assert list(run.status["outcome"].unique()) == ["accepted"] and isinstance(run, dd3.Run)

@@ -1,4 +1,4 @@
-"""Tables, status.csv, blocks of shape files, the description of older runs, and runs of a stand-in program."""
+"""Tables, status.csv, blocks of shape files and runs of a stand-in program."""
 
 import json
 import stat
@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import dd3
-from dd3 import legacy, programs, tables
+from dd3 import programs, tables
 from dd3.errors import Problem
 from dd3.run import file_of, read_frame
 from dd3.study import cases
@@ -39,20 +39,6 @@ DECK = """*PARAMETER
   move = die 0 0 0
 """
 TOOLS = '*TOOL Punch\n  patches = "${shape}.bez" ! a surface\n*INCLUDE "tools.inc"\n'
-LOG = """1 increments, 0 cut back
-time by section, s:
-  material      2.658
-  solve         0.2082
-reached the end; results in x
-"""
-ECHO = """dd3imp 0.1.0: job.dat
-A title
-*TOOL Punch
-  patches = "die.bez"                               # a surface
-*PHASE draw
-linear solver: umfpack
-*** no part of the input
-"""
 PROGRAM = """#!{python}
 import sys, time
 print("said", *sys.argv[1:])
@@ -118,21 +104,6 @@ def test_blocks(tmp_path):
     assert (tool.keyword, tool.name, tool.folder) == ("tool", "Punch", tmp_path / "parts")
     assert tool.value("patches") == '"punch.bez"' and tool.value("friction") is None
     assert [" ".join(value.split()) for _, value in phase.values] == ["punch 0 0 -40", "die 0 0 0"]
-
-
-def test_older_runs(tmp_path):
-    """Check the description of a run without run.json: the values of its log, the folders of its input file."""
-    (tmp_path / "parts").mkdir()
-    (tmp_path / "job.dat").write_text(DECK)
-    (tmp_path / "parts" / "tools.inc").write_text(TOOLS)
-    run = tmp_path / "job.out"
-    run.mkdir()
-    (run / "job.log").write_text(ECHO + LOG)
-    job = dd3.open(run).job
-    assert job["tools"] == [{"name": "punch", "patches": str(tmp_path / "parts" / "die.bez")}]
-    assert [block["keyword"] for block in job["input"]["blocks"]] == ["tool", "phase"]
-    assert job["title"] == "A title" and job["sections"] == {"material": 2.658, "solve": 0.2082}
-    assert legacy.job_of(run, tmp_path / "job.dat")["outcome"]["message"] == "reached the end; results in x"
 
 
 def test_description(tmp_path):

@@ -10,10 +10,12 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from dd3.errors import Problem
+from dd3.run import read_job
 from dd3.tables import read_points
 
 POINTS = "points.dat"  # input file of run_points, as its messages name it
@@ -21,7 +23,7 @@ POINTS = "points.dat"  # input file of run_points, as its messages name it
 
 @dataclass
 class Finished:
-    """A run that has ended: exit code, what it printed, seconds and largest memory (MB)."""
+    """A run that has ended: exit code, what it printed, seconds and largest memory (MB); of single points, run.json."""
 
     code: int
     output: str
@@ -29,6 +31,7 @@ class Finished:
     wall: float
     cpu: float
     memory: float
+    job: dict[str, Any] = field(default_factory=dict)
 
 
 def find_program(path: str | Path) -> Path:
@@ -129,4 +132,5 @@ def run_points(program: str | Path, text: str, *options: str, timeout: float | N
         if done.code not in (0, 2, 3) or (done.code == 0 and not written and "--check" not in options):
             raise Problem(f"{program}: error: exit code {done.code}, and no results\n"
                           "  expected: --program with the path of dd3imp")
+        done.job = read_job(folder) if written else {}
         return done, read_points(folder) if done.code == 0 and written else {}

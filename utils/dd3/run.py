@@ -5,7 +5,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dd3 import legacy
 from dd3.errors import Problem
 from dd3.tables import is_whole, read_table, read_text, table_file
 
@@ -77,11 +76,9 @@ def read_frame(run: str | Path, name: str = "history.csv", *needed: str) -> "pd.
     return frame
 
 
-def read_job(folder: Path, settings: dict[str, str] | None = None, deck: Path | None = None) -> dict[str, Any]:
+def read_job(folder: Path) -> dict[str, Any]:
     """Return the description of a run."""
     path = folder / "run.json"
-    if not path.is_file():
-        return legacy.job_of(folder, deck, settings)
     try:
         job: dict[str, Any] = json.loads(read_text(path))
     except ValueError:

@@ -56,14 +56,14 @@ def legend(axes, **options):
 def von_mises(program):
     """Return the ends of the paths in the plane of s11 and s22 for a von Mises material."""
     text = pp.deck(DECKS / "von_mises.dat", ["steel"], [], RATIOS, 0.1)
-    points = pp.run(program, text)
+    points = pp.run(program, text)[1]
     return [points[f"p0_{i}"][-1] for i in range(len(RATIOS))]
 
 
 def orthotropic(program, law, figure, measured=None, compression=False):
     """Draw yield surface, r-values and yield stresses of a sheet."""
-    path, materials = pp.names_in(str(DECKS / f"{law}.dat"))
-    points = pp.run(program, pp.deck(path, materials, ANGLES, RATIOS, 0.1))
+    path, materials = pp.names_in(str(DECKS / f"{law}.dat"), program)
+    points = pp.run(program, pp.deck(path, materials, ANGLES, RATIOS, 0.1))[1]
     axes = figure.subplot_mosaic([["surface", "r"], ["surface", "stress"]], width_ratios=(1, 1.1))
     normals = np.cos(RATIOS), np.sin(RATIOS)
     pp.draw_surface(axes["surface"], [points[f"p0_{i}"][-1] for i in range(len(RATIOS))], normals, color="C0",
@@ -75,7 +75,7 @@ def orthotropic(program, law, figure, measured=None, compression=False):
     legend(axes["surface"], loc="upper left")
     ways = [("tension", 0.1, "-")] + ([("compression", -0.1, ":")] if compression else [])
     for label, strain, line in ways:
-        points = pp.run(program, pp.deck(path, materials, ANGLES, [], strain))
+        points = pp.run(program, pp.deck(path, materials, ANGLES, [], strain))[1]
         for name, value in (("r", pp.r_value), ("stress", pp.yield_stress)):
             values = [abs(value(points[f"t0_{angle}"])) for angle in ANGLES]
             pp.draw_over_angle(axes[name], ANGLES, values, color="C0", linestyle=line, label=label)
@@ -92,15 +92,15 @@ def orthotropic(program, law, figure, measured=None, compression=False):
 
 def isotropic(program, law, figure):
     """Draw yield surfaces in the plane of two normal stresses and in that of a normal and a shear stress."""
-    path, materials = pp.names_in(str(DECKS / f"{law}.dat"))
+    path, materials = pp.names_in(str(DECKS / f"{law}.dat"), program)
     axes = figure.subplots(1, 2)
-    points = pp.run(program, pp.deck(path, materials, [], RATIOS, 0.1))
+    points = pp.run(program, pp.deck(path, materials, [], RATIOS, 0.1))[1]
     text = pp.deck(path, [], [], [], 0.1)
     for m, material in enumerate(materials):
         for i, ratio in enumerate(RATIOS):
             text += pp.point(f"q{m}_{i}", material, SHEAR, [([0.05 * np.cos(ratio), 0, 0, 0.05 * np.sin(ratio), 0, 0],
                                                             10)]) + "\n"
-    shear, names, normals = pp.run(program, text), labels(law), (np.cos(RATIOS), np.sin(RATIOS))
+    shear, names, normals = pp.run(program, text)[1], labels(law), (np.cos(RATIOS), np.sin(RATIOS))
     for m, material in enumerate(materials):
         style = {"color": f"C{m}", "label": names[material] if len(materials) > 1 else law}
         pp.draw_surface(axes[0], [points[f"p{m}_{i}"][-1] for i in range(len(RATIOS))], normals if m == 0 else None,
@@ -136,7 +136,7 @@ def tension(program, law, figure, points_of=None):
 def deck_run(program, law):
     """Return the rows of the law's input file by point."""
     path = (DECKS / f"{law}.dat").as_posix()
-    return pp.run(program, f'*INCLUDE "{path}"\n')
+    return pp.run(program, f'*INCLUDE "{path}"\n')[1]
 
 
 def prager(program, law, figure):

@@ -26,23 +26,35 @@ from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
 from dd3.programs import POINTS, run_points
 from dd3.progress import each
-from dd3.tables import label_of, read_points
-from dd3.tools.blocks import read_blocks
+from dd3.tables import label_of, read_points, read_text
 
 TENSION = "e11 s22 s33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
+# A point beside a file of materials, whose names the program then gives.
+PROBE = f"""*MATERIAL dd3_probe
+  young = 1
+  poisson = 0
+  yield = von_mises
+  hardening = perfect Y0=1
+*POINT dd3_probe
+  material = dd3_probe
+  control = {TENSION}
+  target = 1e-6 0 0 0 0 0 steps=1
+"""
 PATH = [float(angle) for angle in range(0, 91, 15)]  # angles of the picture
 
 Rows = list[dict[str, float]]
 Targets = Iterable[tuple[Sequence[float], int]]
 
 
-def names_in(file: str) -> tuple[str, list[str]]:
+def names_in(file: str, program: str | Path) -> tuple[str, list[str]]:
     """Return the path of FILE or FILE:NAME, and the names of its materials in small letters."""
     path, _, chosen = file.rpartition(":")
     if not path or Path(file).exists():
         path, chosen = file, ""
-    names = [block.name.lower() for block in read_blocks(path) if block.keyword == "material"]
+    read_text(path)  # a Problem if that is not possible
+    job = run(program, f'*INCLUDE "{Path(path).resolve()}"\n{PROBE}')[0]
+    names = [material["name"] for material in job["materials"][:-1]]
     if not names:
         raise Problem(f"{path}: no *MATERIAL")
     if chosen and chosen.lower() not in names:
@@ -73,15 +85,15 @@ def deck(path: str | Path, materials: Sequence[str], angles: Iterable[float], ra
     return "\n".join(blocks) + "\n"
 
 
-def run(program: str | Path, text: str) -> dict[str, Rows]:
-    """Return the rows of a run of single points by point; its input includes files of the user."""
+def run(program: str | Path, text: str) -> tuple[dict[str, Any], dict[str, Rows]]:
+    """Return the description of a run of single points and its rows by point; its input includes files of the user."""
     done, points = run_points(program, text)
     if done.code != 0:
         # Messages on the generated input name the files that it includes.
         included = ", ".join(re.findall(r'^\*INCLUDE "(.*)"', text, re.MULTILINE))
         said = re.sub(re.escape(POINTS) + r"(:\d+)?", included, done.errors.strip())
         raise Problem(said or f"{program} failed")
-    return points
+    return done.job, points
 
 
 def r_value(rows: Rows) -> float:
@@ -146,8 +158,8 @@ def picture(files: Sequence[str | Path], program: str | Path, strain: float = 0.
     axes = axes.ravel()
     number = 0
     for file in each(files, "materials"):
-        path, materials = names_in(str(file))
-        points = run(program, deck(path, materials, PATH, ratios, strain))
+        path, materials = names_in(str(file), program)
+        points = run(program, deck(path, materials, PATH, ratios, strain))[1]
         for m, material in enumerate(materials):
             draw(axes, points, m, material, ratios, colour_of(number))
             number += 1

@@ -309,15 +309,14 @@ def opened(options: argparse.Namespace) -> Iterator[Run]:
         yield Run(options.run)
         return
     options.field = options.field or "thickness"
-    settings = dict(options.set)
     with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
         done = launch(command(find_program(options.program), options.run, None,
-                              ["--check", "--quiet", "--initial", folder], settings))
+                              ["--check", "--quiet", "--initial", folder], dict(options.set)))
         if done.code != 0:
             if not (Path(folder) / "fields.vtkhdf").exists():
                 raise Problem(done.errors.strip())
             print(done.errors.strip(), file=sys.stderr)
-        yield Run(folder, read_job(Path(folder), settings, Path(options.run)))
+        yield Run(folder)
 
 
 def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Sequence[float]:
