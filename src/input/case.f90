@@ -235,7 +235,7 @@ module dd3_input_case
     !> Whether a failed increment is repeated with a smaller r.
     logical :: cutback = .false.
     !> Whether there is a line search.
-    logical :: damping = .false.
+    logical :: line_search = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.

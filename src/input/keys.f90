@@ -196,8 +196,8 @@ contains
           lower=2.0_wp, upper=1000.0_wp), &
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
-      row("damping", kind_logical, "", "on", "on: line search, which shortens an iteration that "// &
-          "inverts an element or overshoots")]
+      row("line_search", kind_logical, "", "on", "on: shorten an iteration that inverts "// &
+          "an element or overshoots, end iterations that do not approach a solution")]
   end function newton_keys
 
   function solver_keys() result(key)

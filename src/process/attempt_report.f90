@@ -30,7 +30,7 @@ module dd3_process_attempt_report
       "stop rigid motion"
   character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
   character(len=*), parameter :: cutback_remedy = "cutback = on in *NEWTON"
-  character(len=*), parameter :: damping_remedy = "damping = on in *NEWTON"
+  character(len=*), parameter :: line_search_remedy = "line_search = on in *NEWTON"
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: limit_remedy = "a larger value of this limit"
   character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
@@ -90,7 +90,7 @@ contains
 
     associate (verdict => attempt%verdict)
       row%iterations = verdict%iterations
-      row%damped = attempt%course%shortened
+      row%shortened = attempt%course%shortened
       if (allocated(attempt%course%norm)) then
         if (size(attempt%course%norm) > 0) &
             row%criterion = attempt%course%norm(size(attempt%course%norm))
@@ -186,8 +186,8 @@ contains
     associate (phase => model%phase(committed%phase), verdict => attempt%verdict)
       if (.not. phase%newton%cutback) then
         remedy = cutback_remedy
-      else if (.not. phase%newton%damping) then
-        remedy = damping_remedy
+      else if (.not. phase%newton%line_search) then
+        remedy = line_search_remedy
       else if (any(verdict%cause == [cause_large_step, cause_inverted, cause_inverted_strain])) then
         remedy = usual_rotation
         if (phase%limits%rotation%active) &

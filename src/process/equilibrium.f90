@@ -56,7 +56,7 @@ module dd3_process_equilibrium
   end type equilibrium_t
 
   !> Work of the residual in a step that is round-off, over the norms of internal forces and step.
-  real(wp), parameter :: negligible_work = 1.0e-9_wp
+  real(wp), parameter :: negligible_work = 1.0e-12_wp
   !> Largest displacement of a node in an iteration, over the thickness of the sheet.
   real(wp), parameter :: largest_step = 20.0_wp
   !> Number of contact status kept, and the value before the first.

@@ -68,7 +68,7 @@ contains
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)
       call solve(equilibrium, convergence_tolerance(phase), phase%newton%iterations, &
-          phase%newton%damping, attempt%course)
+          phase%newton%line_search, attempt%course)
       call conclude(equilibrium, attempt)
       if (attempt%verdict%outcome /= verdict_converged) attempt%passage = &
           find_passage(model, committed, prediction%step%x, prediction%step%tool)

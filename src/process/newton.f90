@@ -89,8 +89,8 @@ module dd3_process_newton
     type(verdict_t) :: verdict
   end type newton_course_t
 
-  !> Ratio |g(s)/g(0)| up to which a step is not shortened. A more exact line search costs
-  !> evaluations, and fewer iterations do not repay them.
+  !> Ratio |g(s)/g(0)| up to which a step is not shortened. Smaller: more evaluations for hardly
+  !> fewer iterations; larger: more iterations where sheets bend and unbend over radii.
   real(wp), parameter :: largest_ratio = 0.3_wp
   !> Distance of the next fraction from the ends of its interval, over the interval, and the largest
   !> number of times that a step is shortened.
@@ -104,14 +104,14 @@ module dd3_process_newton
 contains
 
   !> Iterate from the present trial solution.
-  subroutine solve(problem, tolerance, iterations, damping, course)
+  subroutine solve(problem, tolerance, iterations, line_search, course)
     class(newton_problem_t), intent(inout) :: problem
     !> Of the scaled norm.
     real(wp), intent(in) :: tolerance
     !> Largest number of iterations.
     integer, intent(in) :: iterations
     !> Whether steps are shortened, and iterations without contraction are ended.
-    logical, intent(in) :: damping
+    logical, intent(in) :: line_search
     type(newton_course_t), intent(out) :: course
 
     real(wp) :: start
@@ -124,7 +124,7 @@ contains
       if (interrupted()) return
       course%iterations = j
       course%outcome = newton_invalid
-      call evaluate(problem, damping, start, course)
+      call evaluate(problem, line_search, start, course)
       if (course%verdict%outcome /= verdict_converged) return
       course%norm = [course%norm, problem%scaled_norm]
       course%outcome = newton_converged
@@ -132,7 +132,7 @@ contains
         if (problem%is_admissible()) return
       end if
       course%outcome = newton_diverging
-      if (damping .and. is_lost(course%norm)) return
+      if (line_search .and. is_lost(course%norm)) return
       course%outcome = newton_invalid
       call problem%linearise(course%verdict)
       if (course%verdict%outcome /= verdict_converged) return
@@ -145,9 +145,9 @@ contains
   !> Evaluate the problem after a step, which is shortened if need be: regula falsi between a
   !> fraction short of the minimum and one beyond it. The step to the first iteration, that of the
   !> prediction, is only kept in the domain of the problem.
-  subroutine evaluate(problem, damping, start, course)
+  subroutine evaluate(problem, line_search, start, course)
     class(newton_problem_t), intent(inout) :: problem
-    logical, intent(in) :: damping
+    logical, intent(in) :: line_search
     !> Slope at the start of the step.
     real(wp), intent(in) :: start
     !> Holds the number of the iteration.
@@ -165,7 +165,7 @@ contains
     slope_beyond = -start
     do k = 0, most_times
       call problem%evaluate(course%iterations == 1, course%verdict)
-      if (.not. damping .or. k == most_times) return
+      if (.not. line_search .or. k == most_times) return
       slope = -slope_short
       too_far = .true.
       if (course%verdict%outcome == verdict_converged) then

@@ -294,7 +294,7 @@ contains
     call json%add("tolerance", newton%tolerance)
     call json%add("iterations", newton%iterations)
     call json%add("cutback", newton%cutback)
-    call json%add("damping", newton%damping)
+    call json%add("line_search", newton%line_search)
     call json%end_object()
   end subroutine add_newton
 

@@ -37,7 +37,7 @@ MIDDLE = 15
 # Changes of the deck that a restart accepts: name, replaced text, settings, records of the restart that are lost.
 ACCEPTED = (
     ("limits", (("strain = 0.02", "strain = 0.03"),), (), ""),
-    ("newton", (("cutback = on", "cutback = on\n  tolerance = 1e-3\n  damping = off"),), ("iterations=20",), ""),
+    ("newton", (("cutback = on", "cutback = on\n  tolerance = 1e-3\n  line_search = off"),), ("iterations=20",), ""),
     ("solver", (("method = auto", "method = umfpack"),), (), ""),
     ("penalty", (), ("p=3000",), ""),
     ("output", (("every 0.4 mm", "increments 3"),), ("history=1", "restart=7"), ""),
@@ -130,7 +130,7 @@ def interrupted(runner, work):
 def stopped(runner, work):
     """A run that stops: continued unchanged it stops again in the same way; with more iterations it reaches the end."""
     for name, change, settings in (("iterations", "cutback = off", ("iterations=4",)),
-                                   ("cut-backs", "cutback = on\n  damping = off", ("iterations=2",))):
+                                   ("cut-backs", "cutback = on\n  line_search = off", ("iterations=2",))):
         first, again, output = work / name / "first", work / name / "again", work / name / "changed"
         deck = Deck(work / name / "deck.dat", ("cutback = on", change))
         runner.run(deck, first, expect=3, settings=settings)

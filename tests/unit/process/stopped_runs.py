@@ -69,7 +69,7 @@ def inside_out(program, directory):
     """Test an element inverted in one increment: status.csv names it, without a criterion of convergence."""
     text = TENSION.read_text(encoding="utf-8")
     for old, new in (("strain = 0.001", "strain = off"), ("trial = 0.01", "trial = 1"), ("x_max x 2.3", "x_max x -15"),
-                     ("*NEWTON", "*NEWTON\n  cutback = off\n  damping = off")):
+                     ("*NEWTON", "*NEWTON\n  cutback = off\n  line_search = off")):
         text = text.replace(old, new)
     deck = directory.with_suffix(".dat")
     deck.write_text(text, encoding="utf-8")
