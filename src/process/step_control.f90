@@ -100,8 +100,8 @@ contains
     attempt%number = attempt%number + 1
   end subroutine try_again
 
-  !> Set the bound of r after an accepted increment: a cut-back sets one, which every other increment
-  !> raises; a failed increment leaves none, so that a restart repeats its attempts.
+  !> Set the bound of r after an accepted increment: a cut-back sets one, which every other
+  !> increment raises; a failed increment leaves none, so that a restart repeats its attempts.
   pure subroutine set_next_r_cap(state, attempt)
     !> With the bound of the increment.
     type(state_t), intent(inout) :: state
