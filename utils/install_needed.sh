@@ -60,4 +60,4 @@ install_python() {
 }
 
 install_packages
-[ "${1:-}" = --no-python ] || [ ! -f utils/pyproject.toml ] || install_python
+[ "${1:-}" = --no-python ] || install_python

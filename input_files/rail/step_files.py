@@ -49,4 +49,4 @@ def holder():
 
 
 if __name__ == "__main__":
-    write({"punch": punch, "die": die, "holder": holder})
+    write({"punch": punch, "die": die, "holder": holder}, __doc__)

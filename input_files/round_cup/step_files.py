@@ -26,4 +26,4 @@ def revolve(corners):
 if __name__ == "__main__":
     write({"punch": lambda: revolve([(0, THICKNESS), (PUNCH, THICKNESS), (PUNCH, WALL)]),
            "die": lambda: revolve([(FACE, 0), (OPENING, 0), (OPENING, -WALL)]),
-           "holder": lambda: revolve([(FACE, THICKNESS), (OPENING, THICKNESS)])})
+           "holder": lambda: revolve([(FACE, THICKNESS), (OPENING, THICKNESS)])}, __doc__)

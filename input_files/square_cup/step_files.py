@@ -39,4 +39,4 @@ def die():
 
 
 if __name__ == "__main__":
-    write({"punch": punch, "die": die, "holder": lambda: plate(THICKNESS, 20)})
+    write({"punch": punch, "die": die, "holder": lambda: plate(THICKNESS, 20)}, __doc__)

@@ -1,11 +1,10 @@
-"""What the studies of this folder share: runs that are kept, and tables in reports. Needs the Python environment."""
+"""What the studies of this folder share: runs that are kept, and tables in reports."""
 from pathlib import Path
 
 from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import read_table, read_text, totals
 
 ROOT = Path(__file__).resolve().parents[2]
-
 
 
 def arguments(description):

@@ -98,10 +98,8 @@ def test_blocks(tmp_path):
     (tmp_path / "parts").mkdir()
     (tmp_path / "job.dat").write_text(DECK)
     (tmp_path / "parts" / "tools.inc").write_text(TOOLS)
-    _, tool, _ = read_blocks(tmp_path / "job.dat", {"Shape": "die"})
-    assert tool.value("patches") == '"die.bez"'
     _, tool, phase = read_blocks(tmp_path / "job.dat")
-    assert (tool.keyword, tool.name, tool.folder) == ("tool", "Punch", tmp_path / "parts")
+    assert (tool.keyword, tool.name) == ("tool", "Punch")
     assert tool.value("patches") == '"punch.bez"' and tool.value("friction") is None
     assert [" ".join(value.split()) for _, value in phase.values] == ["punch 0 0 -40", "die 0 0 0"]
 

@@ -1,6 +1,5 @@
 """Fields of a run, fields.vtkhdf."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,7 @@ COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
 class Fields:
     """The sheet at its steps; `fields[i]` is a grid of pyvista with all fields of a step.
 
-    count: number of steps. travel: the travel of each, mm.
+    count: number of steps. last: number of the last step. travel: the travel of each, mm.
     """
 
     def __init__(self, run: str | Path) -> None:
@@ -36,7 +35,7 @@ class Fields:
             raise Problem(f"{path}: not the field file of a run") from None
         if self.count == 0:
             raise Problem(f"{path}: no steps")
-        self.path, self.folder = path, path.parent
+        self.path, self.folder, self.last = path, path.parent, self.count - 1
         self.travel: np.ndarray = self.steps["Values"][: self.count]
 
     def __len__(self) -> int:
@@ -52,9 +51,6 @@ class Fields:
                 data[name] = self.values(step, name, place == "CellData")[0]
         return mesh
 
-    def __iter__(self) -> Iterator["pv.UnstructuredGrid"]:
-        return (self[step] for step in range(self.count))
-
     def shape(self, step: int) -> "pv.UnstructuredGrid":
         """Return the deformed sheet at a step without fields."""
         import pyvista as pv
@@ -66,6 +62,13 @@ class Fields:
         """Return the last of the steps whose travel is nearest."""
         distance = np.abs(self.travel - travel)
         return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
+
+    def step_at(self, travel: float) -> int:
+        """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
+        if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
+            raise Problem(f"{self.path}: no travel {travel:g} mm; "
+                          f"there is {self.travel.min():g} to {self.travel.max():g}")
+        return self.nearest_step(travel)
 
     def points(self, step: int) -> np.ndarray:
         """Return the positions of the nodes at a step."""

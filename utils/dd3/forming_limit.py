@@ -166,7 +166,7 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     check_options(parser, options)
     fields = Fields(options.run)
-    step = fields.count - 1 if options.at is None else fields.nearest_step(options.at)
+    step = fields.last if options.at is None else fields.step_at(options.at)
     major, minor = (fields.values(step, f"{name}_strain_{options.surface}")[0] for name in ("major", "minor"))
     figure, axes = new_figure((8, 5.2))
     said = draw(axes, major, minor, find_curve(fields, read_job(fields.folder), options), options.margin)[1]

@@ -327,4 +327,3 @@ def main(words: Sequence[str] | None = None) -> None:
     mirrored = turn_mirrored(mesh)
     write_inp(options.target, mesh, options.source)
     report(options.target, mesh, merged, mirrored)
-

@@ -26,6 +26,7 @@ from dd3.command import new_parser
 from dd3.plot import force as forces
 from dd3.plot import sheet as pictures
 from dd3.plot.figures import new_figure, save
+from dd3.programs import made_folder
 from dd3.progress import each
 from dd3.run import read_frame
 from dd3.section import Section, in_plane
@@ -55,8 +56,7 @@ class Report:
         self.history = read_frame(self.folder, "history.csv", "phase", "travel", "progress")
         self.tools = tools_in(self.history)
         self.last = self.sheet.last
-        self.pictures = options.output or self.folder / "report"
-        self.pictures.mkdir(parents=True, exist_ok=True)
+        self.pictures = made_folder(options.output or self.folder / "report")
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts: list[str] = []
         self.limit = ""  # result of the forming limit diagram

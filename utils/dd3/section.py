@@ -162,7 +162,7 @@ def main(words: Sequence[str] | None = None) -> None:
     sheet = Sheet(options.run)
     normal, distance = plane(options.plane)
     line = sheet.line_of_nodes(options.nodes) if options.nodes else sheet.cut(normal, distance, not options.lower)[0]
-    steps = [sheet.nearest_step(travel) for travel in options.at] if options.at else [sheet.last]
+    steps = [sheet.step_at(travel) for travel in options.at] if options.at else [sheet.last]
     sections = [Section(sheet, line, step) for step in steps]
     figure, axes = new_figure((7, 3 * len(options.field) + 3), len(options.field) + 1)
     draw(sections, normal, options.field, axes)

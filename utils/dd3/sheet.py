@@ -38,7 +38,6 @@ class Sheet(Fields):
         if np.unique(np.diff(offsets)).size != 1 or offsets[1] < 8:
             raise Problem(f"{self.path}: the cells are no hexahedra")
         self.corners = self.grid["Connectivity"][...].reshape(-1, offsets[1])[:, :8]
-        self.last = self.count - 1
 
     def faces(self, upper: bool = True) -> np.ndarray:
         """Return the corners of the upper or the lower face of the sheet, counter-clockwise seen from outside."""

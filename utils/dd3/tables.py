@@ -1,4 +1,4 @@
-"""Tables of results. Needs Python alone; whatever cannot be used raises a Problem."""
+"""Tables of results; whatever cannot be used raises a Problem."""
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence

@@ -35,8 +35,7 @@ from dd3.tools.surface import Surface, turned, write
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
 
-def from_shapes(options: argparse.Namespace, _: Progress
-               ) -> tuple[Surface, int, list[tuple[str, str]], list[Any]]:
+def from_shapes(options: argparse.Namespace, _: Progress) -> tuple[Surface, int, list[tuple[str, str]], list[Any]]:
     """Return the surface of a shape file, the number of its parts and the lines of the report."""
     if options.part:
         raise Problem(f"{options.source}: a shape file has no parts")
@@ -54,8 +53,7 @@ def from_shapes(options: argparse.Namespace, _: Progress
     return surface, 0, [("distance", "0: exact")], []
 
 
-def from_cad(options: argparse.Namespace, progress: Progress
-            ) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
+def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
     """Return the surface of a CAD file, the number of its parts and the lines of the report."""
     with session() as gmsh:
         model = cad.read_cad(gmsh, options.source, options, progress)

@@ -71,8 +71,7 @@ def criterion_table(data: list[Datum], values: np.ndarray) -> list[str]:
             for d, value in zip(data, values)]
 
 
-def criterion(options: argparse.Namespace, points: Points, data: list[Datum]
-             ) -> tuple[str, list[str], list[str]]:
+def criterion(options: argparse.Namespace, points: Points, data: list[Datum]) -> tuple[str, list[str], list[str]]:
     """Identify a criterion; return its text, the table of values and notes."""
     sought, fixed = sought_parameters(options, data)
     if not any(d.same_test() == ("tension", 0) and d.quantity == "stress" for d in data):

@@ -37,8 +37,7 @@ class Points:
         self.program, self.elastic, self.runs = program, f"  young = {young:g}\n  poisson = {poisson:g}", 0
         self.refusal, self.bar = "", counter("identification", "runs")
 
-    def deck(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]
-            ) -> tuple[str, list[int]]:
+    def deck(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]) -> tuple[str, list[int]]:
         """Return the input, and the number of the material to which each of its lines belongs."""
         lines, owner = [], []
         for i, laws in enumerate(materials):
@@ -59,8 +58,7 @@ class Points:
         done, points = run_points(self.program, text)
         return done.code, done.errors, points
 
-    def rows(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]
-            ) -> list[Any]:
+    def rows(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]) -> list[Any]:
         """Return the rows of each path for each material; None for a material that the program refuses."""
         result: list[Any] = [None] * len(materials)
         left = list(range(len(materials)))

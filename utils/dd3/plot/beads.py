@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from dd3.sheet import length
+
 COLOUR = "#c0392b"
 POINTS = 300  # of a drawn line, about
 NEAREST = 8  # nodes around a point of the line that give its height
@@ -13,7 +15,7 @@ NEAREST = 8  # nodes around a point of the line that give its height
 
 def draped(line: np.ndarray, nodes: np.ndarray) -> pv.PolyData:
     """Return a line in plan as a curve on the sheet with these nodes, as high as the highest of the nearest nodes."""
-    ends = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))))
+    ends = length(line)
     places = np.union1d(np.linspace(0.0, ends[-1], POINTS), ends)
     plan = np.column_stack([np.interp(places, ends, line[:, i]) for i in (0, 1)])
     distance = ((plan[:, None, :] - nodes[None, :, :2]) ** 2).sum(axis=2)

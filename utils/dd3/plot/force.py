@@ -19,9 +19,8 @@ from matplotlib.axes import Axes
 from dd3.errors import Problem
 from dd3.plot.figures import new_figure, parsed_pictures, parser_of_pictures, save, tidy
 from dd3.run import read_frame
+from dd3.sheet import AXES, length
 from dd3.tables import tools_in
-
-AXES = {"x": 0, "y": 1, "z": 2}
 
 
 @dataclass
@@ -77,8 +76,8 @@ def curve(history: pd.DataFrame, tool: str | None = None, phases: Sequence[str] 
     leader = controlling_tool(history) if component == "motion" else tool
     displacement, force = vector(history, leader, "u")[rows], vector(history, tool, "f")[rows]
     displacement = displacement - displacement[0]
-    path = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(displacement, axis=0), axis=1))))
-    shown = force[:, AXES[component]] if component in AXES else np.linalg.norm(force, axis=1)
+    path = length(displacement)
+    shown = force[:, AXES.index(component)] if component in AXES else np.linalg.norm(force, axis=1)
     if component == "motion" and displacement[-1].any():
         direction = displacement[-1] / np.linalg.norm(displacement[-1])
         path = displacement @ direction

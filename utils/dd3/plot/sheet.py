@@ -4,7 +4,7 @@
     dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
     dd3 plot sheet bending.dat --program build/release/dd3imp   # before a run
 
-The sheet is read from fields.vtkhdf, the tools' displacements from the results, their surfaces from the .bez files that
+The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
 the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Of an
 input file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do
 the tools lie where they should?
@@ -30,12 +30,11 @@ from dd3.fields import Fields, text_of
 from dd3.plot.beads import draw_beads
 from dd3.programs import command, find_program, launch, setting
 from dd3.progress import each
-from dd3.run import file_of, read_frame, read_job
-from dd3.tables import tools_in
+from dd3.run import file_of, read_job
+from dd3.sheet import AXES
 from dd3.tools.blocks import lines_of
 from dd3.tools.surface import read_lines
 
-VECTOR = ["x", "y", "z"]
 VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
     "front": ((0, -1, 0), (0, 0, 1)),
@@ -63,13 +62,6 @@ class Run(Fields):
         self.job = read_job(self.folder) if job is None else job
         self.beads = {bead["name"]: np.array(bead["points"]) for bead in self.job["drawbeads"]}
 
-    def step_at(self, travel: float) -> int:
-        """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
-        if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
-            raise Problem(f"{self.path}: no travel {travel:g} mm; "
-                          f"there is {self.travel.min():g} to {self.travel.max():g}")
-        return self.nearest_step(travel)
-
     def mesh(self, step: int, field: str, at_cells: bool = False) -> tuple[pv.UnstructuredGrid, str]:
         """Return the sheet at a step with its field as `shown`, and the label of the field."""
         mesh = self.shape(step)
@@ -78,20 +70,18 @@ class Run(Fields):
         return mesh, label
 
     def tool_displacement(self, step: int) -> dict[str, np.ndarray]:
-        """Return the displacement of each tool at a step: from the fields, or from history.csv."""
-        job = self.file.get("job")
-        if job is not None and "tool_displacement" in job:
-            names = text_of(job.attrs["tools"]).split()
-            return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3), strict=True))
-        history = read_frame(self.folder, "history.csv", "travel")
-        row = history.loc[(history["travel"] - self.travel[step]).abs().idxmin()]
-        return {tool: np.array([row[f"{tool}_u{axis}"] for axis in VECTOR], float) for tool in tools_in(history)}
+        """Return the displacement of each tool at a step."""
+        job = self.file["job"]
+        if "tool_displacement" not in job:
+            return {}
+        names = text_of(job.attrs["tools"]).split()
+        return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3), strict=True))
 
 
 def read_patches(path: Path) -> Patches:
     """Return the patches of a .bez file."""
     try:
-        return read_lines([line.split() for line, _ in lines_of(path)])
+        return read_lines([line.split() for line in lines_of(path)])
     except (ValueError, IndexError):
         raise Problem(f"{path}: not a file of Bézier patches") from None
 
@@ -132,7 +122,7 @@ def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
     """Return the mesh and its mirror images in the planes normal to the axes."""
     parts = [mesh]
     for axis in axes:
-        normal = tuple(float(axis == a) for a in VECTOR)
+        normal = tuple(float(axis == a) for a in AXES)
         parts += [part.reflect(normal, point=(0.0, 0.0, 0.0)) for part in parts]
     return parts
 
@@ -189,7 +179,7 @@ def box_of(run: Run, steps: Sequence[int], options: argparse.Namespace, tools: d
                                             for patch, _ in tools[name]])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in options.mirror:
-        i = VECTOR.index(axis)
+        i = AXES.index(axis)
         low[i], high[i] = min(low[i], -high[i]), max(high[i], -low[i])
     return low, high
 
@@ -346,7 +336,7 @@ def new_plotter(options: argparse.Namespace, count: int) -> Any:
 def make_picture(run: Run, options: argparse.Namespace) -> None:
     """Draw the steps of the options and write the picture."""
     tools = find_tools(run, options)
-    steps = [run.step_at(t) for t in options.at] if options.at else [run.count - 1]
+    steps = [run.step_at(t) for t in options.at] if options.at else [run.last]
     limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
     plotter = new_plotter(options, len(steps))
     for row, step in enumerate(each(steps, "pictures")):
@@ -373,4 +363,3 @@ def main(words: Sequence[str] | None = None) -> None:
             return
         make_picture(run, options)
         print(options.output)
-

@@ -23,9 +23,10 @@ from pathlib import Path
 from dd3 import programs
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.study.runs import NOTE, punch_curve
+from dd3.study.runs import NOTE, punch_curve, run_once
 from dd3.tables import Row, force_limits, interpolate, limiters, read_table, totals
 
+DECK, OPTIONS = "study.dat", ("--threads", "1")
 LIMITERS = ["rotation", "strain", "stress", "force", "first contact", "r_max", "r_min"]
 # Travels at which the punch force is tabulated, mm.
 PLACES = [1, 2, 5, 10, 15, 20, 30, 40]
@@ -81,10 +82,9 @@ def parameters(row: Row) -> dict[str, str]:
     return {name: value for name, value in row.items() if name not in ("case", "set") and value}
 
 
-def command(row: Row, options: argparse.Namespace, folder: Path, *more: str) -> list[str]:
+def command(row: Row, options: argparse.Namespace, folder: Path) -> list[str]:
     """Return the command of a case as a list of words."""
-    return programs.command(options.program, options.cases.parent / "study.dat", folder, [*more, "--threads", "1"],
-                            parameters(row))
+    return programs.command(options.program, options.cases.parent / DECK, folder, OPTIONS, parameters(row))
 
 
 def digest(*paths: Path) -> str:
@@ -95,7 +95,7 @@ def digest(*paths: Path) -> str:
 def deck_files(options: argparse.Namespace) -> list[Path]:
     """Return the input file and the tools' surfaces."""
     folder = options.cases.parent
-    return [folder / "study.dat", *sorted((folder.parent / "bending").glob("*.bez"))]
+    return [folder / DECK, *sorted((folder.parent / "bending").glob("*.bez"))]
 
 
 def is_done(note: Path, words: Sequence[str], deck: str) -> bool:
@@ -119,10 +119,7 @@ def run_case(words: Sequence[str]) -> None:
         print(f"{options.case}: done before")
         return
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    done = programs.launch(command(row, options, folder, "--quiet"))
-    if done.code not in (0, 3):
-        raise Problem(f"{shlex.join(call)}: exit code {done.code}\n{done.errors}")
+    done = run_once(folder, options.program, options.cases.parent / DECK, parameters(row), *OPTIONS)
     aside = folder / f"{NOTE}.new"
     aside.write_text(json.dumps({"code": done.code, "seconds": done.cpu, "wall": done.wall,
                                  "program": digest(options.program), "deck": deck, "command": shlex.join(call)}),

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from dd3.command import new_parser
-from dd3.fields import Fields
 from dd3.plot.figures import new_figure, save, tidy
-from dd3.study.tables import MESHES, PENALTIES, PERTURBED
+from dd3.programs import made_folder
+from dd3.sheet import Sheet
+from dd3.study.tables import END, MESHES, PENALTIES, PERTURBED
 from dd3.tables import Row, force_limits, read_table
 
-END = 40.0
 # Figure: endings of its cases' names and their meaning.
 BARS = {
     "3": [("", "no force control")],
@@ -89,11 +89,10 @@ def control_force(work: Path, results: Mapping[str, Row], path: Path) -> bool:
 
 def nodes_at(folder: Path, travel: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Return positions and contact status of the nodes at a travel, the elements' corners, and the step's travel."""
-    fields = Fields(folder)
-    step = fields.nearest_step(travel)
-    status, _ = fields.values(step, "contact_status")
-    elements = fields.grid["Connectivity"][...].reshape(-1, 8)
-    return fields.points(step), status.astype(int).ravel(), elements, float(fields.travel[step])
+    sheet = Sheet(folder)
+    step = sheet.nearest_step(travel)
+    status, _ = sheet.values(step, "contact_status")
+    return sheet.points(step), status.astype(int).ravel(), sheet.corners, float(sheet.travel[step])
 
 
 def sheets(work: Path, results: Mapping[str, Row], path: Path) -> bool:
@@ -137,12 +136,10 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--output", type=Path, help="folder of the pictures (default: the same)")
     options = parser.parse_args(words)
     results = {row["case"]: row for row in read_table(options.work / "results.csv")}
-    folder = options.output or options.work
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = made_folder(options.output or options.work)
     for number in BARS:
         if bars(results, number, folder / f"study_fig{number}.png"):
             print(folder / f"study_fig{number}.png")
     for number, draw in (("4", sheets), ("7", control_force)):
         if draw(options.work, results, folder / f"study_fig{number}.png"):
             print(folder / f"study_fig{number}.png")
-

@@ -12,7 +12,6 @@ finished cases are not repeated. `pip install --editable "./utils[study]"` insta
 import argparse
 import fcntl
 import importlib.util
-import os
 import re
 import subprocess
 import sys
@@ -56,10 +55,9 @@ def main(words: Sequence[str] | None = None) -> None:
         except BlockingIOError:
             raise Problem(f"{work}: another run of the study is under way there") from None
         print(f"== {len(list(work.glob(f'*/{NOTE}')))} cases are done in {work}; running the others", flush=True)
-        os.set_inheritable(lock.fileno(), True)
         done = subprocess.run([
             sys.executable, "-m", "snakemake", "--snakefile", str(Path(__file__).with_name("workflow.smk")),
             "--directory", str(work), "--cores", options.cores, "--keep-going", "--nolock", "--rerun-incomplete",
             "--rerun-triggers", "mtime", "params", "input", "--quiet", "all", *options.options, "--config", *settings,
-            *(["figures=no"] if options.quick else [])], check=False)
+            *(["figures=no"] if options.quick else [])], check=False, pass_fds=[lock.fileno()])
     sys.exit(done.returncode)

@@ -1,5 +1,5 @@
 """Tools as CAD by Gmsh: profiles with fillets, and STEP files of parts."""
-import sys
+import argparse
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -9,6 +9,7 @@ import gmsh
 
 from dd3.errors import run
 from dd3.gmsh_session import session
+from dd3.programs import made_folder
 from dd3.tools.cad import silence
 
 
@@ -31,17 +32,15 @@ def wire(corners: list[tuple[float, float]], radius: float) -> list[tuple[int, i
     return [(1, curve) for curve in curves]
 
 
-def write(parts: dict[str, Callable[..., Any]]) -> None:
+def write(parts: dict[str, Callable[[], None]], description: str | None) -> None:
     """Call the function of each part and write what it has made as <name>.step into the folder of the command line."""
-    run(lambda: write_into(parts, sys.argv[1:]))
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="folder of the files")
+    run(lambda: write_into(made_folder(parser.parse_args().folder), parts))
 
 
-def write_into(parts: dict[str, Callable[..., Any]], words: list[str]) -> None:
-    """Write the parts into the only folder that is named."""
-    if len(words) != 1:
-        sys.exit("error: expected the folder of the files")
-    folder = Path(words[0])
-    folder.mkdir(parents=True, exist_ok=True)
+def write_into(folder: Path, parts: dict[str, Callable[[], None]]) -> None:
+    """Write the parts into a folder."""
     with session(), silence():
         for name, make in parts.items():
             make()
