@@ -103,7 +103,7 @@ contains
           "face.", "Initial coordinates and `tolerance` of the set."), &
       row("E147", "mesh file", "A line of the mesh file is not valid, or its elements do not "// &
           "suit the sheet.", "The subset of Abaqus and CalculiX that the manual describes; "// &
-          "dd3 mesh."), &
+          "`dd3 mesh`."), &
       row("E148", "element and job", "The element cannot do what the job asks of it.", &
           "Another element, as the message says."), &
       row("E149", "parameters of a law together", "Each parameter is valid, but not all of "// &

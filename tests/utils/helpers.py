@@ -10,6 +10,7 @@ import numpy as np
 
 from dd3.command import main
 from dd3.errors import run
+from dd3.tables import read_table, tools_in
 from dd3.tool import convert
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,4 +57,10 @@ def write_run(run, start, now, cells, history, status, fields=(), at_cells=(), *
         for place, values, count in (("PointData", fields, len(start)), ("CellData", at_cells, len(cells))):
             for name, both in dict(values).items():
                 grid[f"{place}/{name}"], steps[f"{place}Offsets/{name}"] = np.concatenate(both), [0, count]
+        rows = read_table(run / "history.csv")
+        tools, of_steps = tools_in(rows[0]), file.create_group("job")
+        of_steps.attrs["tools"] = " ".join(tools)
+        if tools:
+            of_steps["tool_displacement"] = [[float(rows[i][f"{tool}_u{axis}"]) for tool in tools for axis in "xyz"]
+                                             for i in (0, -1)]
     return run
