@@ -238,7 +238,8 @@ contains
 
     text = "null"
     if (.not. ieee_is_finite(value)) return
-    do digits = least_digits, most_digits
+    ! Rounded up, the largest numbers would overflow when they are read again.
+    do digits = merge(most_digits, least_digits, abs(value) > 0.5_wp*huge(value)), most_digits
       text = to_text(value, digits)
       read (text, *) again
       if (abs(again - value) <= 0.0_wp) exit

@@ -59,9 +59,7 @@ contains
     class(message_t), intent(in) :: self
     character(len=:), allocatable :: line
 
-    line = self%text
-    if (self%is_warning()) line = "warning "//self%code//": "//line
-    if (.not. self%is_warning()) line = "note "//self%code//": "//line
+    line = trim(merge("warning", "note   ", self%is_warning()))//" "//self%code//": "//self%text
     if (.not. allocated(self%at%file)) return
     line = ": "//line
     if (self%at%line > 0) line = ":"//to_text(self%at%line)//line
