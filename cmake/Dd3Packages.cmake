@@ -45,8 +45,41 @@ elseif(DD3_MUMPS)
   endif()
 endif()
 
+# Optional; without it the fronts are ordered by minimum degree.
+#
+#   metis_linalg, metis_packages   as for MUMPS
+option(DD3_METIS "Use METIS if it is installed" ON)
+set(metis_packages "")
+set(metis_linalg cmake/absent/metis_library.f90)
+if(DD3_METIS)
+  find_package(METIS QUIET)
+  if(METIS_FOUND)
+    set(metis_packages METIS::metis)
+    set(metis_linalg src/external/metis_library.f90)
+    message(STATUS "METIS ${METIS_VERSION}")
+  else()
+    message(STATUS "METIS with integers of 4 bytes was not found; large sheets take longer without it. "
+      "On Debian or Ubuntu: apt-get install libmetis-dev")
+  endif()
+endif()
+
+# The number of threads of OpenBLAS is set by its own call; other libraries have other settings.
+#
+#   blas_linalg   source of linalg
+include(CheckFunctionExists)
+set(CMAKE_REQUIRED_LIBRARIES LAPACK::LAPACK)
+check_function_exists(openblas_set_num_threads DD3_OPENBLAS)
+unset(CMAKE_REQUIRED_LIBRARIES)
+set(blas_linalg cmake/absent/blas_threads.f90)
+if(DD3_OPENBLAS)
+  set(blas_linalg src/external/blas_threads.f90)
+endif()
+
 # Names and versions of the libraries, for run.json.
 set(libraries LAPACK none SuiteSparse "${SuiteSparse_VERSION}" HDF5 "${HDF5_VERSION}")
+if(metis_packages)
+  list(APPEND libraries METIS "${METIS_VERSION}")
+endif()
 if(mumps_packages)
   list(APPEND libraries MUMPS none)
 endif()

@@ -17,9 +17,9 @@ case "$*" in
     exit 2 ;;
 esac
 
-packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libhdf5-dev
-  python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2 libxinerama1
-  libxrender1)
+packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libmetis-dev
+  libhdf5-dev python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2
+  libxinerama1 libxrender1)
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then

@@ -7,8 +7,8 @@ module dd3_app_command_line
   public :: options_t, read_command_line, parse_arguments, usage_text
 
   !> Known options.
-  character(len=14), parameter :: known(10) = [character(len=14) :: "--check", "--initial", "--set", &
-      "--output", "--restart", "--threads", "--reproducible", "--quiet", "--version", "--help"]
+  character(len=14), parameter :: known(9) = [character(len=14) :: "--check", "--initial", "--set", &
+      "--output", "--restart", "--threads", "--quiet", "--version", "--help"]
 
   !> Options of a call.
   type :: options_t
@@ -24,8 +24,6 @@ module dd3_app_command_line
     character(len=:), allocatable :: restart
     !> Largest number of threads; 0 if not given.
     integer :: threads = 0
-    !> Results may not depend on the clock.
-    logical :: reproducible = .false.
     !> Read, check, echo and stop; print nothing but errors.
     logical :: check = .false., quiet = .false.
     !> Print the version; print help.
@@ -109,10 +107,9 @@ contains
 
     call split_option(argument(i)%s, name, value)
     select case (name)
-    case ("--check", "--reproducible", "--quiet", "--version")
+    case ("--check", "--quiet", "--version")
       if (len(value) > 0) call fatal_error(error, name//" takes no value")
       if (name == "--check") options%check = .true.
-      if (name == "--reproducible") options%reproducible = .true.
       if (name == "--quiet") options%quiet = .true.
       if (name == "--version") options%version = .true.
     case ("--set", "--output", "--initial", "--threads", "--restart")
@@ -194,7 +191,6 @@ contains
         "  --output DIR         folder of the results (default: job.out)"//newline// &
         "  --restart FILE       continue the run that wrote the restart file FILE"//newline// &
         "  --threads N          largest number of threads (the processors there are)"//newline// &
-        "  --reproducible       choose the linear solver by counting, not by the clock"//newline// &
         "  --quiet              print nothing but errors"//newline// &
         "  --version            the program's version"//newline// &
         "  --help [name]        this text, or help on a block, key, law, element or code of a "// &

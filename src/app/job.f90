@@ -108,7 +108,6 @@ contains
     start%solver = case%solver
     start%threads = options%threads
     if (start%threads == 0) start%threads = most_threads()
-    start%reproducible = options%reproducible
     start%directory = results_directory(options, case)
     if (size(case%point) > 0) then
       if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &

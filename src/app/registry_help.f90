@@ -1,13 +1,14 @@
-!> Help on the elements and the linear solvers, printed from their registries.
+!> Help on the elements, the linear solvers and the output fields, printed from their registries.
 module dd3_app_registry_help
   use dd3_base_error, only : error_t
   use dd3_base_text, only : join, newline, same_name
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_table, only : element_t
   use dd3_linalg_solver_registry, only : missing_package, solver_names
+  use dd3_output_field_table, only : at_nodes_and_cells, at_points, common_fields, field_t
   implicit none
   private
-  public :: help_elements, help_registry
+  public :: field_markdown, help_elements, help_registry
 
   !> Width of the column of names.
   integer, parameter :: name_width = 18
@@ -60,6 +61,25 @@ contains
           " (package "//missing_package(name(i))//")"//newline
     end do
   end function help_solvers
+
+  !> Return the reference of the output fields in Markdown.
+  function field_markdown() result(text)
+    character(len=:), allocatable :: text
+
+    type(field_t), allocatable :: field(:)
+    character(len=:), allocatable :: place
+    integer :: i
+
+    text = newline//"## Output fields"//newline//newline//"| field | where | unit | meaning |"// &
+        newline//"|---|---|---|---|"//newline
+    field = common_fields()
+    do i = 1, size(field)
+      place = "nodes"
+      if (any(field(i)%location == [at_nodes_and_cells, at_points])) place = "cells, nodes"
+      text = text//"| `"//trim(field(i)%name)//"` | "//place//" | "//trim(field(i)%unit)//" | "// &
+          trim(field(i)%description)//" |"//newline
+    end do
+  end function field_markdown
 
   !> Return name and title of an element in one line.
   function line(name)

@@ -126,7 +126,6 @@ contains
     command%restart = options%restart
     command%settings = options%overrides
     command%threads = start%threads
-    command%reproducible = options%reproducible
     command%check = options%check
   end function command_of
 

@@ -14,8 +14,6 @@ module dd3_linalg_block_lu_solver
   private
   public :: block_lu_solver_t, new_block_lu_solver, make_block_lu_solver
 
-  !> Largest number of refinements.
-  integer, parameter :: most_refinements = 10
   !> Time of a block product on dense fronts, and of the work on a front besides, in block products
   !> by rows.
   real(wp), parameter :: front_product = 0.22_wp, front_overhead = 2000.0_wp
@@ -24,14 +22,10 @@ module dd3_linalg_block_lu_solver
   type, extends(linear_solver_t) :: block_lu_solver_t
     !> Whether the factorisation goes by rows.
     logical :: by_rows = .false.
-    !> Cost of a factorisation, in block products by rows.
-    real(wp) :: products = 0.0_wp
     type(ilu_t) :: rows
     type(multifrontal_t) :: fronts
     type(cgs_t) :: iteration
   contains
-    procedure :: analyse => block_lu_solver_analyse
-    procedure :: prepare => block_lu_solver_prepare
     procedure :: setup_scaled => block_lu_solver_setup
     procedure :: factor_scaled => block_lu_solver_factor
     procedure :: solve_scaled => block_lu_solver_solve
@@ -65,30 +59,26 @@ contains
     class(block_lu_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
-    call self%analyse(matrix)
-    call self%prepare(matrix)
-  end subroutine block_lu_solver_setup
-
-  !> Find the factorisation that costs less.
-  subroutine block_lu_solver_analyse(self, matrix)
-    class(block_lu_solver_t), intent(inout) :: self
-    type(block_matrix_t), intent(in) :: matrix
-
-    real(wp) :: by_rows
+    real(wp) :: by_rows, by_fronts
     integer :: i, n_block
 
     self%fronts%threads = self%options%threads
     call self%fronts%analyse(matrix)
-    self%products = front_product*self%fronts%products &
+    by_fronts = front_product*self%fronts%products &
         + front_overhead*real(self%fronts%tree%n_front, wp)
     call factor_cost(matrix, [(i, i=1, matrix%n)], fill_limit*size(matrix%column), by_rows, n_block)
-    self%by_rows = by_rows <= self%products
-    self%description = "complete LU by fronts ("//trim(self%fronts%tree%ordering)//")"
-    if (.not. self%by_rows) return
-    self%products = by_rows
-    self%description = "complete LU by rows"
-    call free(self%fronts)
-  end subroutine block_lu_solver_analyse
+    self%by_rows = by_rows <= by_fronts
+    if (self%by_rows) then
+      self%description = "complete LU by rows"
+      call free(self%fronts)
+      call new_ilu(self%rows, matrix%n)
+      call self%rows%setup(matrix)
+    else
+      self%description = "complete LU by fronts ("//trim(self%fronts%tree%ordering)//")"
+      call self%fronts%prepare(matrix)
+    end if
+    call self%iteration%setup(3*matrix%n, self%options%tolerance, self%options%iterations)
+  end subroutine block_lu_solver_setup
 
   !> Free everything.
   subroutine free(fronts)
@@ -96,21 +86,6 @@ contains
 
     fronts%n = 0
   end subroutine free
-
-  !> Set up the factorisation.
-  subroutine block_lu_solver_prepare(self, matrix)
-    !> Analysed.
-    class(block_lu_solver_t), intent(inout) :: self
-    type(block_matrix_t), intent(in) :: matrix
-
-    if (self%by_rows) then
-      call new_ilu(self%rows, matrix%n)
-      call self%rows%setup(matrix)
-    else
-      call self%fronts%prepare(matrix)
-    end if
-    call self%iteration%setup(3*matrix%n, self%options%tolerance, most_refinements)
-  end subroutine block_lu_solver_prepare
 
   !> Factorise.
   subroutine block_lu_solver_factor(self, matrix, verdict)
@@ -121,8 +96,10 @@ contains
     self%method = "block_lu"
     if (self%by_rows) then
       call self%rows%build(matrix, verdict)
+      self%perturbed = self%rows%perturbed
     else
       call self%fronts%build(matrix, verdict)
+      self%perturbed = self%fronts%perturbed
     end if
   end subroutine block_lu_solver_factor
 

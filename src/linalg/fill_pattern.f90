@@ -7,7 +7,7 @@ module dd3_linalg_fill_pattern
   use dd3_linalg_matrix, only : block_matrix_t
   implicit none
   private
-  public :: fill_pattern_t, new_fill_pattern, elimination_cost, fill_limit
+  public :: fill_pattern_t, new_fill_pattern, fill_limit
 
   !> Most blocks of a complete factorisation, as a multiple of the matrix's.
   integer, parameter :: fill_limit = 12
@@ -156,20 +156,5 @@ contains
     larger(:size(list)) = list
     call move_alloc(larger, list)
   end subroutine double_size
-
-  !> Return the number of block products that a factorisation on the pattern takes.
-  pure integer(i8) function elimination_cost(self)
-    type(fill_pattern_t), intent(in) :: self
-
-    integer :: i, k, length
-
-    elimination_cost = 0
-    do i = 1, self%n
-      do k = self%row_start(i), self%diagonal(i) - 1
-        length = self%row_start(self%column(k) + 1) - self%diagonal(self%column(k))
-        elimination_cost = elimination_cost + int(length, i8)
-      end do
-    end do
-  end function elimination_cost
 
 end module dd3_linalg_fill_pattern

@@ -21,8 +21,9 @@ module dd3_linalg_front_branches
     !> fronts at an even depth in the tree and those at an odd one, so that a border is made on the
     !> one while those that go into it are on top of the other.
     real(wp), allocatable :: border(:)
-    !> Number of fronts shifted in the last factorisation, and front that it failed at; 0 for none.
-    integer :: shifted = 0, failed = 0
+    !> Number of fronts shifted in the last factorisation, the first of them with its first pivot
+    !> that vanished, and the front that the factorisation failed at; 0 for none.
+    integer :: shifted = 0, weak_front = 0, weak_pivot = 0, failed = 0
   end type front_work_t
 
 contains

@@ -21,7 +21,7 @@ module dd3_linalg_front_factor
 contains
 
   !> Eliminate the pivots of a front; see `multifrontal_t` for the factors.
-  subroutine factor_front(p, u, is_leaf, threads, left, upper, rest, pivot, shifted, good)
+  subroutine factor_front(p, u, is_leaf, threads, left, upper, rest, pivot, perturbed, good)
     integer, intent(in) :: p, u
     !> Whether nothing has been added to `rest`, which is undefined then.
     logical, intent(in) :: is_leaf
@@ -30,8 +30,8 @@ contains
     real(wp), intent(in) :: upper(p, u)
     !> Row interchanges.
     integer, intent(out) :: pivot(p)
-    !> Number of fronts shifted so far.
-    integer, intent(inout) :: shifted
+    !> First pivot that vanished, so that all were shifted; 0 for none.
+    integer, intent(out) :: perturbed
     !> Whether the pivots are finite.
     logical, intent(out) :: good
 
@@ -39,7 +39,7 @@ contains
     integer :: m, n_block, b, first, n
 
     m = p + u
-    call factor_pivots(p, m, threads, left, pivot, inverse, shifted, good)
+    call factor_pivots(p, m, threads, left, pivot, inverse, perturbed, good)
     if (u == 0 .or. .not. good) return
     call invert_upper(p, m, left, inverse)
     n_block = max(1, 2*(u/divided))
@@ -83,28 +83,31 @@ contains
 
   !> Factorise the square of the pivots with row interchanges; its diagonal is shifted if a pivot
   !> vanishes.
-  subroutine factor_pivots(p, m, threads, left, pivot, inverse, shifted, good)
+  subroutine factor_pivots(p, m, threads, left, pivot, inverse, perturbed, good)
     integer, intent(in) :: p, m, threads
     real(wp), intent(inout) :: left(m, p)
     integer, intent(out) :: pivot(p)
     !> Of the diagonal blocks of L.
     real(wp), intent(out) :: inverse(diagonal_block, p)
-    integer, intent(inout) :: shifted
+    !> First pivot that vanished, 0 for none.
+    integer, intent(out) :: perturbed
     logical, intent(out) :: good
 
     real(wp) :: kept(p, p), shift
     integer :: attempt, i
 
+    perturbed = 0
     kept = left(:p, :)
     shift = pivot_shift
     do attempt = 0, most_shifts
       call factor_square(p, m, threads, left, pivot, inverse)
       good = .true.
       do i = 1, p
-        good = good .and. abs(left(i, i)) > pivot_limit .and. abs(left(i, i)) < huge(shift)
+        good = abs(left(i, i)) > pivot_limit .and. abs(left(i, i)) < huge(shift)
+        if (.not. good) exit
       end do
       if (good) return
-      if (attempt == 0) shifted = shifted + 1
+      if (attempt == 0) perturbed = i
       left(:p, :) = kept
       do i = 1, p
         left(i, i) = left(i, i) + sign(shift, left(i, i))

@@ -13,7 +13,7 @@ module dd3_linalg_ilu
   use dd3_linalg_fill_pattern, only : fill_pattern_t, new_fill_pattern
   use dd3_linalg_ilu_factor, only : load_row, eliminate_row, finish_row
   use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_linalg_preconditioner, only : preconditioner_t
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t, preconditioner_t
   use dd3_linalg_triangular_solve, only : solve_triangles
   implicit none
   private
@@ -36,8 +36,6 @@ module dd3_linalg_ilu
     real(wp), allocatable :: row(:)
     !> Blocks of the factors, the diagonal ones inverted, `(3, 3, :)`.
     real(wp), allocatable :: block(:, :, :)
-    !> Number of diagonal blocks shifted in the last factorisation.
-    integer :: shifted = 0
   contains
     procedure :: setup => ilu_setup
     procedure :: build => ilu_build
@@ -155,11 +153,11 @@ contains
     !> Retry if the factors grow without bound.
     type(verdict_t), intent(out) :: verdict
 
-    integer :: i, first, last, from, to
+    integer :: i, first, last, from, to, component
     logical :: good
 
-    self%shifted = 0
-    associate (pattern => self%pattern)
+    self%perturbed = perturbed_pivots_t()
+    associate (pattern => self%pattern, perturbed => self%perturbed)
       do i = 1, pattern%n
         first = pattern%row_start(i)
         last = pattern%row_start(i + 1) - 1
@@ -170,14 +168,17 @@ contains
         call eliminate_row(pattern%n, i, pattern%row_start, pattern%column, pattern%diagonal, &
             size(self%stretch, 2), self%stretch_start, self%stretch, self%row, self%block, good)
         if (good) call finish_row(last - first + 1, pattern%diagonal(i) - first + 1, &
-            self%row(9*first - 8:9*last), self%block(:, :, first:last), self%shifted, good)
+            self%row(9*first - 8:9*last), self%block(:, :, first:last), component, good)
         if (.not. good) then
           verdict%outcome = verdict_retry
           verdict%cause = cause_solver
-          verdict%detail = "the incomplete factorisation grows without bound in block row " &
-              //to_text(i)
+          verdict%node = i
+          verdict%detail = "the factorisation grows without bound"
           return
         end if
+        if (component == 0) cycle
+        if (perturbed%blocks == 0) perturbed = perturbed_pivots_t(0, i, component)
+        perturbed%blocks = perturbed%blocks + 1
       end do
     end associate
     verdict%outcome = verdict_converged

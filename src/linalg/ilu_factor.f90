@@ -91,14 +91,14 @@ contains
   end function product_of
 
   !> Kernel: copy the scalar rows of a finished block row into blocks and invert the diagonal one.
-  pure subroutine finish_row(n_block, diagonal, row, block, shifted, good)
+  pure subroutine finish_row(n_block, diagonal, row, block, perturbed, good)
     !> Number of blocks in the row, and which of them is the diagonal.
     integer, intent(in) :: n_block, diagonal
     real(wp), intent(in) :: row(3*n_block, 3)
     !> Blocks of the row; those of L are not changed.
     real(wp), intent(inout) :: block(3, 3, n_block)
-    !> Number of diagonal blocks shifted so far.
-    integer, intent(inout) :: shifted
+    !> Component of the diagonal block that was perturbed, 0 for none.
+    integer, intent(out) :: perturbed
     !> Whether the diagonal block could be inverted.
     logical, intent(out) :: good
 
@@ -110,20 +110,21 @@ contains
       block(2, :, k) = row(c + 1:c + 3, 2)
       block(3, :, k) = row(c + 1:c + 3, 3)
     end do
-    call invert_diagonal(block(:, :, diagonal), shifted, good)
+    call invert_diagonal(block(:, :, diagonal), perturbed, good)
   end subroutine finish_row
 
   !> Invert a diagonal block in place; a nearly singular one is shifted until it is regular.
-  pure subroutine invert_diagonal(d, shifted, good)
+  pure subroutine invert_diagonal(d, perturbed, good)
     real(wp), intent(inout) :: d(3, 3)
-    !> Number of diagonal blocks shifted so far.
-    integer, intent(inout) :: shifted
+    !> Component with the smallest diagonal entry if the block was shifted, else 0.
+    integer, intent(out) :: perturbed
     !> Whether there is an inverse.
     logical, intent(out) :: good
 
     real(wp) :: inverted(3, 3), shift
     integer :: attempt, i
 
+    perturbed = 0
     good = .false.
     if (.not. sum(abs(d)) <= growth_limit) return
     shift = pivot_shift
@@ -131,7 +132,7 @@ contains
       call inverse(d, inverted, good)
       if (good) good = sum(abs(inverted)) <= 1.0_wp/pivot_limit
       if (good) exit
-      if (attempt == 0) shifted = shifted + 1
+      if (attempt == 0) perturbed = minloc(abs([d(1, 1), d(2, 2), d(3, 3)]), 1)
       do i = 1, 3
         d(i, i) = d(i, i) + sign(shift, d(i, i))
       end do

@@ -4,17 +4,16 @@
 !> iteration that uses the factors as preconditioner makes up for it.
 module dd3_linalg_multifrontal
   use dd3_base_kinds, only : wp, i8
-  use dd3_base_text, only : to_text
   use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
-  use dd3_linalg_blas_threads, only : use_one_blas_thread
+  use dd3_external_blas_threads, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dlaswp, dtrsv
   use dd3_linalg_front_assembly, only : add_border, add_part, put_blocks
   use dd3_linalg_front_branches, only : find_branches, front_products, front_work_t
   use dd3_linalg_front_factor, only : factor_front
   use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
   use dd3_linalg_matrix, only : block_matrix_t, position_of
-  use dd3_linalg_preconditioner, only : preconditioner_t
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t, preconditioner_t
   implicit none
   private
   public :: multifrontal_t
@@ -48,8 +47,6 @@ module dd3_linalg_multifrontal
     type(front_work_t), allocatable :: work(:)
     !> Vector of a solution, `(3n)`, and its part of the border of each front, beside one another.
     real(wp), allocatable :: y(:), part(:)
-    !> Number of fronts shifted in the last factorisation.
-    integer :: shifted = 0
   contains
     procedure :: analyse => multifrontal_analyse
     procedure :: prepare => multifrontal_prepare
@@ -181,7 +178,7 @@ contains
   subroutine multifrontal_build(self, matrix, verdict)
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry if a block of pivots is not finite.
+    !> Retry if a block of pivots is not finite; `node` is the first of its block rows.
     type(verdict_t), intent(out) :: verdict
 
     integer :: b, threads
@@ -194,15 +191,28 @@ contains
     !$omp end parallel do
     verdict%outcome = verdict_converged
     if (all(self%work(1:)%failed == 0)) call build_branch(self, matrix, 0, threads)
-    self%shifted = sum(self%work%shifted)
+    call find_perturbed(self)
     if (all(self%work%failed == 0)) return
-    associate (front => maxval(self%work%failed))
-      verdict%outcome = verdict_retry
-      verdict%cause = cause_solver
-      verdict%detail = "the factorisation grows without bound in block row " &
-          //to_text(self%tree%order(self%tree%first(front)))
-    end associate
+    verdict%outcome = verdict_retry
+    verdict%cause = cause_solver
+    verdict%node = self%tree%order(self%tree%first(maxval(self%work%failed)))
+    verdict%detail = "the factorisation grows without bound"
   end subroutine multifrontal_build
+
+  !> Find the pivots that were perturbed in any branch; the first of them does not depend on the
+  !> number of branches.
+  subroutine find_perturbed(self)
+    class(multifrontal_t), intent(inout) :: self
+
+    integer :: b, row
+
+    self%perturbed = perturbed_pivots_t(blocks=sum(self%work%shifted))
+    if (self%perturbed%blocks == 0) return
+    b = minloc(self%work%weak_front, 1, mask=self%work%weak_front > 0) - 1
+    row = self%tree%first(self%work(b)%weak_front) + (self%work(b)%weak_pivot - 1)/3
+    self%perturbed%row = self%tree%order(row)
+    self%perturbed%component = 1 + modulo(self%work(b)%weak_pivot - 1, 3)
+  end subroutine find_perturbed
 
   !> Factorise the fronts of a branch, or those of the trunk when all branches are finished.
   subroutine build_branch(self, matrix, branch, threads)
@@ -215,6 +225,7 @@ contains
     logical :: good
 
     self%work(branch)%shifted = 0
+    self%work(branch)%weak_front = 0
     self%work(branch)%failed = 0
     do f = self%work(branch)%first, self%work(branch)%last
       if (self%branch_of(f) /= branch) cycle
@@ -233,7 +244,7 @@ contains
     !> Whether the pivots are finite.
     logical, intent(out) :: good
 
-    integer :: p, u, k
+    integer :: p, u, k, perturbed
 
     associate (tree => self%tree, work => self%work(self%branch_of(f)), &
         left => self%left_start(f), upper => self%upper_start(f), rest => self%border_at(f), &
@@ -253,7 +264,13 @@ contains
           self%upper(upper))
       call factor_front(p, u, tree%last_child(f) == 0, threads, self%left(left), &
           self%upper(upper), work%border(rest), self%pivot(3*tree%first(f) - 2), &
-          work%shifted, good)
+          perturbed, good)
+      if (perturbed == 0) return
+      if (work%shifted == 0) then
+        work%weak_front = f
+        work%weak_pivot = perturbed
+      end if
+      work%shifted = work%shifted + 1
     end associate
   end subroutine build_front
 

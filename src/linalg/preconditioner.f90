@@ -5,12 +5,22 @@ module dd3_linalg_preconditioner
   use dd3_linalg_matrix, only : block_matrix_t
   implicit none
   private
-  public :: preconditioner_t
+  public :: perturbed_pivots_t, preconditioner_t
+
+  !> Pivots that vanished in a factorisation, and whose blocks were shifted.
+  type :: perturbed_pivots_t
+    !> Number of these blocks.
+    integer :: blocks = 0
+    !> Block row of the first such pivot, and its component there, 1 to 3; 0 if there is none.
+    integer :: row = 0, component = 0
+  end type perturbed_pivots_t
 
   !> Approximate inverse of a matrix.
   type, abstract :: preconditioner_t
     !> Name for the log, known after `setup`.
     character(len=80) :: description = ""
+    !> Of the last `build`.
+    type(perturbed_pivots_t) :: perturbed
   contains
     procedure(setup_interface), deferred :: setup
     procedure(build_interface), deferred :: build
@@ -32,7 +42,7 @@ module dd3_linalg_preconditioner
       class(preconditioner_t), intent(inout) :: self
       !> Row-scaled matrix.
       type(block_matrix_t), intent(in) :: matrix
-      !> Retry if there is none.
+      !> Retry if there is none; `node` is a block row.
       type(verdict_t), intent(out) :: verdict
     end subroutine build_interface
 

@@ -4,7 +4,6 @@ module dd3_linalg_scaled_system
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
-  use dd3_base_text, only : to_text
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_linalg_matrix, only : block_matrix_t
@@ -95,7 +94,7 @@ contains
   subroutine scaled_system_fill(self, matrix, verdict)
     class(scaled_system_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry if a row is zero or not finite.
+    !> Retry if a row is zero or not finite; `node` is its block row in the copy.
     type(verdict_t), intent(out) :: verdict
 
     integer :: bad_row
@@ -108,10 +107,9 @@ contains
     verdict%outcome = verdict_converged
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
-    verdict%node = self%order(bad_row)
+    verdict%node = bad_row
     verdict%cause = cause_solver
-    verdict%detail = "row of zeros or value that is not finite in block row " &
-        //to_text(verdict%node)//" of the matrix"
+    verdict%detail = "row of zeros or value that is not finite"
   end subroutine scaled_system_fill
 
   !> Give all ranks the factors of all rows, and the first bad row.

@@ -8,10 +8,11 @@ module dd3_linalg_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : i8, wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, cause_solver
+  use dd3_base_verdict, only : verdict_t, verdict_converged, cause_singular, cause_solver
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
   use dd3_linalg_partition, only : order_by_owner
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t
   use dd3_linalg_residual, only : dot
   use dd3_linalg_scaled_system, only : scaled_system_t
   implicit none
@@ -31,8 +32,6 @@ module dd3_linalg_solver
     integer :: iterations = 0
     !> Numbering of the block rows, see `ordering_names`.
     character(len=24) :: ordering = ""
-    !> Whether a choice among solvers must not depend on the clock.
-    logical :: reproducible = .false.
     !> Number of threads; the results do not depend on it.
     integer :: threads = 1
   end type solver_options_t
@@ -60,13 +59,11 @@ module dd3_linalg_solver
     type(solver_options_t) :: options
     !> One line for the log, known after `setup`.
     character(len=160) :: description = ""
-    !> What changed in the choice of the solver, and why, for the log; the reader clears it.
-    character(len=200) :: news = ""
     !> Solver that the present matrix is factorised for; empty if there is none.
     character(len=24) :: method = ""
-    !> Data that the solver keeps from matrix to matrix and that change its results. Reset by
-    !> `setup`, size 0 for solvers without memory; a restart sets it after `setup`.
-    integer, allocatable :: memory(:)
+    !> Of the present factorisation; set by `factor_scaled` in the numbering of the copy, after
+    !> `factor` in that of the matrix.
+    type(perturbed_pivots_t) :: perturbed
     !> Renumbered and scaled copy of the system.
     type(scaled_system_t), private :: system
     !> Right-hand side and solution in its numbering, `(3n)`.
@@ -84,7 +81,7 @@ module dd3_linalg_solver
   end type linear_solver_t
 
   abstract interface
-    !> Prepare for matrices of one pattern; set `description`, and `memory` where there is one.
+    !> Prepare for matrices of one pattern; set `description`.
     subroutine setup_interface(self, matrix)
       import :: linear_solver_t, block_matrix_t
       class(linear_solver_t), intent(inout) :: self
@@ -92,13 +89,13 @@ module dd3_linalg_solver
       type(block_matrix_t), intent(in) :: matrix
     end subroutine setup_interface
 
-    !> Factorise a scaled matrix and set `method`.
+    !> Factorise a scaled matrix; set `method`, and `perturbed` if pivots were.
     subroutine factor_interface(self, matrix, verdict)
       import :: linear_solver_t, block_matrix_t, verdict_t
       class(linear_solver_t), intent(inout) :: self
       !> Scaled matrix of the pattern set up.
       type(block_matrix_t), intent(in) :: matrix
-      !> Retry if the matrix is singular.
+      !> Retry if the matrix is singular; `node` is a block row, if one is to blame.
       type(verdict_t), intent(out) :: verdict
     end subroutine factor_interface
 
@@ -135,22 +132,26 @@ contains
       if (allocated(error)) call find_ordering("none", matrix, order, error)
     end if
     call self%system%setup(matrix, order)
-    if (allocated(self%memory)) deallocate (self%memory, self%scaled_b, self%scaled_x)
+    if (allocated(self%scaled_b)) deallocate (self%scaled_b, self%scaled_x)
     allocate (self%scaled_b(3*matrix%n), self%scaled_x(3*matrix%n))
     call self%setup_scaled(self%system%matrix)
-    if (.not. allocated(self%memory)) allocate (self%memory(0))
   end subroutine setup
 
   !> Copy, scale and factorise a matrix of the pattern set up.
   subroutine factor(self, matrix, verdict)
     class(linear_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry if the matrix is singular or not finite.
+    !> Retry if the matrix is singular or not finite; `node` is a block row, if one is to blame.
     type(verdict_t), intent(out) :: verdict
 
     self%method = ""
+    self%perturbed = perturbed_pivots_t()
     call self%system%fill(matrix, verdict)
     if (verdict%outcome == verdict_converged) call self%factor_scaled(self%system%matrix, verdict)
+    associate (order => self%system%order, row => self%perturbed%row)
+      if (verdict%node > 0) verdict%node = order(verdict%node)
+      if (row > 0) row = order(row)
+    end associate
   end subroutine factor
 
   !> Solve with the matrix factorised last.
@@ -162,6 +163,7 @@ contains
     real(wp), intent(out) :: x(:)
     type(solver_report_t), intent(out) :: report
 
+    character(len=*), parameter :: singular = "the matrix is singular: "
     real(wp) :: length
 
     x = 0.0_wp
@@ -181,6 +183,10 @@ contains
     self%scaled_x = 0.0_wp
     report%residual = 1.0_wp
     call self%solve_scaled(self%system%matrix, self%scaled_b, self%scaled_x, report)
+    if (self%perturbed%blocks > 0 .and. .not. report%converged) then
+      report%cause = cause_singular
+      report%reason = singular//report%reason(:len(report%reason) - len(singular))
+    end if
     self%scaled_x = length*self%scaled_x
     call self%system%restore_order(self%scaled_x, x)
   end subroutine solve

@@ -54,8 +54,6 @@ module dd3_model_state
     real(wp) :: r_cap = huge(1.0_wp)
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.
     integer :: history_increment = -1, fields_increment = -1
-    !> Data that the linear solver keeps from matrix to matrix.
-    integer, allocatable :: solver_memory(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
     !> Internal forces, `(3, n_node)`, N.
@@ -159,7 +157,6 @@ contains
 
     integer :: e, p, t
 
-    allocate (self%solver_memory(0))
     call new_sheet(self, model)
     associate (n_contact => model%n_contact, n_tool => model%n_tool)
       allocate (self%lambda(3, n_contact), self%fading(3, model%n_node), source=0.0_wp)

@@ -57,7 +57,6 @@ contains
     call visitor%one_real("r_cap", state%r_cap)
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)
-    call visitor%integers("solver_memory", size(state%solver_memory), state%solver_memory)
     call visitor%reals("x", size(state%x), state%x)
     call visitor%reals("internal_force", size(state%internal_force), state%internal_force)
     call visitor%reals("external_force", size(state%external_force), state%external_force)

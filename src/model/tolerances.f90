@@ -1,6 +1,5 @@
-!> Lengths that count as zero, or as far, relative to the thickness and to the size of the sheet;
-!> all in one place. Only the depth of a start inside the sheet, part of the input format, is
-!> absolute.
+!> Lengths of the contact that count as zero, or as far, relative to the thickness and to the size
+!> of the sheet. Only the depth of a start inside the sheet, part of the input format, is absolute.
 module dd3_model_tolerances
   use dd3_base_kinds, only : wp
   implicit none

@@ -10,7 +10,8 @@ module dd3_output_field_table
       fill_draw_in, fill_slip_path, fill_thickness, fill_thinning
   implicit none
   private
-  public :: field_t, field_table, fill_internal_variable, at_nodes_and_cells, at_points
+  public :: field_t, field_table, common_fields, fill_internal_variable, at_nodes_and_cells, &
+      at_points
 
   !> Locations: a value at each node;
   integer, parameter :: at_nodes = 1
@@ -60,6 +61,17 @@ contains
 
     integer :: i
 
+    table = common_fields()
+    if (.not. allocated(model%internal_variable)) return
+    do i = 1, size(model%internal_variable)
+      table = [table, internal_variable_row(model, i)]
+    end do
+  end function field_table
+
+  !> Return the fields of every model.
+  function common_fields() result(table)
+    type(field_t), allocatable :: table(:)
+
     table = [ &
       row("displacement", at_nodes, 3, "mm", &
           "displacement from the initial position", fill_displacement), &
@@ -78,11 +90,7 @@ contains
       row("thickness", at_nodes_and_cells, 1, "mm", &
           "distance between the bottom and the top node through the thickness", fill_thickness), &
       forming_rows()]
-    if (.not. allocated(model%internal_variable)) return
-    do i = 1, size(model%internal_variable)
-      table = [table, internal_variable_row(model, i)]
-    end do
-  end function field_table
+  end function common_fields
 
   !> Return the rows of the fields that describe the result of forming.
   function forming_rows() result(table)

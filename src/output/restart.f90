@@ -271,12 +271,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(reader_t) :: reader
-    integer :: n
 
     call new_state(state, model)
-    call dataset_size(file, "state/solver_memory", n)
-    deallocate (state%solver_memory)
-    allocate (state%solver_memory(max(0, n)))
     reader%file = file
     reader%problem = ""
     call visit_state(state, reader)

@@ -16,7 +16,7 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -63,6 +63,8 @@ module dd3_output_status
     real(wp) :: force_size = 0.0_wp
     !> Number of times that iterations of the corrector were shortened.
     integer :: shortened = 0
+    !> Number of blocks of pivots that the linear solver perturbed.
+    integer :: perturbed = 0
   end type status_row_t
 
   !> Status table of a run.
@@ -132,6 +134,7 @@ contains
       call table%add_text(merge(row%force_tool, repeat(" ", len(row%force_tool)), limited))
       call add_known(table, row%force_size, limited)
       call table%add_integer(row%shortened)
+      call table%add_integer(row%perturbed)
       call table%end_row(error)
     end associate
   end subroutine status_add

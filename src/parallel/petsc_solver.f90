@@ -7,13 +7,13 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use dd3_base_ranks, only : broadcast_reals, n_ranks, start_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
+  use dd3_external_blas_threads, only : use_one_blas_thread
   use dd3_external_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
       ksp_get_iteration_number, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
       ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
       mat_create_baij, mat_create_vecs, mat_destroy, mat_residual, mat_set_values_blocked, norm_2, &
       petsc_comm_world, set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, &
       vec_get_values, vec_norm, vec_set_values
-  use dd3_linalg_blas_threads, only : use_one_blas_thread
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : own_rows
   use dd3_linalg_solver, only : solver_report_t

@@ -67,6 +67,7 @@ contains
       row%force_size = attempt%force_limit%force_size
       row%solver_iterations = attempt%solver%iterations
       row%solver = attempt%solver%solver(:len(row%solver))
+      row%perturbed = attempt%solver%perturbed%blocks
       associate (status => stepper%system%contact%status)
         row%gap = count(status == status_gap)
         row%stick = count(status == status_stick)

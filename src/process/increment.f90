@@ -147,7 +147,6 @@ contains
     committed = trial
     committed%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)
-    committed%solver_memory = stepper%system%solver%memory
   end subroutine accept_increment
 
 end module dd3_process_increment

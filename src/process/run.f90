@@ -8,7 +8,7 @@ module dd3_process_run
   use dd3_base_log, only : log_t
   use dd3_base_message, only : message_list_t
   use dd3_base_ranks, only : n_ranks
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : axis_name, to_text
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
@@ -30,7 +30,7 @@ module dd3_process_run
   use dd3_process_predictor, only : new_prediction
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_system_partition, only : partition_report
-  use dd3_system_system, only : new_system, system_t
+  use dd3_system_system, only : new_system
   implicit none
   private
   public :: run_model, run_start_t, solver_options
@@ -44,8 +44,6 @@ module dd3_process_run
     !> Settings of the linear solver.
     type(solver_spec_t) :: solver
     integer :: threads = 1
-    !> Whether the solver may not be chosen by the clock.
-    logical :: reproducible = .false.
     !> Folder of the results; it exists.
     character(len=:), allocatable :: directory
   end type run_start_t
@@ -57,6 +55,8 @@ module dd3_process_run
     type(records_t) :: records
     type(progress_t) :: progress
     type(run_summary_t) :: summary
+    !> Whether the log has told of a perturbed pivot.
+    logical :: told_perturbed = .false.
   end type run_t
 
 contains
@@ -118,7 +118,6 @@ contains
     solver_options%tolerance = start%solver%tolerance
     solver_options%iterations = start%solver%iterations
     solver_options%ordering = start%solver%ordering
-    solver_options%reproducible = start%reproducible
     solver_options%threads = start%threads
   end function solver_options
 
@@ -134,8 +133,6 @@ contains
     character(len=:), allocatable :: lost
 
     if (allocated(start%source)) then
-      if (size(start%state%solver_memory) == size(run%stepper%system%solver%memory)) &
-          run%stepper%system%solver%memory = start%state%solver_memory
       call run%records%resume(model, start%source, start%directory, run%committed, lost, error)
       log%increment = run%committed%increment
       call log%say("restart after increment "//to_text(run%committed%increment)//" of phase '"// &
@@ -177,7 +174,7 @@ contains
         next_output = next_output_progress(model%output, phase, committed)
         done = committed%increment
         call run_increment(run, model, error)
-        call note_choices(run%stepper%system, log)
+        call note_solution(run, model, log)
         if (committed%increment > done) then
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
@@ -194,16 +191,35 @@ contains
     end associate
   end subroutine run_phase
 
-  !> Log what changed in the choices of the linear solver and of the number of threads.
-  subroutine note_choices(system, log)
-    type(system_t), intent(inout) :: system
+  !> Log a change of the number of threads, and the first pivot that was perturbed.
+  subroutine note_solution(run, model, log)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
 
-    if (len_trim(system%solver%news) > 0) call log%note(trim(system%solver%news))
-    if (len_trim(system%threads%news) > 0) call log%note(trim(system%threads%news))
-    system%solver%news = ""
-    system%threads%news = ""
-  end subroutine note_choices
+    associate (threads => run%stepper%system%threads, &
+        perturbed => run%stepper%attempt%solver%perturbed)
+      if (len_trim(threads%news) > 0) call log%note(trim(threads%news))
+      threads%news = ""
+      if (run%told_perturbed .or. perturbed%blocks == 0) return
+      run%told_perturbed = .true.
+      call log%report("W114", "linear system: the pivot of "//row_name(model, perturbed%row)// &
+          " along "//axis_name(perturbed%component)//" vanished and was perturbed")
+    end associate
+  end subroutine note_solution
+
+  !> Return the name of a block row of the reduced system.
+  function row_name(model, row) result(name)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: row
+    character(len=:), allocatable :: name
+
+    if (row <= model%n_node) then
+      name = "node "//to_text(row)
+    else
+      name = "tool '"//trim(model%tool(findloc(model%tool_row, row, 1))%name)//"'"
+    end if
+  end function row_name
 
   !> Log notes and warnings.
   subroutine tell_all(log, notes)

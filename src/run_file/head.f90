@@ -28,8 +28,8 @@ module dd3_run_file_head
     !> Parameters given as `name=value`.
     type(text_t), allocatable :: settings(:)
     integer :: threads = 1
-    !> No choice by the clock; the input is only checked.
-    logical :: reproducible = .false., check = .false.
+    !> The input is only checked.
+    logical :: check = .false.
   end type command_t
 
 contains
@@ -116,7 +116,6 @@ contains
     end do
     call json%end_array()
     call json%add_optional("restart", command%restart)
-    call json%add("reproducible", command%reproducible)
     call json%add("check", command%check)
     call json%end_object()
   end subroutine add_command

@@ -2,7 +2,9 @@
 module dd3_system_solve
   use dd3_base_clock, only : section_assembly, section_factorisation, section_solve
   use dd3_base_kinds, only : wp
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_lost_tool
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_lost_tool, &
+      cause_singular
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -20,6 +22,8 @@ module dd3_system_solve
     character(len=24) :: solver = ""
     !> Reason of a fallback, empty without one.
     character(len=160) :: reason = ""
+    !> Sum over all factorisations, with the first pivot, in block rows of the reduced system.
+    type(perturbed_pivots_t) :: perturbed
   end type solve_info_t
 
 contains
@@ -43,22 +47,31 @@ contains
     call system%profile%add(section_assembly)
     call system%solver%factor(system%reduced, verdict)
     call system%profile%add(section_factorisation)
-    if (verdict%outcome /= verdict_converged) then
-      if (verdict%node <= model%n_node) return
-      ! Nothing resists a tool whose block row is empty.
-      verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
-      verdict%node = 0
-      verdict%cause = cause_lost_tool
-      return
-    end if
-    call solve_factorised(system, system%problem%solution, info, report)
-    if (.not. report%converged) then
+    call add_perturbed(system%solver%perturbed, info%perturbed)
+    if (verdict%outcome == verdict_converged) then
+      call solve_factorised(system, system%problem%solution, info, report)
+      if (report%converged) return
       verdict%outcome = verdict_retry
       verdict%cause = report%cause
       verdict%detail = report%reason
       verdict%norm = report%residual
+      if (report%cause == cause_singular) verdict%node = system%solver%perturbed%row
     end if
+    if (verdict%node <= model%n_node) return
+    ! Nothing resists a tool whose block row is empty or singular.
+    verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
+    verdict%node = 0
+    verdict%cause = cause_lost_tool
   end subroutine solve_reduced
+
+  !> Add the perturbed pivots of a factorisation.
+  pure subroutine add_perturbed(pivots, sum)
+    type(perturbed_pivots_t), intent(in) :: pivots
+    type(perturbed_pivots_t), intent(inout) :: sum
+
+    if (sum%blocks == 0) sum = perturbed_pivots_t(0, pivots%row, pivots%component)
+    sum%blocks = sum%blocks + pivots%blocks
+  end subroutine add_perturbed
 
   !> Solve the system factorised last for the present right-hand side.
   subroutine solve_factorised(system, solution, info, report)

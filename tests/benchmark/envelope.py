@@ -321,7 +321,7 @@ def make(options, job, folder, blocks):
     deck.write_text(text, encoding="utf-8")
     record.unlink(missing_ok=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
-    words = command(options.program, deck, folder / "results", ["--quiet", "--reproducible", "--threads", 1],
+    words = command(options.program, deck, folder / "results", ["--quiet", "--threads", 1],
                     job.settings)
     code, seconds, errors = execute(words, options.seconds)
     if code in (1, 2):

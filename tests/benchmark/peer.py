@@ -149,7 +149,7 @@ def run_dd3imp(arguments):
     """Return increments, attempts, iterations, processor time and (travel, force) of dd3imp."""
     folder = arguments.work / f"dd3imp_{arguments.columns}"
     deck = write_deck(arguments)
-    options = ["--quiet", "--reproducible", "--threads", 1]
+    options = ["--quiet", "--threads", 1]
     settings = dict(word.split("=") for word in arguments.set)
     done = launch(command(arguments.program, deck, folder, options, settings))
     if done.code:

@@ -55,7 +55,7 @@ def accepted(folder):
 
 def part_of_run(program, deck, folder, settings, arguments):
     """Make a number of increments and stop; return iterations, processor time (s) and peak memory (MB)."""
-    words = programs.command(program, deck, folder, ["--quiet", "--reproducible", "--threads", arguments.now], settings)
+    words = programs.command(program, deck, folder, ["--quiet", "--threads", arguments.now], settings)
     with subprocess.Popen(words, stderr=subprocess.DEVNULL) as child:
         while child.poll() is None and accepted(folder)[0] < arguments.increments:
             time.sleep(0.2)

@@ -113,7 +113,6 @@ DAMAGED = {
     "field file": (fields_instead, "'{}' is not a restart file of dd3imp"),
     "newer format": (newer_format, "'{}' has restart format 2, written by dd3imp "),
     "missing component": (lose("state/stress"), "'{}': component 'stress' is missing"),
-    "missing memory": (lose("state/solver_memory"), "'{}': component 'solver_memory' is missing"),
     "wrong size": (shorten("state/internal_variables"), "'{}': component 'internal_variables': expected "),
     "text as numbers": (as_text("state/x"), "'{}': component 'x' cannot be read"),
     "missing fingerprint": (lose("model/digest"), "'{}' has no fingerprint of its model"),
