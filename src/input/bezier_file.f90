@@ -35,7 +35,7 @@ module dd3_input_bezier_file
     !> Position among the patches of the file, from 1.
     integer :: number = 0
     !> Header line.
-    type(location_t) :: at
+    type(location_t) :: at = location_t()
   end type patch_spec_t
 
   !> State of the reader.

@@ -22,7 +22,7 @@ module dd3_input_block
     !> Key in lower case.
     character(len=:), allocatable :: key
     !> Where the key is written.
-    type(location_t) :: at
+    type(location_t) :: at = location_t()
     !> Words after the equals sign.
     type(token_t), allocatable :: value(:)
     !> Numbers among the values, in order; during the check `number(1:n_number)`. This and the
@@ -47,9 +47,9 @@ module dd3_input_block
     !> The block's own name in lower case; empty if it has none.
     character(len=:), allocatable :: name
     !> Where the block begins.
-    type(location_t) :: opened
+    type(location_t) :: opened = location_t()
     !> Where its name is written; where it begins if it has none.
-    type(location_t) :: named
+    type(location_t) :: named = location_t()
     !> Folder of the file that contains the block, with a slash at the end; empty for the working
     !> directory.
     character(len=:), allocatable :: folder

@@ -18,9 +18,9 @@ module dd3_input_substitution
   type :: binding_t
     !> Name in lower case.
     character(len=:), allocatable :: name
-    type(token_list_t) :: value
+    type(token_list_t) :: value = token_list_t()
     !> Where it is defined.
-    type(location_t) :: at
+    type(location_t) :: at = location_t()
     !> Whether its value is given on the command line.
     logical :: overridden = .false.
     !> Whether it is defined in the input.

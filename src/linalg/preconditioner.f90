@@ -20,7 +20,7 @@ module dd3_linalg_preconditioner
     !> Name for the log, known after `setup`.
     character(len=80) :: description = ""
     !> Of the last `build`.
-    type(perturbed_pivots_t) :: perturbed
+    type(perturbed_pivots_t) :: perturbed = perturbed_pivots_t()
   contains
     procedure(setup_interface), deferred :: setup
     procedure(build_interface), deferred :: build

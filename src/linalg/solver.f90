@@ -63,7 +63,7 @@ module dd3_linalg_solver
     character(len=24) :: method = ""
     !> Of the present factorisation; set by `factor_scaled` in the numbering of the copy, after
     !> `factor` in that of the matrix.
-    type(perturbed_pivots_t) :: perturbed
+    type(perturbed_pivots_t) :: perturbed = perturbed_pivots_t()
     !> Renumbered and scaled copy of the system.
     type(scaled_system_t), private :: system
     !> Right-hand side and solution in its numbering, `(3n)`.

@@ -29,7 +29,7 @@ module dd3_point_run
 
   !> A material point during its run.
   type :: point_run_t
-    type(material_point_t) :: state
+    type(material_point_t) :: state = material_point_t()
     !> Deformation gradient, if it is prescribed.
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps made.

@@ -86,7 +86,7 @@ module dd3_process_newton
     !> Number of times that a step was shortened.
     integer :: shortened = 0
     !> Of the last evaluation or linearisation.
-    type(verdict_t) :: verdict
+    type(verdict_t) :: verdict = verdict_t()
   end type newton_course_t
 
   !> Ratio |g(s)/g(0)| up to which a step is not shortened. Smaller: more evaluations for hardly

@@ -30,18 +30,18 @@ module dd3_process_step_control
     integer :: number = 1
     logical :: after_failure = .false.
     !> Factor r with its limiter.
-    type(limit_t) :: limit
+    type(limit_t) :: limit = limit_t()
     !> Bound by the limiter of contact forces alone; its r is huge if it sets none.
-    type(limit_t) :: force_limit
+    type(limit_t) :: force_limit = limit_t()
     !> Course of the corrector, and the residual in its last iteration.
-    type(newton_course_t) :: course
-    type(residual_t) :: residual
-    type(solve_info_t) :: solver
-    type(verdict_t) :: verdict
+    type(newton_course_t) :: course = newton_course_t()
+    type(residual_t) :: residual = residual_t()
+    type(solve_info_t) :: solver = solve_info_t()
+    type(verdict_t) :: verdict = verdict_t()
     !> Whether a tool touched the node of the verdict in the last iterations.
     logical :: touched = .false.
     !> Where the prediction of a failed attempt leads a point in contact over an open edge.
-    type(passage_t) :: passage
+    type(passage_t) :: passage = passage_t()
   end type attempt_t
 
   !> Work data of the increments. Only the memory of the solver is kept from one to the next.

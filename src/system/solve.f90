@@ -23,7 +23,7 @@ module dd3_system_solve
     !> Reason of a fallback, empty without one.
     character(len=160) :: reason = ""
     !> Sum over all factorisations, with the first pivot, in block rows of the reduced system.
-    type(perturbed_pivots_t) :: perturbed
+    type(perturbed_pivots_t) :: perturbed = perturbed_pivots_t()
   end type solve_info_t
 
 contains
