@@ -3,7 +3,8 @@ module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit
   use dd3_app_command_line, only : usage_text
   use dd3_app_exit_codes, only : exit_end, exit_usage
-  use dd3_app_registry_help, only : field_markdown, help_elements, help_registry
+  use dd3_app_registry_help, only : field_markdown, help_elements, help_registry, &
+      solver_markdown
   use dd3_base_text, only : lower_case, newline, same_name
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
@@ -30,7 +31,7 @@ contains
       text = usage_text()//"blocks of the input:"//newline//help_blocks()// &
              "laws:"//newline//help_laws()//"elements:"//newline//help_elements()
     else if (same_name(topic, "markdown")) then
-      text = reference_markdown()//field_markdown()//law_reference_markdown()
+      text = reference_markdown()//solver_markdown()//field_markdown()//law_reference_markdown()
     else if (same_name(topic, "messages")) then
       text = message_markdown()
     else

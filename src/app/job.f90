@@ -13,12 +13,13 @@ module dd3_app_job
   use dd3_base_log, only : log_t
   use dd3_base_ranks, only : largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_message, only : message_list_t
-  use dd3_base_text, only : to_text, slice
+  use dd3_base_text, only : join, slice, to_text
   use dd3_base_threads, only : most_threads
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
   use dd3_linalg_solver, only : linear_solver_t
+  use dd3_linalg_solver_registry, only : solver_names
   use dd3_model_build, only : new_model
   use dd3_model_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_model_model, only : model_t
@@ -128,13 +129,16 @@ contains
     type(case_t), intent(in) :: case
     type(error_t), allocatable, intent(out) :: error
 
+    character(len=16), allocatable :: expected(:)
+
     if (n_ranks() == 1) return
+    expected = [character(len=16) :: "auto", solver_names(distributed=.true.)]
     if (size(case%point) > 0) then
       call fatal_error(error, "a run of material points (*POINT) needs one process, got "// &
           to_text(n_ranks()), "E205")
-    else if (case%solver%method /= "auto" .and. index(case%solver%method, "petsc") /= 1) then
+    else if (all(expected /= case%solver%method)) then
       call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
-          "got "//to_text(n_ranks())//"; expected auto, petsc_mumps or petsc_bicgstab", "E205")
+          "got "//to_text(n_ranks())//"; expected one of: "//join(expected, " "), "E205")
     end if
   end subroutine check_ranks
 

@@ -1,14 +1,14 @@
 !> Help on the elements, the linear solvers and the output fields, printed from their registries.
 module dd3_app_registry_help
   use dd3_base_error, only : error_t
-  use dd3_base_text, only : join, newline, same_name
+  use dd3_base_text, only : newline, same_name
   use dd3_element_registry, only : element_names, new_element
   use dd3_element_table, only : element_t
-  use dd3_linalg_solver_registry, only : missing_package, solver_names
+  use dd3_linalg_solver_registry, only : missing_package, solver_meaning, solver_names
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, common_fields, field_t
   implicit none
   private
-  public :: field_markdown, help_elements, help_registry
+  public :: field_markdown, help_elements, help_registry, solver_markdown
 
   !> Width of the column of names.
   integer, parameter :: name_width = 18
@@ -47,7 +47,8 @@ contains
     end do
   end function help_registry
 
-  !> Return the names of the linear solvers, and the packages of those that this build lacks.
+  !> Return names and meanings of the linear solvers, and the packages of those that this build
+  !> lacks.
   function help_solvers() result(text)
     character(len=:), allocatable :: text
 
@@ -55,12 +56,29 @@ contains
     integer :: i
 
     name = solver_names()
-    text = "linear solvers: "//join(name, " ")//newline
+    text = "linear solvers:"//newline
     do i = 1, size(name)
-      if (missing_package(name(i)) /= "") text = text//"not in this build: "//trim(name(i))// &
-          " (package "//missing_package(name(i))//")"//newline
+      text = text//column(name(i))//solver_meaning(name(i))
+      if (missing_package(name(i)) /= "") text = text//"; not in this build (package "// &
+          missing_package(name(i))//")"
+      text = text//newline
     end do
   end function help_solvers
+
+  !> Return the reference of the linear solvers in Markdown.
+  function solver_markdown() result(text)
+    character(len=:), allocatable :: text
+
+    character(len=16), allocatable :: name(:)
+    integer :: i
+
+    name = solver_names()
+    text = newline//"## Linear solvers"//newline//newline//"| `method` | meaning |"//newline// &
+        "|---|---|"//newline
+    do i = 1, size(name)
+      text = text//"| `"//trim(name(i))//"` | "//solver_meaning(name(i))//" |"//newline
+    end do
+  end function solver_markdown
 
   !> Return the reference of the output fields in Markdown.
   function field_markdown() result(text)
@@ -88,11 +106,17 @@ contains
 
     type(element_t) :: element
     type(error_t), allocatable :: error
-    character(len=name_width) :: column
 
     call new_element(element, name, error)
-    column = name
-    line = "  "//column//trim(element%title)//newline
+    line = column(name)//trim(element%title)//newline
   end function line
+
+  !> Return a name, indented and padded to the width of the column of names.
+  pure function column(name)
+    character(len=*), intent(in) :: name
+    character(len=name_width + 2) :: column
+
+    column = "  "//name
+  end function column
 
 end module dd3_app_registry_help

@@ -205,8 +205,7 @@ contains
 
     key = [ &
       row("method", kind_name, "", "auto", &
-          "linear solver; auto: block_lu, or umfpack where that fails; dd3imp --help method lists "// &
-          "them"), &
+          "linear solver; dd3imp --help method lists them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
       row("tolerance", kind_real, "", "1e-10", "relative residual of cgs", &

@@ -13,7 +13,7 @@ module dd3_linalg_solver_registry
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   implicit none
   private
-  public :: missing_package, new_linear_solver, solver_names
+  public :: missing_package, new_linear_solver, solver_meaning, solver_names
 
   abstract interface
     !> Create a solver.
@@ -24,12 +24,17 @@ module dd3_linalg_solver_registry
     end subroutine constructor_interface
   end interface
 
-  !> One row: name, as written in the input, constructor, and the Debian package of the library that
-  !> the program was built without, with the preset that takes it; empty if it has it or needs none.
+  !> One row.
   type :: entry_t
+    !> Name, as written in the input.
     character(len=16) :: name = ""
     procedure(constructor_interface), pointer, nopass :: make => null()
+    character(len=140) :: meaning = ""
+    !> Debian package of the library that the program was built without, with the preset that takes
+    !> it; empty if it has it or needs none.
     character(len=40) :: package = ""
+    !> Whether it solves a system whose rows are divided among ranks.
+    logical :: distributed = .false.
   end type entry_t
 
 contains
@@ -38,24 +43,45 @@ contains
   function registry() result(entries)
     type(entry_t), allocatable :: entries(:)
 
-    entries = [entry_t("cgs", make_cgs_solver), &
-               entry_t("block_lu", make_block_lu_solver), &
-               entry_t("umfpack", make_umfpack_solver), &
-               entry_t("mumps", make_mumps_solver, mumps_package), &
-               entry_t("petsc_mumps", make_petsc_mumps_solver, petsc_package()), &
-               entry_t("petsc_bicgstab", make_petsc_bicgstab_solver, petsc_package()), &
-               entry_t("auto", make_auto_solver)]
+    entries = [ &
+        entry_t("cgs", make_cgs_solver, "conjugate gradients squared with an incomplete "// &
+            "factorisation of level ilu_level"), &
+        entry_t("block_lu", make_block_lu_solver, "complete factorisation on 3 x 3 blocks, by "// &
+            "rows or by dense fronts, as counted operations say"), &
+        entry_t("umfpack", make_umfpack_solver, "complete factorisation by UMFPACK, which "// &
+            "interchanges rows freely"), &
+        entry_t("mumps", make_mumps_solver, "complete factorisation by MUMPS, which "// &
+            "interchanges rows where pivots are small", mumps_package), &
+        entry_t("petsc_mumps", make_petsc_mumps_solver, "complete factorisation by MUMPS "// &
+            "through PETSc, on several processes", petsc_package(), .true.), &
+        entry_t("petsc_bicgstab", make_petsc_bicgstab_solver, "BiCGSTAB of PETSc with the "// &
+            "incomplete factorisation of each process, level ilu_level", petsc_package(), .true.), &
+        entry_t("auto", make_auto_solver, "block_lu, or umfpack for a matrix on which that "// &
+            "fails; on several processes petsc_mumps")]
   end function registry
 
-  !> Return the names of all solvers.
-  function solver_names() result(names)
+  !> Return the names of all solvers, or of those for several ranks.
+  function solver_names(distributed) result(names)
+    logical, intent(in), optional :: distributed
     character(len=16), allocatable :: names(:)
 
     type(entry_t), allocatable :: entries(:)
 
     entries = registry()
     names = entries%name
+    if (present(distributed)) names = pack(names, entries%distributed .eqv. distributed)
   end function solver_names
+
+  !> Return the meaning of a solver.
+  function solver_meaning(name) result(meaning)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: meaning
+
+    type(entry_t), allocatable :: entries(:)
+
+    entries = registry()
+    meaning = trim(entries(findloc(entries%name, name, 1))%meaning)
+  end function solver_meaning
 
   !> Return the Debian package, with the preset, without which this build lacks a solver; empty if
   !> it lacks none, or for an unknown name.

@@ -14,6 +14,7 @@ module dd3_process_run
       cause_beyond_until, cause_no_progress
   use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
+  use dd3_linalg_solver_registry, only : solver_names
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_tool_depth, only : observe_tools
@@ -112,8 +113,11 @@ contains
   type(solver_options_t) function solver_options(start)
     type(run_start_t), intent(in) :: start
 
+    character(len=16), allocatable :: distributed(:)
+
     solver_options%method = start%solver%method
-    if (n_ranks() > 1 .and. solver_options%method == "auto") solver_options%method = "petsc_mumps"
+    distributed = solver_names(distributed=.true.)
+    if (n_ranks() > 1 .and. solver_options%method == "auto") solver_options%method = distributed(1)
     solver_options%ilu_level = start%solver%ilu_level
     solver_options%tolerance = start%solver%tolerance
     solver_options%iterations = start%solver%iterations
