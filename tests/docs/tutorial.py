@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Run the commands of docs/tutorial.md and compare what they print with the page.
+
+  tutorial.py --program build/release/dd3imp --work build/tutorial [--write]
+
+--write copies the pictures into docs/images.
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "tutorial.md"
+IMAGES = ROOT / "docs" / "images"
+
+
+def commands():
+    """Return the commands of the page, each with the texts that it prints."""
+    found = []
+    for line in re.findall(r"^    (.+)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE):
+        if line.startswith("# "):
+            found[-1][1].append(line[2:])
+        elif not line.startswith("source "):
+            found.append((line, []))
+    return found
+
+
+def main():
+    """Run the commands in a folder that looks like the repository."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=pathlib.Path, required=True)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    work = options.work.resolve()
+    shutil.rmtree(work, ignore_errors=True)
+    (work / "build" / "release").mkdir(parents=True)
+    (work / "build" / "release" / "dd3imp").symlink_to(options.program.resolve())
+    shutil.copytree(ROOT / "input_files" / "tutorial", work / "input_files" / "tutorial")
+    folder = pathlib.Path(sys.executable).parent
+    failed = 0
+    for command, texts in commands():
+        words = command.split()
+        words[0] = str(folder / "dd3") if words[0] == "dd3" else words[0]
+        if words[0].endswith(".py"):
+            words.insert(0, sys.executable)
+        done = subprocess.run(words, cwd=work, capture_output=True, text=True, check=False)
+        missing = [text for text in texts if text not in done.stdout]
+        if done.returncode or missing:
+            failed += 1
+            print(f"{command}\nexit code {done.returncode}; not printed: {missing}\n{done.stdout[-2000:]}{done.stderr}")
+    pictures = re.findall(r"\(images/tutorial_(\w+\.png)\)", PAGE.read_text(encoding="utf-8"))
+    for picture in pictures:
+        if not (work / "build" / "tray" / picture).exists():
+            failed += 1
+            print(f"{picture} is not made")
+        elif options.write:
+            shutil.copy(work / "build" / "tray" / picture, IMAGES / f"tutorial_{picture}")
+    sys.exit(failed > 0)
+
+
+if __name__ == "__main__":
+    main()
