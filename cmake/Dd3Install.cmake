@@ -4,7 +4,6 @@
 #   <datadir>/dd3imp/utils         their package; install_needed.sh makes its Python environment as .venv beside it
 #   <datadir>/dd3imp/input_files   the examples
 #   <docdir>                       the documents, with links to examples and utilities, so that their own links hold
-include(GNUInstallDirs)
 set(data "${CMAKE_INSTALL_DATADIR}/${PROJECT_NAME}")
 install(PROGRAMS utils/dd3.sh utils/install_needed.sh DESTINATION "${data}/utils")
 install(FILES utils/pyproject.toml DESTINATION "${data}/utils")

@@ -1,0 +1,195 @@
+!> The constitutive laws for C, see dd3laws.h. A handle is the address of a `law_material_t`, which
+!> does not change after it was made: any number of threads may use it.
+module dd3_library_interface
+  use, intrinsic :: iso_c_binding, only : c_double, c_f_pointer, c_int, c_loc, c_null_ptr, c_ptr, &
+      c_size_t
+  use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_text
+  use dd3_base_error, only : error_t
+  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_base_version, only : program_version
+  use dd3_library_c_text, only : from_c, to_c
+  use dd3_library_law_material, only : law_material_t, new_law_material, variable_name
+  use dd3_library_voigt, only : kelvin_strain, kelvin_stress, voigt_stress, voigt_tangent
+  implicit none
+  private
+  public :: laws_version, material_new, material_read, material_free, material_state_size, &
+      material_state_name, material_axes, material_update, material_equivalent_stress, &
+      material_flow_stress
+
+  !> File name of a text in messages.
+  character(len=*), parameter :: text_name = "text"
+
+contains
+
+  !> Copy the version of the library.
+  subroutine laws_version(text, length) bind(c, name="dd3_laws_version")
+    type(c_ptr), value :: text
+    integer(c_size_t), value :: length
+
+    call to_c(program_version, text, length)
+  end subroutine laws_version
+
+  !> Make a material from a text; null if it has errors.
+  type(c_ptr) function material_new(text, name, message, length) bind(c, name="dd3_material_new")
+    type(c_ptr), value :: text, name, message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+    type(error_t), allocatable :: error
+
+    allocate (self)
+    call new_law_material(self, text_name, from_c(name), error, from_c(text))
+    material_new = handle_of(self, error, message, length)
+  end function material_new
+
+  !> Make a material from a file; null if it has errors.
+  type(c_ptr) function material_read(file, name, message, length) bind(c, name="dd3_material_read")
+    type(c_ptr), value :: file, name, message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+    type(error_t), allocatable :: error
+
+    allocate (self)
+    call new_law_material(self, from_c(file), from_c(name), error)
+    material_read = handle_of(self, error, message, length)
+  end function material_read
+
+  !> Return the handle of a new material, or release it if there is an error.
+  function handle_of(self, error, message, length) result(handle)
+    type(law_material_t), pointer, intent(inout) :: self
+    type(error_t), allocatable, intent(in) :: error
+    type(c_ptr), intent(in) :: message
+    integer(c_size_t), intent(in) :: length
+    type(c_ptr) :: handle
+
+    if (allocated(error)) then
+      call to_c(error%message, message, length)
+      deallocate (self)
+      handle = c_null_ptr
+    else
+      call to_c("", message, length)
+      handle = c_loc(self)
+    end if
+  end function handle_of
+
+  !> Release a material.
+  subroutine material_free(handle) bind(c, name="dd3_material_free")
+    type(c_ptr), value :: handle
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    if (associated(self)) deallocate (self)
+  end subroutine material_free
+
+  !> Return the number of internal variables.
+  integer(c_int) function material_state_size(handle) bind(c, name="dd3_material_state_size")
+    type(c_ptr), value :: handle
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_state_size = int(self%laws%n_internal, c_int)
+  end function material_state_size
+
+  !> Copy the name of an internal variable; empty for one that does not exist.
+  subroutine material_state_name(handle, i, name, length) bind(c, name="dd3_material_state_name")
+    type(c_ptr), value :: handle
+    !> From 0.
+    integer(c_int), value :: i
+    type(c_ptr), value :: name
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    if (i >= 0 .and. i < self%laws%n_internal) then
+      call to_c(variable_name(self, int(i) + 1), name, length)
+    else
+      call to_c("", name, length)
+    end if
+  end subroutine material_state_name
+
+  !> Copy rolling, transverse and normal direction.
+  subroutine material_axes(handle, axes) bind(c, name="dd3_material_axes")
+    type(c_ptr), value :: handle
+    real(c_double), intent(out) :: axes(3, 3)
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    axes = self%axes
+  end subroutine material_axes
+
+  !> Integrate stress and internal variables over a strain increment. Return 0; or, with stress and
+  !> internal variables unchanged, another verdict.
+  integer(c_int) function material_update(handle, strain, stress, state, tangent, message, length) &
+      bind(c, name="dd3_material_update")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: strain(6)
+    real(c_double), intent(inout) :: stress(6), state(*)
+    real(c_double), intent(out) :: tangent(6, 6)
+    type(c_ptr), value :: message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+    type(verdict_t) :: verdict
+
+    call c_f_pointer(handle, self)
+    call update_state(self, self%laws%n_internal, strain, stress, state, tangent, verdict)
+    material_update = int(verdict%outcome, c_int)
+    if (verdict%outcome == verdict_converged) then
+      call to_c("", message, length)
+    else
+      call to_c(cause_text(verdict, ""), message, length)
+    end if
+  end function material_update
+
+  !> Integrate the n internal variables and the stress over a strain increment.
+  subroutine update_state(self, n, strain, stress, state, tangent, verdict)
+    type(law_material_t), intent(in) :: self
+    integer, intent(in) :: n
+    real(wp), intent(in) :: strain(6)
+    real(wp), intent(inout) :: stress(6), state(n)
+    real(wp), intent(out) :: tangent(6, 6)
+    type(verdict_t), intent(out) :: verdict
+
+    real(wp) :: kelvin(6), updated(n), derivative(6, 6)
+    logical :: plastic
+
+    call self%laws%update(kelvin_stress(stress), state, kelvin_strain(strain), kelvin, updated, &
+        derivative, plastic, verdict)
+    tangent = voigt_tangent(derivative)
+    if (verdict%outcome /= verdict_converged) return
+    stress = voigt_stress(kelvin)
+    state = updated
+  end subroutine update_state
+
+  !> Return the equivalent stress of a state.
+  real(c_double) function material_equivalent_stress(handle, stress, state) &
+      bind(c, name="dd3_material_equivalent_stress")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: stress(6), state(*)
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_equivalent_stress = self%laws%equivalent_stress(kelvin_stress(stress), &
+        state(:self%laws%n_internal))
+  end function material_equivalent_stress
+
+  !> Return the flow stress of a state.
+  real(c_double) function material_flow_stress(handle, state) &
+      bind(c, name="dd3_material_flow_stress")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: state(*)
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_flow_stress = self%laws%flow_stress(state(:self%laws%n_internal))
+  end function material_flow_stress
+
+end module dd3_library_interface
