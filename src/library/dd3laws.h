@@ -64,6 +64,12 @@ void dd3_material_axes(const dd3_material *material, double axes[9]);
 int dd3_material_update(const dd3_material *material, const double strain[6], double stress[6], double *state,
                         double tangent[36], char *message, size_t length);
 
+/* The same with strain, stress and tangent in the axes in which rolling and normal direction are given, those of the
+ * initial sheet, which rotate with the material. The state stays in the axes of the material.
+ */
+int dd3_material_update_in_sheet(const dd3_material *material, const double strain[6], double stress[6], double *state,
+                                 double tangent[36], char *message, size_t length);
+
 /* Return equivalent stress and flow stress of a state; they are equal in plastic flow. */
 double dd3_material_equivalent_stress(const dd3_material *material, const double stress[6], const double *state);
 double dd3_material_flow_stress(const dd3_material *material, const double *state);

@@ -11,11 +11,12 @@ module dd3_library_interface
   use dd3_library_c_text, only : from_c, to_c
   use dd3_library_law_material, only : law_material_t, new_law_material, variable_name
   use dd3_library_voigt, only : kelvin_strain, kelvin_stress, voigt_stress, voigt_tangent
+  use dd3_linalg_tensor, only : identity, kelvin_rotation
   implicit none
   private
   public :: laws_version, material_new, material_read, material_free, material_state_size, &
-      material_state_name, material_axes, material_update, material_equivalent_stress, &
-      material_flow_stress
+      material_state_name, material_axes, material_update, material_update_in_sheet, &
+      material_equivalent_stress, material_flow_stress
 
   !> File name of a text in messages.
   character(len=*), parameter :: text_name = "text"
@@ -135,37 +136,57 @@ contains
     integer(c_size_t), value :: length
 
     type(law_material_t), pointer :: self
-    type(verdict_t) :: verdict
 
     call c_f_pointer(handle, self)
-    call update_state(self, self%laws%n_internal, strain, stress, state, tangent, verdict)
-    material_update = int(verdict%outcome, c_int)
+    material_update = updated(self, identity, strain, stress, state(:self%laws%n_internal), &
+        tangent, message, length)
+  end function material_update
+
+  !> The same with components in the axes in which rolling and normal direction are given.
+  integer(c_int) function material_update_in_sheet(handle, strain, stress, state, tangent, &
+      message, length) bind(c, name="dd3_material_update_in_sheet")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: strain(6)
+    real(c_double), intent(inout) :: stress(6), state(*)
+    real(c_double), intent(out) :: tangent(6, 6)
+    type(c_ptr), value :: message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_update_in_sheet = updated(self, self%axes, strain, stress, &
+        state(:self%laws%n_internal), tangent, message, length)
+  end function material_update_in_sheet
+
+  !> Integrate over a strain increment; return the outcome.
+  integer(c_int) function updated(self, axes, strain, stress, state, tangent, message, length)
+    type(law_material_t), intent(in) :: self
+    !> Axes of the material as columns, in those of strain and stress.
+    real(wp), intent(in) :: axes(3, 3)
+    real(wp), intent(in) :: strain(6)
+    real(wp), intent(inout) :: stress(6), state(:)
+    real(wp), intent(out) :: tangent(6, 6)
+    type(c_ptr), intent(in) :: message
+    integer(c_size_t), intent(in) :: length
+
+    type(verdict_t) :: verdict
+    real(wp) :: rotation(6, 6), kelvin(6), finished(size(state)), derivative(6, 6)
+    logical :: plastic
+
+    rotation = kelvin_rotation(axes)
+    call self%laws%update(matmul(kelvin_stress(stress), rotation), state, &
+        matmul(kelvin_strain(strain), rotation), kelvin, finished, derivative, plastic, verdict)
+    tangent = voigt_tangent(matmul(rotation, matmul(derivative, transpose(rotation))))
+    updated = int(verdict%outcome, c_int)
     if (verdict%outcome == verdict_converged) then
+      stress = voigt_stress(matmul(rotation, kelvin))
+      state = finished
       call to_c("", message, length)
     else
       call to_c(cause_text(verdict, ""), message, length)
     end if
-  end function material_update
-
-  !> Integrate the n internal variables and the stress over a strain increment.
-  subroutine update_state(self, n, strain, stress, state, tangent, verdict)
-    type(law_material_t), intent(in) :: self
-    integer, intent(in) :: n
-    real(wp), intent(in) :: strain(6)
-    real(wp), intent(inout) :: stress(6), state(n)
-    real(wp), intent(out) :: tangent(6, 6)
-    type(verdict_t), intent(out) :: verdict
-
-    real(wp) :: kelvin(6), updated(n), derivative(6, 6)
-    logical :: plastic
-
-    call self%laws%update(kelvin_stress(stress), state, kelvin_strain(strain), kelvin, updated, &
-        derivative, plastic, verdict)
-    tangent = voigt_tangent(derivative)
-    if (verdict%outcome /= verdict_converged) return
-    stress = voigt_stress(kelvin)
-    state = updated
-  end subroutine update_state
+  end function updated
 
   !> Return the equivalent stress of a state.
   real(c_double) function material_equivalent_stress(handle, stress, state) &

@@ -5,7 +5,8 @@
  * PROPS is not used; NSTATV is at least the number of internal variables.
  *
  * Stress and strain are components in axes that rotate with the material: in CalculiX always, in Abaqus with
- * *ORIENTATION. DROT is therefore not used. A step that fails asks for half of the increment by PNEWDT.
+ * *ORIENTATION. DROT is therefore not used. Rolling and normal direction of the material are in these axes as well.
+ * A step that fails asks for half of the increment by PNEWDT.
  */
 #include <ctype.h>
 #include <pthread.h>
@@ -98,7 +99,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
     all_stress[i] = stress[i];
     all_strain[i] = dstran[i];
   }
-  if (dd3_material_update(material, all_strain, all_stress, statev, tangent, NULL, 0) != DD3_CONVERGED) *pnewdt = 0.5;
+  if (dd3_material_update_in_sheet(material, all_strain, all_stress, statev, tangent, NULL, 0) != DD3_CONVERGED)
+    *pnewdt = 0.5;
   for (j = 0; j < n; j++) {
     stress[j] = all_stress[j];
     for (i = 0; i < n; i++) ddsdde[i + n * j] = tangent[i + 6 * j];
