@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ $# -gt 0 ]; then
-  sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/first_run.sh
+  sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/first_run.sh
   [ "$1" = --help ] || [ "$1" = -h ] && exit
   echo "error: unknown argument $1" >&2
   exit 2
