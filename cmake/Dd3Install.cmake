@@ -10,7 +10,7 @@ install(FILES utils/pyproject.toml DESTINATION "${data}/utils")
 install(DIRECTORY utils/dd3 DESTINATION "${data}/utils" PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY input_files DESTINATION "${data}" USE_SOURCE_PERMISSIONS PATTERN "*.out" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Install a symbolic link at `place` to `target`, both relative to the prefix.
