@@ -8,6 +8,7 @@ import argparse
 import ctypes
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -143,6 +144,21 @@ def check_umat(library, folder):
     assert np.array_equal(solid.stress, stress) and solid.smaller == 0.5
 
 
+def check_threads(library):
+    """Let threads make materials and follow a path at the same time, each with its own and all with one material."""
+    case, common = CASES[3], Material(library, CASES[3].material())
+
+    def follow(_):
+        point = Material(library, case.material())
+        found = [by_library(case, point)]
+        point.handle, point.stress, point.state = common.handle, np.zeros(6), np.zeros_like(point.state)
+        return [*found, by_library(case, point)]
+
+    with ThreadPoolExecutor(4) as pool:
+        results = [forces for both in pool.map(follow, range(8)) for forces in both]
+    assert all(np.array_equal(forces, results[0]) for forces in results)
+
+
 def main():
     """Run and compare all cases."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -156,6 +172,7 @@ def main():
         folder = options.work or Path(name)
         folder.mkdir(parents=True, exist_ok=True)
         check_umat(library, Path(name))
+        check_threads(library)
         for case in CASES:
             expected = run_program(options.program, case, folder)
             found = {"library": by_library(case, Material(library, case.material()))}
