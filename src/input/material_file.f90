@@ -1,5 +1,5 @@
 !> A single material from a file or a text: its block *MATERIAL, read and checked as in a job. Other
-!> blocks are skipped, so that the file may be a whole job; *PARAMETER and *INCLUDE have their effect.
+!> blocks are skipped, so that the file may be a whole job; *PARAMETER and *INCLUDE take effect.
 module dd3_input_material_file
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : join, same_name, text_t

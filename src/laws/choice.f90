@@ -1,4 +1,5 @@
-!> A law as written in the input, checked against the registries, with the location of every problem.
+!> A law as written in the input, checked against the registries, with the location of every
+!> problem.
 module dd3_laws_choice
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_parameter, only : parameter_t
