@@ -16,14 +16,14 @@ contains
     character(kind=c_char), pointer :: bytes(:)
     integer :: i, n
 
-    text = ""
-    if (.not. c_associated(address)) return
-    call c_f_pointer(address, bytes, [huge(0)])
     n = 0
-    do while (bytes(n + 1) /= c_null_char)
-      n = n + 1
-    end do
-    text = repeat(" ", n)
+    if (c_associated(address)) then
+      call c_f_pointer(address, bytes, [huge(0)])
+      do while (bytes(n + 1) /= c_null_char)
+        n = n + 1
+      end do
+    end if
+    allocate (character(len=n) :: text)
     do i = 1, n
       text(i:i) = bytes(i)
     end do

@@ -27,52 +27,52 @@
 extern "C" {
 #endif
 
-typedef struct dd3_material dd3_material;
+typedef struct dd3laws_material dd3laws_material;
 
-/* Results of dd3_material_update. */
+/* Results of dd3laws_update. */
 enum {
-  DD3_CONVERGED = 0,
-  DD3_RETRY = 1,     /* a smaller increment may succeed */
-  DD3_IMPOSSIBLE = 2 /* the input is not finite */
+  DD3LAWS_CONVERGED = 0,
+  DD3LAWS_RETRY = 1,     /* a smaller increment may succeed */
+  DD3LAWS_IMPOSSIBLE = 2 /* the input is not finite */
 };
 
 /* Copy the version of the library, such as 1.0.0. */
-void dd3_laws_version(char *text, size_t length);
+void dd3laws_version(char *text, size_t length);
 
 /* Make a material from a text with a block *MATERIAL, or from a file, which may be a whole input file. name is that of
  * the block; NULL or "" if there is only one. NULL is returned if there are errors; message then has a text for each,
  * with line and column. Files that the laws name are relative to the folder of the file, or to the working directory.
  */
-dd3_material *dd3_material_new(const char *text, const char *name, char *message, size_t length);
-dd3_material *dd3_material_read(const char *file, const char *name, char *message, size_t length);
+dd3laws_material *dd3laws_new(const char *text, const char *name, char *message, size_t length);
+dd3laws_material *dd3laws_read(const char *file, const char *name, char *message, size_t length);
 
 /* Release a material; NULL is allowed. */
-void dd3_material_free(dd3_material *material);
+void dd3laws_free(dd3laws_material *material);
 
 /* Return the number of internal variables. */
-int dd3_material_state_size(const dd3_material *material);
+int dd3laws_state_size(const dd3laws_material *material);
 
 /* Copy the name of internal variable i, from 0; empty if there is none. */
-void dd3_material_state_name(const dd3_material *material, int i, char *name, size_t length);
+void dd3laws_state_name(const dd3laws_material *material, int i, char *name, size_t length);
 
 /* Copy rolling, transverse and normal direction in the initial sheet, one after the other. */
-void dd3_material_axes(const dd3_material *material, double axes[9]);
+void dd3laws_axes(const dd3laws_material *material, double axes[9]);
 
 /* Integrate stress and internal variables over a strain increment; return one of the results above. If it is not
- * DD3_CONVERGED, stress and state are unchanged and the tangent is elastic.
+ * DD3LAWS_CONVERGED, stress and state are unchanged and the tangent is elastic.
  */
-int dd3_material_update(const dd3_material *material, const double strain[6], double stress[6], double *state,
-                        double tangent[36], char *message, size_t length);
+int dd3laws_update(const dd3laws_material *material, const double strain[6], double stress[6], double *state,
+                   double tangent[36], char *message, size_t length);
 
 /* The same with strain, stress and tangent in the axes in which rolling and normal direction are given, those of the
  * initial sheet, which rotate with the material. The state stays in the axes of the material.
  */
-int dd3_material_update_in_sheet(const dd3_material *material, const double strain[6], double stress[6], double *state,
-                                 double tangent[36], char *message, size_t length);
+int dd3laws_update_in_sheet(const dd3laws_material *material, const double strain[6], double stress[6], double *state,
+                            double tangent[36], char *message, size_t length);
 
 /* Return equivalent stress and flow stress of a state; they are equal in plastic flow. */
-double dd3_material_equivalent_stress(const dd3_material *material, const double stress[6], const double *state);
-double dd3_material_flow_stress(const dd3_material *material, const double *state);
+double dd3laws_equivalent_stress(const dd3laws_material *material, const double stress[6], const double *state);
+double dd3laws_flow_stress(const dd3laws_material *material, const double *state);
 
 #ifdef __cplusplus
 }

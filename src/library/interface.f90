@@ -12,6 +12,7 @@ module dd3_library_interface
   use dd3_library_law_material, only : law_material_t, new_law_material, variable_name
   use dd3_library_voigt, only : kelvin_strain, kelvin_stress, voigt_stress, voigt_tangent
   use dd3_linalg_tensor, only : identity, kelvin_rotation
+  use dd3_material_update, only : all_finite
   implicit none
   private
   public :: laws_version, material_new, material_read, material_free, material_state_size, &
@@ -24,7 +25,7 @@ module dd3_library_interface
 contains
 
   !> Copy the version of the library.
-  subroutine laws_version(text, length) bind(c, name="dd3_laws_version")
+  subroutine laws_version(text, length) bind(c, name="dd3laws_version")
     type(c_ptr), value :: text
     integer(c_size_t), value :: length
 
@@ -32,7 +33,7 @@ contains
   end subroutine laws_version
 
   !> Make a material from a text; null if it has errors.
-  type(c_ptr) function material_new(text, name, message, length) bind(c, name="dd3_material_new")
+  type(c_ptr) function material_new(text, name, message, length) bind(c, name="dd3laws_new")
     type(c_ptr), value :: text, name, message
     integer(c_size_t), value :: length
 
@@ -45,7 +46,7 @@ contains
   end function material_new
 
   !> Make a material from a file; null if it has errors.
-  type(c_ptr) function material_read(file, name, message, length) bind(c, name="dd3_material_read")
+  type(c_ptr) function material_read(file, name, message, length) bind(c, name="dd3laws_read")
     type(c_ptr), value :: file, name, message
     integer(c_size_t), value :: length
 
@@ -76,7 +77,7 @@ contains
   end function handle_of
 
   !> Release a material.
-  subroutine material_free(handle) bind(c, name="dd3_material_free")
+  subroutine material_free(handle) bind(c, name="dd3laws_free")
     type(c_ptr), value :: handle
 
     type(law_material_t), pointer :: self
@@ -86,7 +87,7 @@ contains
   end subroutine material_free
 
   !> Return the number of internal variables.
-  integer(c_int) function material_state_size(handle) bind(c, name="dd3_material_state_size")
+  integer(c_int) function material_state_size(handle) bind(c, name="dd3laws_state_size")
     type(c_ptr), value :: handle
 
     type(law_material_t), pointer :: self
@@ -96,7 +97,7 @@ contains
   end function material_state_size
 
   !> Copy the name of an internal variable; empty for one that does not exist.
-  subroutine material_state_name(handle, i, name, length) bind(c, name="dd3_material_state_name")
+  subroutine material_state_name(handle, i, name, length) bind(c, name="dd3laws_state_name")
     type(c_ptr), value :: handle
     !> From 0.
     integer(c_int), value :: i
@@ -114,7 +115,7 @@ contains
   end subroutine material_state_name
 
   !> Copy rolling, transverse and normal direction.
-  subroutine material_axes(handle, axes) bind(c, name="dd3_material_axes")
+  subroutine material_axes(handle, axes) bind(c, name="dd3laws_axes")
     type(c_ptr), value :: handle
     real(c_double), intent(out) :: axes(3, 3)
 
@@ -127,7 +128,7 @@ contains
   !> Integrate stress and internal variables over a strain increment. Return 0; or, with stress and
   !> internal variables unchanged, another verdict.
   integer(c_int) function material_update(handle, strain, stress, state, tangent, message, length) &
-      bind(c, name="dd3_material_update")
+      bind(c, name="dd3laws_update")
     type(c_ptr), value :: handle
     real(c_double), intent(in) :: strain(6)
     real(c_double), intent(inout) :: stress(6), state(*)
@@ -144,7 +145,7 @@ contains
 
   !> The same with components in the axes in which rolling and normal direction are given.
   integer(c_int) function material_update_in_sheet(handle, strain, stress, state, tangent, &
-      message, length) bind(c, name="dd3_material_update_in_sheet")
+      message, length) bind(c, name="dd3laws_update_in_sheet")
     type(c_ptr), value :: handle
     real(c_double), intent(in) :: strain(6)
     real(c_double), intent(inout) :: stress(6), state(*)
@@ -171,12 +172,18 @@ contains
     integer(c_size_t), intent(in) :: length
 
     type(verdict_t) :: verdict
-    real(wp) :: rotation(6, 6), kelvin(6), finished(size(state)), derivative(6, 6)
+    real(wp) :: rotation(6, 6), start(6), increment(6)
+    real(wp) :: kelvin(6), finished(size(state)), derivative(6, 6)
     logical :: plastic
 
     rotation = kelvin_rotation(axes)
-    call self%laws%update(matmul(kelvin_stress(stress), rotation), state, &
-        matmul(kelvin_strain(strain), rotation), kelvin, finished, derivative, plastic, verdict)
+    start = kelvin_stress(stress)
+    increment = kelvin_strain(strain)
+    if (all_finite(start, state, increment)) then  ! else the update refuses them
+      start = matmul(start, rotation)
+      increment = matmul(increment, rotation)
+    end if
+    call self%laws%update(start, state, increment, kelvin, finished, derivative, plastic, verdict)
     tangent = voigt_tangent(matmul(rotation, matmul(derivative, transpose(rotation))))
     updated = int(verdict%outcome, c_int)
     if (verdict%outcome == verdict_converged) then
@@ -190,7 +197,7 @@ contains
 
   !> Return the equivalent stress of a state.
   real(c_double) function material_equivalent_stress(handle, stress, state) &
-      bind(c, name="dd3_material_equivalent_stress")
+      bind(c, name="dd3laws_equivalent_stress")
     type(c_ptr), value :: handle
     real(c_double), intent(in) :: stress(6), state(*)
 
@@ -203,7 +210,7 @@ contains
 
   !> Return the flow stress of a state.
   real(c_double) function material_flow_stress(handle, state) &
-      bind(c, name="dd3_material_flow_stress")
+      bind(c, name="dd3laws_flow_stress")
     type(c_ptr), value :: handle
     real(c_double), intent(in) :: state(*)
 

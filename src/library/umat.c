@@ -20,7 +20,7 @@ enum { NAME_LENGTH = 80, MOST_MATERIALS = 100, EXIT_CODE = 201 };
 
 static struct {
   char name[NAME_LENGTH + 1];
-  dd3_material *material;
+  dd3laws_material *material;
 } known[MOST_MATERIALS];
 static int n_known = 0;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -43,21 +43,21 @@ static void copy_name(const char *cmname, char name[NAME_LENGTH + 1]) {
   name[last - first] = '\0';
 }
 
-static dd3_material *read_known(const char *name) {
+static dd3laws_material *read_known(const char *name) {
   static char message[4000];
   const char *file = getenv("DD3_MATERIALS");
   if (file == NULL || *file == '\0') file = "dd3_materials.dat";
   if (n_known == MOST_MATERIALS) stop("too many materials");
-  known[n_known].material = dd3_material_read(file, name, message, sizeof message);
+  known[n_known].material = dd3laws_read(file, name, message, sizeof message);
   if (known[n_known].material == NULL) stop(message);
   strcpy(known[n_known].name, name);
   return known[n_known++].material;
 }
 
 /* Return a material by its name; the file is read at the first call. */
-static const dd3_material *find_material(const char *cmname) {
+static const dd3laws_material *find_material(const char *cmname) {
   char name[NAME_LENGTH + 1];
-  dd3_material *found = NULL;
+  dd3laws_material *found = NULL;
   int i;
   copy_name(cmname, name);
   pthread_mutex_lock(&lock);
@@ -68,12 +68,12 @@ static const dd3_material *find_material(const char *cmname) {
   return found;
 }
 
-static void check_sizes(const dd3_material *material, int ndi, int nshr, int nstatv) {
+static void check_sizes(const dd3laws_material *material, int ndi, int nshr, int nstatv) {
   char text[200];
   if (ndi != 3 || nshr < 1 || nshr > 3)
     stop("expected 3 normal stresses and 1 to 3 shear stresses: solid elements, not plane stress");
-  if (nstatv >= dd3_material_state_size(material)) return;
-  snprintf(text, sizeof text, "expected %d state variables (*DEPVAR), got %d", dd3_material_state_size(material),
+  if (nstatv >= dd3laws_state_size(material)) return;
+  snprintf(text, sizeof text, "expected %d state variables (*DEPVAR), got %d", dd3laws_state_size(material),
            nstatv);
   stop(text);
 }
@@ -85,7 +85,7 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
            const int *nstatv, const double *props, const int *nprops, const double *coords, const double *drot,
            double *pnewdt, const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
            const int *npt, const int *layer, const int *kspt, const int *kstep, const int *kinc, int cmname_length) {
-  const dd3_material *material = find_material(cmname);
+  const dd3laws_material *material = find_material(cmname);
   const int n = *ntens;
   double all_stress[6] = {0}, all_strain[6] = {0}, tangent[36];
   int i, j;
@@ -99,7 +99,7 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
     all_stress[i] = stress[i];
     all_strain[i] = dstran[i];
   }
-  if (dd3_material_update_in_sheet(material, all_strain, all_stress, statev, tangent, NULL, 0) != DD3_CONVERGED)
+  if (dd3laws_update_in_sheet(material, all_strain, all_stress, statev, tangent, NULL, 0) != DD3LAWS_CONVERGED)
     *pnewdt = 0.5;
   for (j = 0; j < n; j++) {
     stress[j] = all_stress[j];

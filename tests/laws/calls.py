@@ -19,17 +19,17 @@ class Material:
     def __init__(self, library, text):
         """Make a material from a block *MATERIAL."""
         self.library, message = library, ctypes.create_string_buffer(2000)
-        library.dd3_material_new.restype = ctypes.c_void_p
-        made = library.dd3_material_new(text.encode(), None, message, ctypes.c_size_t(2000))
+        library.dd3laws_new.restype = ctypes.c_void_p
+        made = library.dd3laws_new(text.encode(), None, message, ctypes.c_size_t(2000))
         assert made, message.value.decode()
         self.handle = ctypes.c_void_p(made)
         self.stress, self.tangent = np.zeros(6), np.zeros((6, 6), order="F")
-        self.state = np.zeros(library.dd3_material_state_size(self.handle))
+        self.state = np.zeros(library.dd3laws_state_size(self.handle))
 
     def update(self, strain):
         """Integrate stress and state over a strain increment."""
         strain, message = np.array(strain), ctypes.create_string_buffer(2000)
-        code = self.library.dd3_material_update(self.handle, pointer(strain), pointer(self.stress), pointer(self.state),
+        code = self.library.dd3laws_update(self.handle, pointer(strain), pointer(self.stress), pointer(self.state),
                                                 pointer(self.tangent), message, ctypes.c_size_t(2000))
         assert code == 0, message.value.decode()
 

@@ -11,13 +11,13 @@ int main(void) {
   const double strain[6] = {0.01, -0.005, -0.005};
   double stress[6] = {0}, state[1] = {0}, tangent[36];
   char message[400];
-  dd3_material *steel = dd3_material_new(text, NULL, message, sizeof message);
-  if (steel == NULL || dd3_material_state_size(steel) != 1 ||
-      dd3_material_update(steel, strain, stress, state, tangent, message, sizeof message) != DD3_CONVERGED) {
+  dd3laws_material *steel = dd3laws_new(text, NULL, message, sizeof message);
+  if (steel == NULL || dd3laws_state_size(steel) != 1 ||
+      dd3laws_update(steel, strain, stress, state, tangent, message, sizeof message) != DD3LAWS_CONVERGED) {
     fprintf(stderr, "%s\n", message);
     return 1;
   }
   printf("%.9f\n", stress[0]);
-  dd3_material_free(steel);
+  dd3laws_free(steel);
   return 0;
 }
