@@ -4,14 +4,13 @@
 #   <datadir>/dd3imp/utils         their package; install_needed.sh makes its Python environment as .venv beside it
 #   <datadir>/dd3imp/input_files   the examples
 #   <docdir>                       the documents, with links to examples and utilities, so that their own links hold
-include(GNUInstallDirs)
 set(data "${CMAKE_INSTALL_DATADIR}/${PROJECT_NAME}")
 install(PROGRAMS utils/dd3.sh utils/install_needed.sh DESTINATION "${data}/utils")
 install(FILES utils/pyproject.toml DESTINATION "${data}/utils")
 install(DIRECTORY utils/dd3 DESTINATION "${data}/utils" PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY input_files DESTINATION "${data}" USE_SOURCE_PERMISSIONS PATTERN "*.out" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Install a symbolic link at `place` to `target`, both relative to the prefix.

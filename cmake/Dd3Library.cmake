@@ -2,7 +2,8 @@
 #
 # Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only
 # to the libraries that name it in USES: a `use` of an undeclared folder does not compile. The sources are every .f90
-# below the folder except a main program (see dd3_program), and the GENERATED files.
+# below the folder except a main program (see dd3_program), and the GENERATED files. The global property DD3_FOLDERS
+# lists the folders that have sources.
 function(dd3_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
@@ -22,6 +23,7 @@ function(dd3_library folder)
     target_link_libraries(${library} PRIVATE dd3_${used})
   endforeach()
   target_link_libraries(${library} PRIVATE ${arg_PACKAGES})
+  set_property(GLOBAL APPEND PROPERTY DD3_FOLDERS ${folder})
 endfunction()
 
 # dd3_program(<name> <folder>)

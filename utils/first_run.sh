@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ $# -gt 0 ]; then
-  sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/first_run.sh
+  sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/first_run.sh
   [ "$1" = --help ] || [ "$1" = -h ] && exit
   echo "error: unknown argument $1" >&2
   exit 2
@@ -15,7 +15,8 @@ fi
 utils/install_needed.sh
 echo "== building"
 cmake --preset release >build-release.log 2>&1 || { cat build-release.log; exit 1; }
-cmake --build --preset release --target dd3imp >>build-release.log 2>&1 || { tail -n 60 build-release.log; exit 1; }
+cmake --build --preset release --target dd3imp dd3laws dd3imp_modules >>build-release.log 2>&1 ||
+  { tail -n 60 build-release.log; exit 1; }
 mkdir -p build && mv build-release.log build/release/build.log
 
 echo "== running input_files/bending/bending.dat, and beside it without the limit on the contact forces"

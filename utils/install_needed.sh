@@ -7,7 +7,7 @@
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
-usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
+usage() { sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
 case "$*" in
   "" | --no-python) ;;
   --help | -h) usage; exit ;;

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 case ${1:-} in
   "" | --slow) ;;
   *)
-    sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' utils/run_tests.sh
+    sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/run_tests.sh
     [ "$1" = --help ] || [ "$1" = -h ] && exit
     echo "error: unknown argument $1" >&2
     exit 2 ;;

@@ -12,7 +12,7 @@ module dd3_input_check
   use dd3_input_value, only : check_value
   implicit none
   private
-  public :: check_deck
+  public :: check_deck, check_blocks
 
   !> Longest name of a block.
   integer, parameter :: longest_name = 60
@@ -24,6 +24,17 @@ contains
     type(deck_t), intent(inout) :: deck
     type(block_row_t), intent(in) :: table(:)
     character(len=*), intent(in) :: file
+    type(error_list_t), intent(inout) :: errors
+
+    call check_blocks(deck, table, errors)
+    call check_presence(deck, table, file, errors)
+    call add_blocks(deck, table, errors)
+  end subroutine check_deck
+
+  !> Check each block by itself, and add the keys that were left out and have defaults.
+  subroutine check_blocks(deck, table, errors)
+    type(deck_t), intent(inout) :: deck
+    type(block_row_t), intent(in) :: table(:)
     type(error_list_t), intent(inout) :: errors
 
     type(name_index_t) :: given
@@ -44,9 +55,7 @@ contains
       ! An entry without a value was reported when it was read.
       deck%block(i)%valid = errors%count == before .and. entries_valid(deck%block(i))
     end do
-    call check_presence(deck, table, file, errors)
-    call add_blocks(deck, table, errors)
-  end subroutine check_deck
+  end subroutine check_blocks
 
   !> Whether all entries of a block passed the check.
   pure logical function entries_valid(block)

@@ -9,7 +9,7 @@ module dd3_input_cross_check
   use dd3_input_sheet_sets, only : n_quarters
   implicit none
   private
-  public :: cross_check
+  public :: cross_check, check_material
 
 contains
 

@@ -4,7 +4,7 @@ module dd3_input_deck
   use dd3_base_text, only : text_t, lower_case, upper_case, slice, to_text
   use dd3_input_block, only : block_t, entry_t, token_t, deck_t
   use dd3_input_substitution, only : substitution_t, new_substitution
-  use dd3_input_text_file, only : read_lines, resolve_path, folder_of
+  use dd3_input_text_file, only : clean_text, folder_of, read_lines, resolve_path, split_lines
   use dd3_input_token, only : line_t, token_list_t, place, split_line
   implicit none
   private
@@ -36,12 +36,14 @@ module dd3_input_deck
 contains
 
   !> Read a file and the files it includes.
-  subroutine read_deck(deck, file_name, overrides, errors)
+  subroutine read_deck(deck, file_name, overrides, errors, content)
     type(deck_t), intent(out) :: deck
     character(len=*), intent(in) :: file_name
     !> Parameters given as `name=value` on the command line.
     type(text_t), intent(in) :: overrides(:)
     type(error_list_t), intent(inout) :: errors
+    !> Text in place of the file, whose name is then that in messages.
+    character(len=*), intent(in), optional :: content
 
     type(reader_t) :: self
     type(location_t) :: whole_file
@@ -51,7 +53,11 @@ contains
     allocate (self%file(0), self%deck%file(0))
     call new_substitution(self%substitution, overrides, errors)
     whole_file%file = file_name
-    call read_file(self, file_name, whole_file, errors)
+    if (present(content)) then
+      call read_content(self, file_name, content, errors)
+    else
+      call read_file(self, file_name, whole_file, errors)
+    end if
     call close_block(self)
     if (self%deck%n_block == 0 .and. errors%count == before) then
       call errors%push_input(whole_file, "the file contains no block", &
@@ -71,9 +77,6 @@ contains
 
     type(text_t), allocatable :: text(:)
     type(error_t), allocatable :: error
-    type(text_t) :: opened
-    type(line_t) :: line
-    integer :: i
 
     call read_lines(path, text, error)
     if (allocated(error)) then
@@ -81,6 +84,42 @@ contains
           code="E101")
       return
     end if
+    call read_statements(self, path, text, errors)
+  end subroutine read_file
+
+  !> Read a text in place of a file.
+  subroutine read_content(self, name, content, errors)
+    type(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, content
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: clean
+    type(text_t), allocatable :: text(:)
+    type(error_t), allocatable :: error
+    type(location_t) :: whole
+
+    clean = content
+    call clean_text(clean, error)
+    if (allocated(error)) then
+      whole%file = name
+      call errors%push_input(whole, error%message, code="E101")
+      return
+    end if
+    call split_lines(clean, text)
+    call read_statements(self, name, text, errors)
+  end subroutine read_content
+
+  !> Read the lines of a file.
+  recursive subroutine read_statements(self, path, text, errors)
+    type(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(text_t), intent(in) :: text(:)
+    type(error_list_t), intent(inout) :: errors
+
+    type(text_t) :: opened
+    type(line_t) :: line
+    integer :: i
+
     opened%s = path
     self%file = [self%file, opened]
     self%deck%file = [self%deck%file, opened]
@@ -95,7 +134,7 @@ contains
       end if
     end do
     self%file = self%file(:size(self%file) - 1)
-  end subroutine read_file
+  end subroutine read_statements
 
   !> Advance to the next line.
   subroutine advance_line(self, line, text, i)

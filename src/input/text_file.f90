@@ -5,7 +5,7 @@ module dd3_input_text_file
   use dd3_base_text, only : text_t, to_text
   implicit none
   private
-  public :: read_lines, read_text, next_line, resolve_path, folder_of
+  public :: read_lines, read_text, clean_text, split_lines, next_line, resolve_path, folder_of
 
   !> Maximum size of an input file, bytes.
   integer(i8), parameter :: largest_file = 200000000
@@ -21,10 +21,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     character(len=:), allocatable :: text
-    integer :: first, last, next, pass, n
 
     call read_text(path, text, error)
-    if (allocated(error)) return
+    if (.not. allocated(error)) call split_lines(text, line)
+  end subroutine read_lines
+
+  !> Split a text into its lines, without line ends.
+  pure subroutine split_lines(text, line)
+    character(len=*), intent(in) :: text
+    type(text_t), allocatable, intent(out) :: line(:)
+
+    integer :: first, last, next, pass, n
+
     do pass = 1, 2
       n = 0
       next = 1
@@ -35,7 +43,7 @@ contains
       end do
       if (pass == 1) allocate (line(n))
     end do
-  end subroutine read_lines
+  end subroutine split_lines
 
   !> Read the text of a file, without a UTF-8 byte order mark, for `next_line`.
   subroutine read_text(path, text, error)
@@ -44,14 +52,22 @@ contains
     !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
 
+    call read_content(path, text, error)
+    if (.not. allocated(error)) call clean_text(text, error)
+  end subroutine read_text
+
+  !> Remove the byte order mark of a text, blank its no-break spaces, refuse control characters.
+  pure subroutine clean_text(text, error)
+    character(len=:), allocatable, intent(inout) :: text
+    !> Set if there are control characters.
+    type(error_t), allocatable, intent(out) :: error
+
     character(len=*), parameter :: mark = char(239)//char(187)//char(191)
 
-    call read_content(path, text, error)
-    if (allocated(error)) return
     call blank_no_break_spaces(text)
     if (text(:min(len(mark), len(text))) == mark) text = text(len(mark) + 1:)
     call refuse_control_characters(text, error)
-  end subroutine read_text
+  end subroutine clean_text
 
   !> Find the line that begins at `next`; lines end at LF, CR LF or CR.
   pure subroutine next_line(text, next, first, last)

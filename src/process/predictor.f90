@@ -99,8 +99,8 @@ contains
         call read_step(system, model, committed, self%step)
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, system%partition, switched)
-        if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
         if (.not. unloading%active) exit
+        if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
       end do
       where (spread(system%contact%status == status_gap, 1, 3)) self%step%lambda = 0.0_wp
     end associate

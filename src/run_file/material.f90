@@ -6,9 +6,9 @@ module dd3_run_file_material
   use dd3_base_text, only : same_name
   use dd3_input_case, only : case_t, law_spec_t, point_spec_t
   use dd3_input_table, only : find_key
+  use dd3_laws_choice, only : choose_law
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
   use dd3_material_description, only : description_t, law_choice_t
-  use dd3_model_materials, only : choose_law
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
   implicit none

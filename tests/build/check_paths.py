@@ -1,4 +1,4 @@
-"""Check that the files named in README and CONTRIBUTING exist and that scripts are executable."""
+"""Check that the files named in README and CONTRIBUTING exist, scripts can be run, README names the folders of src."""
 import pathlib
 import re
 import sys
@@ -23,6 +23,9 @@ def main():
                 wrong.append(f"{name}: {path} does not exist")
             elif target.suffix == ".sh" and not target.stat().st_mode & 0o100:
                 wrong.append(f"{name}: {path} is not executable")
+    tree = (ROOT / "README.md").read_text(encoding="utf-8").split("## The tree")[1]
+    folders = sorted(path.name for path in (ROOT / "src").iterdir() if path.is_dir())
+    wrong += [f"README.md: the tree lacks src/{folder}" for folder in folders if f"`src/{folder}`" not in tree]
     if wrong:
         sys.exit("\n".join(wrong))
 

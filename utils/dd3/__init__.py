@@ -14,7 +14,7 @@ from dd3.errors import Problem
 from dd3.run import Run
 
 __all__ = ["Problem", "Run", "open"]
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 
 def open(folder: str | Path) -> Run:
