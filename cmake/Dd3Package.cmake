@@ -38,4 +38,4 @@ configure_package_config_file(cmake/dd3imp-config.cmake.in "${CMAKE_BINARY_DIR}/
   INSTALL_DESTINATION "${package}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/dd3imp-config-version.cmake" COMPATIBILITY SameMajorVersion)
 install(FILES "${CMAKE_BINARY_DIR}/dd3imp-config.cmake" "${CMAKE_BINARY_DIR}/dd3imp-config-version.cmake"
-  cmake/FindSuiteSparse.cmake cmake/FindMUMPS.cmake DESTINATION "${package}")
+  cmake/FindSuiteSparse.cmake cmake/FindMUMPS.cmake cmake/FindMETIS.cmake DESTINATION "${package}")
