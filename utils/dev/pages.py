@@ -60,13 +60,13 @@ def labelled(label: str, **blocks: str) -> str:
 
 
 BENDING = f"{MECHANICS} input_files/bending"
-OFF, MIXED = "line_search = off", "formulation = mixed"
+OFF, MIXED, COMPLIANT = "line_search = off", "formulation = mixed", "formulation = compliant"
 # The mixed formulation takes too long on the others.
 MIXED_PROBLEMS = ("holder_gap first_contact flat_punch air_bending capstan u_bend strip_19.6kN_2mm strip_2.45kN_2mm "
                   "aluminium_15 steel_15")
 PAGES = {
     "ablation": Page(12, MECHANICS, (
-        labelled("compliant"), labelled("no_line_search", newton=OFF),
+        labelled("compliant", contact=COMPLIANT), labelled("no_line_search", contact=COMPLIANT, newton=OFF),
         labelled("mixed", contact=MIXED) + f" --problems {MIXED_PROBLEMS}",
         labelled("mixed_no_line_search", contact=MIXED, newton=OFF) + f" --problems {MIXED_PROBLEMS}",
         envelope("--compare compliant no_line_search mixed mixed_no_line_search --ablation"))),
@@ -80,7 +80,7 @@ PAGES = {
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
-    "contact": Page(8, MECHANICS, (labelled("compliant") + " --write", envelope("--layers --write"))),
+    "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write", envelope("--layers --write"))),
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
