@@ -80,7 +80,8 @@ PAGES = {
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
-    "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write", envelope("--layers --write"))),
+    "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write",
+                                   envelope("--layers --write"))),
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
