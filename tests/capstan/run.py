@@ -28,7 +28,7 @@ EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0
 THICKNESS, LOAD = 0.02, 1.0  # of the deck: mm, N
 SETTINGS = [(thickness, contact) for thickness in (0.02, 0.05)
-            for contact in ("", "layer = 0.02", "formulation = mixed", "penalty = 100")]
+            for contact in ("", "layer = 0.02", "formulation = mixed", "penalty = 100", "penalty = 1e4")]
 ALLOWED_RATIO, ALLOWED_DEPTH = 0.02, 1e-3
 HEAD = ["thickness, mm", "`*CONTACT`", "end", "increments", "cut back", "iterations", "T1/T2", "error, %",
         "deepest node, mm"]
