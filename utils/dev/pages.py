@@ -15,6 +15,7 @@ import argparse
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -110,6 +111,8 @@ def made(text: str) -> list[tuple[str, str]]:
 
 def later(commit: str, sources: str) -> int:
     """Return how many commits after one change sources; 0 where git does not know."""
+    if not shutil.which("git"):
+        return 0
     done = subprocess.run(["git", "rev-list", "--count", "--no-merges", f"{commit}..HEAD", "--", *sources.split()],
                           cwd=ROOT, capture_output=True, text=True, check=False)
     return int(done.stdout) if done.returncode == 0 else 0
@@ -162,13 +165,16 @@ def make(name: str, program: Path, work: Path) -> bool:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("pages", nargs="*", choices=[[], *PAGES], metavar="PAGE", help=f"pages: {', '.join(PAGES)}")
+    parser.add_argument("pages", nargs="*", metavar="PAGE", help=f"pages: {', '.join(PAGES)}")
     parser.add_argument("--program", default=ROOT / "build" / "release" / "dd3imp",
                         help="the program (build/release/dd3imp)")
     parser.add_argument("--all", action="store_true", help="make all pages")
     parser.add_argument("--list", action="store_true", help="print minutes, commits and age of the pages")
     parser.add_argument("--check", action="store_true", help="check the stamps")
     options = parser.parse_args()
+    unknown = [name for name in options.pages if name not in PAGES]
+    if unknown:
+        parser.error(f"no such page: {' '.join(unknown)}")
     if options.check:
         check()
         return
