@@ -1,9 +1,15 @@
 """Tables of documents and their stamps."""
 
+import runpy
+from pathlib import Path
+
 import pytest
 
 from dd3.errors import Problem
 from dd3.pages import STAMP, put_table, stamp, table
+
+MADE = "*Commit 0123456, 2026-11-25, GCC 12.2.0, 1 thread, free machine.*\n"
+TABLE = "| x |\n|---|\n| 1 |\n"
 
 
 def job(commit, day, threads=1):
@@ -35,3 +41,14 @@ def test_put_table(tmp_path):
     assert (before, after) == ("before\n", "after\n") and STAMP.fullmatch(found)
     with pytest.raises(Problem, match="no place for the table c"):
         put_table(page, "c", "", [job("0123456789ab", 25)])
+
+
+def test_missing_stamps():
+    """Tables need a stamp, in their block or below them, unless they are said to have no measurement."""
+    wrong = runpy.run_path(str(Path(__file__).parents[2] / "utils" / "dev" / "pages.py"))["without_stamp"]
+    block = f"<!-- table: a -->\n\n{TABLE}\n%s<!-- end of table -->\n"
+    good = f"{block % MADE}\n{TABLE}\n{MADE}\n<!-- no measurement -->\n{TABLE}\n"
+    assert wrong(good) == []
+    assert wrong(good + TABLE) == ["no stamp below the table | x |"]
+    assert wrong(good + block % "") == ["the table a has no stamp"]
+    assert wrong("text\n") == ["the page has no stamp"]

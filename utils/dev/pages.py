@@ -29,7 +29,7 @@ from dd3.programs import description, find_program, made_folder
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "docs" / "reports"
 BLOCK = re.compile(r"<!-- table: (.*?) -->\n(.*?)<!-- end of table -->\n", re.DOTALL)
-TABLE = re.compile(r"(<!-- no measurement -->\n)?((?:^\|.*\n)+)\n*(.*)", re.MULTILINE)
+TABLE = re.compile(r"(<!-- no measurement -->\n)?((?:^\|.*\n)+)(?=\n*(.*))", re.MULTILINE)
 ONCE = "measured once"  # stamp of a table that no script makes
 HOUR = 60
 RUN = " --program {program} --work {work} --write"
@@ -140,7 +140,7 @@ def check() -> None:
     wrong = [f"docs/reports/{name}.md: {problem}" for name, text in files.items() for problem in without_stamp(text)]
     wrong += [f"utils/dev/pages.py: {name} is " + ("not in PAGES" if name in files else "no page")
               for name in sorted(files.keys() ^ PAGES.keys())]
-    for name in files.keys() & PAGES.keys():
+    for name in sorted(files.keys() & PAGES.keys()):
         stamp, changes = age(name)
         if changes:
             print(f"old: docs/reports/{name}.md, {stamp}: {changes} later commits change what it depends on")
