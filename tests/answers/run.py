@@ -16,7 +16,8 @@ import shutil
 import sys
 
 from dd3.errors import Problem
-from dd3.programs import command, launch, parser_of_runs
+from dd3.pages import put_table, table
+from dd3.programs import command, description, launch, parser_of_runs
 from dd3.tables import read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -190,12 +191,6 @@ def shortened(text, most=300):
     return text if len(text) <= most else text[:most - 4] + " ..."
 
 
-def table(rows):
-    """Return the table."""
-    lines = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
-    return lines + [f"| {deck.what} | {deck.before} | {code} | {said} |" for deck, code, said in rows]
-
-
 def same(a, b):
     """Whether two rows are the same but for round-off in their values."""
     number = re.compile(r"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
@@ -211,16 +206,15 @@ def main():
     parser.add_argument("--write", action="store_true", help="write the table")
     parser.add_argument("--print", action="store_true", help="print the table")
     options = parser.parse_args()
-    rows = [(deck, *answer(options.program, deck, options.work / str(i))) for i, deck in enumerate(DECKS, 1)]
-    lines = table(rows)
-    text = REPORT.read_text(encoding="utf-8")
-    start = text.index(lines[0])
+    text = table(HEAD, [(deck.what, deck.before, *answer(options.program, deck, options.work / str(i)))
+                        for i, deck in enumerate(DECKS, 1)])
     if options.print:
-        print("\n".join(lines))
+        print(text)
     elif options.write:
-        REPORT.write_text(text[:start] + "\n".join(lines) + "\n", encoding="utf-8")
+        put_table(REPORT, "answers", text, [description(options.program)])
     else:
-        old = text[start:].rstrip("\n").split("\n")
+        lines = text.split("\n")
+        old = [line for line in REPORT.read_text(encoding="utf-8").split("\n") if line.startswith("|")]
         wrong = [f"expected {a}\nfound    {b}" for a, b in zip(old, lines) if not same(a, b)]
         if len(old) != len(lines):
             wrong.append(f"{len(old) - 2} rows in {REPORT.name}, {len(lines) - 2} decks")

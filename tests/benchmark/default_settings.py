@@ -17,6 +17,7 @@ from problems import BENDING, ROOT, with_paths, without
 from dd3.errors import Problem, run
 from dd3.pages import put_table
 from dd3.programs import command, find_program, launch
+from dd3.run import read_job
 from dd3.tables import is_whole, read_table
 
 REPORT = ROOT / "docs" / "reports" / "default_settings.md"
@@ -79,8 +80,9 @@ def line(mesh, edges, penalty, settings, row, apart):
     """Return a row of the table of runs."""
     reached, increments, iterations, wasted, forces = row
     force = "" if np.isnan(forces[-1]) else f"{forces[-1]:.1f}"
-    return f"| {mesh} | {edges} | {penalty:g} | {settings} | {reached:.2f} | {increments} | {iterations} | {wasted:.1f} " \
-        f"| {force} | {apart} |"
+    cells = [mesh, edges, f"{penalty:g}", settings, f"{reached:.2f}", str(increments), str(iterations), f"{wasted:.1f}",
+             force, apart]
+    return f"| {' | '.join(cells)} |"
 
 
 def main():
@@ -94,7 +96,7 @@ def main():
     for name, table in zip(("spread", "runs"), tables(options), strict=True):
         print(table)
         if options.write:
-            put_table(REPORT, name, table)
+            put_table(REPORT, name, table, [read_job(path.parent) for path in options.work.glob("*/run.json")])
 
 
 if __name__ == "__main__":

@@ -37,6 +37,7 @@ from dd3.errors import Problem, run
 from dd3.fields import Fields
 from dd3.pages import put_table
 from dd3.programs import command, find_program, made_folder
+from dd3.run import read_job
 from dd3.tables import interpolate, is_whole, number, read_table, tools_in, totals
 
 sys.path.append(str(ROOT / "tests" / "forming"))
@@ -256,7 +257,8 @@ ENVELOPE = {
                                                lambda found: found.end("end_rz", "draw")}),
     "flat_punch": Job(of_file(CASES / "flat_punch" / "case.dat"), 0.78, forces("punch", 1)),
     "air_bending": Job(air_bending, 1.0, forces("punch", 5, 10, 15, 20, 25)),
-    "capstan": Job(of_file(CASES / "capstan" / "case.dat"), 0.02, {"T1/T2": tension_ratio}, notes={"T1/T2, error, %": tension_error}),
+    "capstan": Job(of_file(CASES / "capstan" / "case.dat"), 0.02, {"T1/T2": tension_ratio},
+                   notes={"T1/T2, error, %": tension_error}),
     "u_bend": Job(u_bend, 1.0, mean_forces("punch", 1, 2, 4, 6, 8), notes=roughness(1, 9, 1)),
     "strip_19.6kN_2mm": strip(88, 280),
     "strip_19.6kN_1mm": strip(175, 280),
@@ -269,6 +271,13 @@ ENVELOPE = {
     "steel_60": steel_cup(60, 3, 4, (1, 2, 3, 4), 4),
     "steel_30": steel_cup(30, 3, 40, (3, 5, 10, 20, 40), 20, 40),
 }
+LAYERS = ("formulation = mixed", *(f"layer = {height:g}" for height in (0.005, 0.01, 0.02, 0.04)))
+# Problems and quantities of the table of the layers: heading of the problem, and of the quantities.
+LAYERED = {"strip_2.45kN_1mm": ("strip", {"punch force, mean of 5 to 30 mm, N": "mean force, N",
+                                          "roughness of the punch force, %": "roughness, %"}),
+           "steel_30": ("cup", {"punch force at 5 mm, N": "force at 5 mm, N", "punch force at 40 mm, N":
+                                "at 40 mm, N"}),
+           "round_cup": ("round cup", {"punch force, mean of 42 to 46 mm, N": "mean force of 42 to 46 mm, N"})}
 
 
 # ---- runs ------------------------------------------------------------------------------------------------------------
@@ -427,6 +436,26 @@ def ablation(measured, labels):
     return studies.table(["problem", *labels], rows)
 
 
+def layers(options):
+    """Make the runs of LAYERS; return their table and their run.json."""
+    head, rows, jobs = ["`*CONTACT`"], [], []
+    for title, quantities in LAYERED.values():
+        head += [f"{title}: iterations", *quantities.values()]
+    for contact in LAYERS:
+        row = [f"`{contact}`"]
+        for name, (_, quantities) in LAYERED.items():
+            folder = options.work / re.sub(r"[^\w.]+", "_", contact) / name
+            make(options, ENVELOPE[name], folder, {"contact": contact})
+            found = measure(folder, ENVELOPE[name])
+            values = found.values | found.notes
+            row += [found.effort[3] + ("" if found.reached else " (stopped)"),
+                    *(shown(values[quantity]) for quantity in quantities)]
+            jobs.append(read_job(folder / "results"))
+        rows.append(row)
+        print(*row, sep=" | ", file=sys.stderr, flush=True)
+    return studies.table(head, rows), jobs
+
+
 def store(options, measured):
     """Put the values of the runs that have reached their end, and their settings, into the file of the reference."""
     path, label = options.reference, options.label
@@ -464,6 +493,8 @@ def parser():
     found.add_argument("--write", action="store_true", help="put the tables into docs/reports/contact.md")
     found.add_argument("--ablation", action="store_true",
                        help="put the effort of the labels of --compare into docs/reports/ablation.md")
+    found.add_argument("--layers", action="store_true",
+                       help="only compare heights of the contact layer, with --write in docs/reports/contact.md")
     found.add_argument("--again", action="store_true", help="repeat runs that are there")
     found.add_argument("--seconds", type=float, default=1800.0, help="processor time of a run, s (1800)")
     found.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
@@ -476,9 +507,15 @@ def main():
     options.work = options.work.resolve()
     labels = options.compare or [options.label]
     blocks = {keyword: getattr(options, keyword) for keyword in KEYWORDS}
+    if not options.compare and not options.program:
+        raise Problem("expected --program or --compare")
+    if options.layers:
+        text, jobs = layers(options)
+        print(text)
+        if options.write:
+            put_table(REPORT, "layers", text, jobs)
+        return
     if not options.compare:
-        if not options.program:
-            raise Problem("expected --program or --compare")
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             made = pool.map(lambda name: make(options, ENVELOPE[name], options.work / options.label / name, blocks),
                             options.problems)
@@ -494,10 +531,11 @@ def main():
         references = store(options, measured)
     text = tables(measured, references)
     print(text)
+    jobs = [read_job(options.work / label / name / "results") for name, runs in measured.items() for label in runs]
     if options.write:
-        put_table(REPORT, "envelope", text)
+        put_table(REPORT, "envelope", text, jobs)
     if options.ablation:
-        put_table(ABLATION, "ablation", ablation(measured, labels))
+        put_table(ABLATION, "ablation", ablation(measured, labels), jobs)
 
 
 if __name__ == "__main__":

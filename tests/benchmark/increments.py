@@ -23,6 +23,7 @@ from problems import BENDING, ROOT, of_file, without
 from dd3.errors import run
 from dd3.pages import put_table
 from dd3.programs import find_program, made_folder
+from dd3.run import read_job
 
 draw_bending = importlib.import_module("draw_bending")  # the path is set by envelope
 REPORT = ROOT / "docs" / "reports" / "increments.md"
@@ -181,13 +182,14 @@ def summed(found):
 
 
 def table(options, sets, names):
-    """Return the tables of sets of limits over problems: all problems together, and each."""
+    """Return the tables of sets of limits over problems, all problems together and each, and the runs."""
     found = {lines: {name: outcome(options, lines, name) for name in names} for lines in dict.fromkeys((*sets, BASE))}
     together = {lines: summed(runs.values()) for lines, runs in found.items()}
     each = [[name, lines, *cells(found[lines][name], found[BASE][name])] for name in names for lines in sets]
     return (studies.table(["limits", *EFFORT, *ERRORS], [[lines, *cells(together[lines], together[BASE])]
                                                          for lines in sets]),
-            studies.table(["problem", "limits", *EFFORT, *ERRORS], each))
+            studies.table(["problem", "limits", *EFFORT, *ERRORS], each),
+            [read_job(folder_of(options, lines, name) / "results") for lines in found for name in names])
 
 
 def parser():
@@ -209,16 +211,16 @@ def main():
     options = parser().parse_args()
     options.work = options.work.resolve()
     if options.limits:
-        print(*table(options, options.limits, options.problems), sep="\n\n")
+        print(*table(options, options.limits, options.problems)[:2], sep="\n\n")
         return
     quick = [name for name in options.problems if name not in SLOW]
-    tables = {**dict(zip(("levels", "problems"), table(options, [f"accuracy = {level}" for level in LEVELS],
-                                                       options.problems), strict=True)),
-              **dict(zip(("limits", "limits and problems"), table(options, [BASE, *SINGLE], quick), strict=True))}
-    for name, text in tables.items():
-        print(text, end="\n\n")
-        if options.write:
-            put_table(REPORT, name, text)
+    for names, sets, problems in ((("levels", "problems"), [f"accuracy = {level}" for level in LEVELS],
+                                   options.problems), (("limits", "limits and problems"), [BASE, *SINGLE], quick)):
+        *texts, jobs = table(options, sets, problems)
+        for name, text in zip(names, texts, strict=True):
+            print(text, end="\n\n")
+            if options.write:
+                put_table(REPORT, name, text, jobs)
 
 
 if __name__ == "__main__":

@@ -7,22 +7,23 @@
 One half of a strip in plane strain, 40 x 1 x 1 mm, is bent to a U without a blank-holder. Both codes get the same
 nodes, the same pairs of flow stress and plastic strain, and the same profiles of the tools: exact arcs in dd3imp,
 facets with their nodes on the arcs in CalculiX. Each chooses its increments; one thread. CalculiX is the package
-calculix-ccx of Debian. --write puts the tables between the marks in docs/reports/speed.md.
+calculix-ccx of Debian. --write puts the tables into docs/reports/speed.md.
 """
 
 import argparse
 import math
 from pathlib import Path
 
-from speed import write
+from speed import PAGE
 
 from dd3.errors import Problem, run
+from dd3.pages import put_table, table
 from dd3.programs import command, find_program, launch, made_folder
+from dd3.run import read_job
 from dd3.tables import read_table, read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 
-BEGIN = "<!-- peer.py -->\n"
 LENGTH, THICKNESS, LAYERS, TRAVEL = 40.0, 1.0, 2, 9.0
 YOUNG, POISSON = 2.1e5, 0.3
 # Strains of the table, and Swift's law of mild steel.
@@ -30,6 +31,7 @@ STRAINS = [0.0, *(10 ** (-4 + i / 12) for i in range(49))]
 CURVE = [(strain, 565 * (0.007117 + strain) ** 0.259) for strain in STRAINS]
 # Points x z of the profiles, with the corner of an arc of 90 degrees between two; the sheet lies on the left of the
 # die's path and on the right of the punch's.
+FRICTION = 0.1  # of the second table
 PUNCH = [((-5, 1), (10, 1)), ((10, 1), (15, 1), (15, 6)), ((15, 6), (15, 40))]
 DIE = [((17, -40), (17, -5)), ((17, -5), (17, 0), (22, 0)), ((22, 0), (60, 0))]
 
@@ -297,7 +299,21 @@ def tables(ours, theirs, version):
     for name, row in zip(("dd3imp", "CalculiX"), forces):
         lines.append(f"| punch force, {name}, N | " + " | ".join(f"{force:.2f}" for force in row) + " |")
     lines.append("| difference, % | " + " | ".join(f"{100 * (b / a - 1):.1f}" for a, b in zip(*forces)) + " |")
-    return "\n".join(lines) + "\n\n"
+    return "\n".join(lines)
+
+
+def with_friction(arguments):
+    """Run both with friction on two meshes; return the table and the run.json of dd3imp."""
+    rows, jobs = [], []
+    arguments.friction = FRICTION
+    for arguments.columns in (160, 80):
+        for name, run_it in (("dd3imp", run_dd3imp), ("CalculiX", run_calculix)):
+            good, tried, iterations, cpu, curve = run_it(arguments)
+            rows.append([f"{arguments.columns} columns, {name}", str(good), str(tried), str(iterations), f"{cpu:.1f}",
+                         ", ".join(f"{force_at(curve, place):.2f}" for place in (1, 3, 6, 9))])
+        jobs.append(read_job(arguments.work / f"dd3imp_{arguments.columns}"))
+    return table(["", "increments", "attempts", "iterations", "processor time, s",
+                  "punch force at 1, 3, 6, 9 mm, N"], rows), jobs
 
 
 def command_line():
@@ -328,7 +344,10 @@ def main():
     text = tables(run_dd3imp(arguments), run_calculix(arguments), version)
     print(text)
     if arguments.write:
-        write(text, begin=BEGIN)
+        put_table(PAGE, "CalculiX", text, [read_job(arguments.work / f"dd3imp_{arguments.columns}")])
+        text, jobs = with_friction(arguments)
+        print(text)
+        put_table(PAGE, "CalculiX, friction", text, jobs)
 
 
 if __name__ == "__main__":

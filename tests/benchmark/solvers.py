@@ -7,7 +7,7 @@
 
 Quarters of the square cup of speed.py. A system is that of the corrector at the first increment beyond a travel of the
 punch, mm; 0 is the clamping. Each is solved by every method. Systems found in the folder --keep are not made again.
---jobs are run to their ends, and many of their systems are solved. With --write the tables go between the marks in
+--jobs are run to their ends, and many of their systems are solved. With --write the tables go into
 docs/reports/solvers.md.
 """
 
@@ -21,6 +21,7 @@ import speed
 
 from dd3 import programs
 from dd3.errors import Problem, run
+from dd3.pages import put_table
 
 PAGE = speed.ROOT / "docs" / "reports" / "solvers.md"
 SYSTEMS = ["800:0", "800:1", "800:20", "1800:1", "3200:1", "7200:1", "20000:0"]
@@ -82,7 +83,7 @@ def table(build, files):
             failed = " (failed)" if found[9] and found[1] != "auto" else ""
             text += (f"| {elements}, {unknowns} | {travel} | {method} | {found[5]}{failed} | {short(setup)} "
                      f"| {short(factor)} | {short(solve)} | {f'{memory:.0f}' if memory else ''} | {found[8]} |\n")
-    return text + "\n"
+    return text.rstrip()
 
 
 def table_of_job(build, job):
@@ -90,7 +91,7 @@ def table_of_job(build, job):
     done = programs.launch([str(build / "tests" / "benchmark" / "benchmark_run_matrices"), str(job)])
     if done.code != 0:
         raise Problem(f"{job}: {done.output}{done.errors}")
-    return done.output[done.output.index("| solver |"):].strip() + "\n\n"
+    return done.output[done.output.index("| solver |"):].strip()
 
 
 def main():
@@ -110,10 +111,10 @@ def main():
         keep.mkdir(parents=True, exist_ok=True)
         texts = {"cups": table(build, make_systems(build, speed.make_deck(Path(folder)), arguments.systems, keep))}
     texts |= {job.name: table_of_job(build, job) for job in arguments.jobs}
-    for mark, text in texts.items():
-        print(f"{mark}:\n\n{text}")
+    for name, text in texts.items():
+        print(f"{name}:\n\n{text}\n")
         if arguments.write:
-            speed.write(text, PAGE, f"<!-- solvers.py: {mark} -->\n")
+            put_table(PAGE, name, text, [programs.description(build / "dd3imp")])
 
 
 if __name__ == "__main__":

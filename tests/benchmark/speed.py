@@ -7,7 +7,7 @@
 Quarters of the square cup of input_files/square_cup, n x n x 2 hex8, limits 0.1 and 5 degrees. Each job makes
 --increments increments and is stopped. Processor time per iteration is that of the job less that of a check of the
 input, which has the same set-up; predictions are not counted as iterations. The exponent of growth is that of the line
-through the logarithms. --write puts the table between the marks in docs/reports/speed.md.
+through the logarithms. --write puts the table into docs/reports/speed.md.
 """
 
 import argparse
@@ -22,12 +22,12 @@ from pathlib import Path
 
 from dd3 import programs, tables
 from dd3.errors import Problem, run
+from dd3.pages import put_table
 
 ROOT = Path(__file__).resolve().parents[2]
 
 CUP = ROOT / "input_files" / "square_cup" / "square_cup.dat"
 PAGE = ROOT / "docs" / "reports" / "speed.md"
-BEGIN, END = "<!-- speed.py -->\n", "<!-- end -->\n"
 CHANGES = (("  thickness_points = ${points}\n", ""), ("element = solid_shell", "element = hex8"),
            ("*PHASE clamp", "*LIMITS\n  strain = 0.1\n  rotation = 5\n\n*PHASE clamp"),
            ("../materials/", f"{ROOT}/input_files/materials/"), ("tools = .", f"tools = {CUP.parent}"))
@@ -95,13 +95,7 @@ def table(rows, threads):
     lines += [f"| {row[0]} | {row[1]} | {row[2]} | {row[3]:.3g} | {row[4]} | {row[5]:.0f} |" for row in rows]
     if len(rows) > 1:
         lines += ["", f"Exponent of growth: {exponent(rows):.2f}."]
-    return "\n".join(lines) + "\n\n"
-
-
-def write(text, page=PAGE, begin=BEGIN):
-    """Put a text between the marks of a page."""
-    before, rest = page.read_text(encoding="utf-8").split(begin)
-    page.write_text(before + begin + text + END + rest.split(END, 1)[1], encoding="utf-8")
+    return "\n".join(lines)
 
 
 def main():
@@ -114,15 +108,17 @@ def main():
     parser.add_argument("--increments", type=int, default=4, help="increments of each job (4)")
     parser.add_argument("--write", action="store_true", help="write docs/reports/speed.md")
     arguments = parser.parse_args()
-    text = ""
+    texts, jobs = [], []
     with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
         deck = make_deck(Path(folder))
-        for arguments.now in arguments.threads:
+        for threads in arguments.threads:
+            arguments.now = threads
             rows = [measure(arguments.program, deck, elements, arguments) for elements in arguments.elements]
-            text += table(rows, arguments.now)
-            print(table(rows, arguments.now), flush=True)
+            texts.append(table(rows, threads))
+            print(texts[-1], flush=True)
+            jobs.append(programs.description(arguments.program, threads))
     if arguments.write:
-        write(text)
+        put_table(PAGE, "sizes", "\n\n".join(texts), jobs)
 
 
 if __name__ == "__main__":

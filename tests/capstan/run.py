@@ -14,6 +14,7 @@ import pathlib
 import re
 import sys
 
+from dd3.pages import put_table, table
 from dd3.programs import command, find_program, launch
 from dd3.tables import number, read_table, totals
 
@@ -27,14 +28,14 @@ EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0
 THICKNESS, LOAD = 0.02, 1.0  # of the deck: mm, N
 SETTINGS = [(thickness, contact) for thickness in (0.02, 0.05)
-            for contact in ("", "layer = 0.02", "formulation = mixed", "penalty = 100")]
+            for contact in ("", "layer = 0.02", "formulation = mixed", "penalty = 100", "penalty = 1e4")]
 ALLOWED_RATIO, ALLOWED_DEPTH = 0.02, 1e-3
 HEAD = ["thickness, mm", "`*CONTACT`", "end", "increments", "cut back", "iterations", "T1/T2", "error, %",
         "deepest node, mm"]
 
 
 def deck(thickness, contact):
-    """Return the deck with another thickness and setting of the contact, and with the positions of all nodes of the lower face."""
+    """Return the deck with another thickness and setting of the contact, and the positions of the lower nodes."""
     text = (CASE / "case.dat").read_text(encoding="utf-8")
     text = text.replace(f"1 {THICKNESS}", f"1 {thickness}").replace("cylinder.bez", str(CASE / "cylinder.bez"))
     text = re.sub(r"^(  load = x_max )(.*)$", lambda line: line[1] + " ".join(
@@ -47,12 +48,12 @@ def deck(thickness, contact):
 
 
 def measure(program, work, thickness, contact):
-    """Run one setting; return its row of the table and what is wrong."""
+    """Run one setting; return its row of the table, what is wrong, and its run.json."""
     name = re.sub("[ =]+", "_", f"{thickness:g} {contact}".strip())
     file, out = work / f"{name}.dat", work / name
     file.write_text(deck(thickness, contact), encoding="utf-8")
     done = launch(command(program, file, out, ["--quiet"]), timeout=600)
-    check_description(out, done.code)
+    job = check_description(out, done.code)
     history = read_table(out / "history.csv")
     total = totals(read_table(out / "status.csv"))
     depth = max(RADIUS - math.hypot(number(row, f"node{i}_x", out), number(row, f"node{i}_z", out) + RADIUS)
@@ -73,7 +74,7 @@ def measure(program, work, thickness, contact):
     row = [f"{thickness:g}", f"`{contact}`" if contact else "", end,
            str(total.increments), str(total.cutbacks),
            str(total.iterations), *results, f"{depth:.1e}"]
-    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong]
+    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong], job
 
 
 def main():
@@ -85,16 +86,11 @@ def main():
     options = parser.parse_args()
     program = find_program(options.program)
     options.work.mkdir(parents=True, exist_ok=True)
-    lines, wrong = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)], []
-    for setting in SETTINGS:
-        row, faults = measure(program, options.work, *setting)
-        lines.append("| " + " | ".join(row) + " |")
-        wrong += faults
-    print("\n".join(lines + wrong))
+    rows, wrong, jobs = zip(*(measure(program, options.work, *setting) for setting in SETTINGS), strict=True)
+    wrong = [fault for faults in wrong for fault in faults]
+    print(table(HEAD, rows), *wrong, sep="\n")
     if options.write:
-        text = REPORT.read_text(encoding="utf-8")
-        REPORT.write_text(re.sub(r"^\| thickness.*?\n(?!\|)", lambda _: "\n".join(lines) + "\n", text,
-                                 flags=re.DOTALL | re.MULTILINE), encoding="utf-8")
+        put_table(REPORT, "strips", table(HEAD, rows), jobs)
     sys.exit(1 if wrong else 0)
 
 

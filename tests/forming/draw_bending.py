@@ -14,6 +14,7 @@ import studies
 from dd3.errors import run
 from dd3.fields import Fields
 from dd3.pages import put_table
+from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("draw_bending")
 DEPTH, MARGIN, BOTTOM = 70.0, 10.0, 15.0  # stroke, ends of the wall that do not count, half length of the bottom, mm
@@ -146,13 +147,15 @@ def runs(options):
 def main():
     """Make the runs and the tables, that of the sheet of the benchmark and that of the sheets of SHEETS."""
     options = studies.arguments(__doc__)
-    rows, lines, complete = {"shape": [], "sheets": []}, {}, True
+    rows, jobs, lines, complete = {"shape": [], "sheets": []}, {"shape": [], "sheets": []}, {}, True
     for holder, law, mesh, folder in runs(options):
         complete = complete and bool(folder)
         if not folder:
             continue
         theta1, theta2, rho, line = shape(folder)
-        rows["sheets" if "," in law else "shape"].append(
+        name = "sheets" if "," in law else "shape"
+        jobs[name].append(read_job(folder))
+        rows[name].append(
             [holder, law, f"{175/mesh:.2f}", f"{theta1:.1f}", f"{theta2:.1f}", f"{rho:.0f}", *studies.effort(folder)])
         if "," not in law:
             lines[f"{holder}, {law}, {175/mesh:.2f} mm"] = line
@@ -161,7 +164,7 @@ def main():
     for name, found in rows.items():
         print(studies.table(head, found))
         if options.write and found:
-            put_table(REPORT, name, studies.table(head, found))
+            put_table(REPORT, name, studies.table(head, found), jobs[name])
     if options.write and lines:
         draw(lines)
     sys.exit(0 if complete else 1)

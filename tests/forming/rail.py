@@ -14,6 +14,7 @@ import studies
 from dd3.errors import run
 from dd3.fields import Fields
 from dd3.pages import put_table
+from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("rail")
 DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm
@@ -80,12 +81,13 @@ def draw(rails):
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
-    rails, rows = {}, []
+    rails, rows, jobs = {}, [], []
     for name, divisions in RUNS:
         folder = studies.make(options, name.replace(" ", "_"), DECK, {"divisions": divisions})
         if not folder:
             continue
         rails[name] = Rail(folder)
+        jobs.append(read_job(folder))
         right, left = (rails[name].springback(side) for side in (1, -1))
         values = right[1], left[1], right[0], left[0], right[0] - left[0]
         rows.append([name, *(f"{value:.2f}" for value in values), *studies.effort(folder)])
@@ -93,7 +95,7 @@ def main():
                           "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        put_table(REPORT, "springback", text)
+        put_table(REPORT, "springback", text, jobs)
         draw(rails)
     sys.exit(0 if len(rails) == len(RUNS) else 1)
 

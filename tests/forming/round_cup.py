@@ -16,6 +16,7 @@ from dd3.fields import Fields
 from dd3.pages import put_table
 from dd3.plot.point import r_value
 from dd3.programs import run_points
+from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("round_cup")
 BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall, mm
@@ -109,12 +110,13 @@ def row(name, angles, heights, rest):
 def main():
     """Make the runs and the tables."""
     options = studies.arguments(__doc__)
-    cups, efforts = {}, {}
+    cups, efforts, jobs = {}, {}, []
     for name, material, divisions in RUNS:
         folder = studies.make(options, name.replace(" ", "_"), DECK,
                               {"material": material, "divisions": divisions})
         if folder:
             cups[name], efforts[name] = Cup(folder), studies.effort(folder)
+            jobs.append(read_job(folder))
     estimates = {law: estimate(options.program, material) for law, material in MATERIALS.items()}
     rows = [row(name, cup.angles, cup.heights, efforts[name]) for name, cup in cups.items()]
     rows += [row(f"{law}, estimate", *values, ["", "", ""]) for law, values in estimates.items()]
@@ -125,8 +127,8 @@ def main():
                                for name, cup in cups.items()])
     print(heights, thickness, sep="\n\n")
     if options.write:
-        put_table(REPORT, "heights", heights)
-        put_table(REPORT, "thickness", thickness)
+        put_table(REPORT, "heights", heights, jobs)
+        put_table(REPORT, "thickness", thickness, jobs)
         draw(cups, estimates)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 

@@ -12,6 +12,7 @@ from round_cup import ANGLES, Cup, row
 
 from dd3.errors import run
 from dd3.pages import put_table
+from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("round_cup_aa6016")
 BLANK = 53.75  # radius of the blank, mm
@@ -43,18 +44,19 @@ def draw(cups):
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
-    cups, rows = {}, [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
+    cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
     for name, values in RUNS.items():
         folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK, values)
         if folder:
             cup = cups[name] = Cup(folder, BLANK)
+            jobs.append(read_job(folder))
             rows.append(row(name, cup.angles, cup.heights,
                             [*(f"{value:.3f}" for value in cup.thickness), *studies.effort(folder)]))
     text = studies.table(["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest",
                           "thickest", "increments", "iterations", "seconds"], rows)
     print(text)
     if options.write:
-        put_table(REPORT, "heights", text)
+        put_table(REPORT, "heights", text, jobs)
         draw(cups)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 

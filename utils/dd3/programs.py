@@ -19,6 +19,16 @@ from dd3.run import read_job
 from dd3.tables import read_points
 
 POINTS = "points.dat"  # input file of run_points, as its messages name it
+SMALL = """*MATERIAL steel
+  young = 2e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = perfect Y0=200
+*POINT pulled
+  material = steel
+  control = e11 s22 s33 s12 s23 s13
+  target = 1e-3 0 0 0 0 0 steps=1
+"""
 
 
 @dataclass
@@ -134,3 +144,8 @@ def run_points(program: str | Path, text: str, *options: str, timeout: float | N
                           "  expected: --program with the path of dd3imp")
         done.job = read_job(folder) if written else {}
         return done, read_points(folder) if done.code == 0 and written else {}
+
+
+def description(program: str | Path, threads: int = 1) -> dict[str, Any]:
+    """Return the run.json of a small job: what a program says of itself and of the machine."""
+    return run_points(program, SMALL, "--threads", str(threads))[0].job

@@ -4,11 +4,13 @@
     utils/dev/benchmark.py --program build/release/dd3imp
     utils/dev/benchmark.py --program before/dd3imp --program after/dd3imp --repeat 5 input_files/bending/fine.dat
     utils/dev/benchmark.py --program build/release/dd3imp --threads 1 --threads 2 input_files/bending/fine.dat
+    utils/dev/benchmark.py --program build/release/dd3imp --write docs/reports/speed.md input_files/bending/*.dat
 
 Every job is run --repeat times with every program and number of threads. The runs alternate, so that other load on the
 machine affects all of them. The fastest run counts, and the smallest processor time of all. The default job is the
 bending test. The tables are Markdown: wall and processor time with their ratios to the first program's, increments,
-iterations, peak memory, and the time by section. An exit code other than 0 ends the script.
+iterations, peak memory, and the time by section. An exit code other than 0 ends the script. --write puts them
+into the table `jobs` of a document.
 """
 
 import argparse
@@ -16,11 +18,12 @@ import tempfile
 from pathlib import Path
 
 from dd3.errors import Problem, run
-from dd3.pages import table
+from dd3.pages import put_table, table
 from dd3.programs import command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import read_job
-from dd3.tables import read_table, totals
+from dd3.tables import read_table
+from dd3.tables import totals as sums
 
 BENDING = Path(__file__).resolve().parents[2] / "input_files" / "bending" / "bending.dat"
 SECTIONS = ["assembly", "material", "contact", "factorisation", "solve", "output"]
@@ -35,8 +38,9 @@ class Run:
             done = launch(words)
             if done.code != 0:
                 raise Problem(f"{' '.join(words)}: exit code {done.code}\n{done.errors}")
-            self.total = totals(read_table(Path(folder) / "status.csv"))
-            self.sections = read_job(Path(folder))["sections"]
+            self.total = sums(read_table(Path(folder) / "status.csv"))
+            self.job = read_job(Path(folder))
+        self.sections = self.job["sections"]
         self.wall, self.cpu, self.memory = done.wall, done.cpu, done.memory
 
 
@@ -56,18 +60,18 @@ def best_runs(arguments, job):
     return best
 
 
-def print_tables(best):
-    """Print totals and sections of the runs."""
+def tables(best):
+    """Return the tables of the runs: totals and sections."""
     first = next(iter(best.values()))
-    print(table(["program", "threads", "wall, s", "ratio", "processor, s", "ratio", "increments", "iterations",
-                 "of the solver", "memory, MB"],
-                [[*key, f"{run.wall:.2f}", f"{run.wall / first.wall:.2f}", f"{run.cpu:.2f}",
-                  f"{run.cpu / first.cpu:.2f}", f"{run.total.increments}", f"{run.total.iterations}",
-                  f"{run.total.solver_iterations}", f"{run.memory:.0f}"] for key, run in best.items()]))
-    print()
-    print(table(["time by section, s", "threads", *SECTIONS, "rest"],
-                [[*key, *(f"{run.sections.get(name, 0):.2f}" for name in SECTIONS),
-                  f"{run.wall - sum(run.sections.values()):.2f}"] for key, run in best.items()]))
+    totals = table(["program", "threads", "wall, s", "ratio", "processor, s", "ratio", "increments", "iterations",
+                    "of the solver", "memory, MB"],
+                   [[*key, f"{run.wall:.2f}", f"{run.wall / first.wall:.2f}", f"{run.cpu:.2f}",
+                     f"{run.cpu / first.cpu:.2f}", f"{run.total.increments}", f"{run.total.iterations}",
+                     f"{run.total.solver_iterations}", f"{run.memory:.0f}"] for key, run in best.items()])
+    sections = table(["time by section, s", "threads", *SECTIONS, "rest"],
+                     [[*key, *(f"{run.sections.get(name, 0):.2f}" for name in SECTIONS),
+                       f"{run.wall - sum(run.sections.values()):.2f}"] for key, run in best.items()])
+    return f"{totals}\n\n{sections}"
 
 
 def main():
@@ -79,6 +83,7 @@ def main():
     parser.add_argument("--repeat", type=int, default=3, help="runs of each, the fastest counts (3)")
     parser.add_argument("--set", action="append", type=setting, default=[], metavar="NAME=VALUE",
                         help="parameter of the jobs")
+    parser.add_argument("--write", type=Path, metavar="DOCUMENT", help="put the tables into a document")
     arguments = parser.parse_args()
     if arguments.repeat < 1:
         parser.error("--repeat takes 1 or more")
@@ -86,9 +91,14 @@ def main():
     arguments.set = dict(arguments.set)
     for path in arguments.program:
         find_program(path)
+    texts, jobs = [], []
     for job in arguments.job:
-        print(f"\n{job}, fastest of {arguments.repeat}\n")
-        print_tables(best_runs(arguments, job))
+        best = best_runs(arguments, job)
+        texts.append(f"`{job.name}`, fastest of {arguments.repeat}:\n\n{tables(best)}")
+        print(f"\n{texts[-1]}")
+        jobs += [run.job for run in best.values()]
+    if arguments.write:
+        put_table(arguments.write, "jobs", "\n\n".join(texts), jobs)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from dd3.errors import run as run_main
 from dd3.pages import put_table, table
 from dd3.programs import find_program
 from dd3.progress import each
+from dd3.run import read_job
 from dd3.study.runs import NOTE, Run, differences, run_once
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -189,8 +190,9 @@ def main():
             job.result()
     tables = {name: make(options.work) for name, make in TABLES.items()}
     if options.write:
+        done = [read_job(options.work / name) for name, _, _ in jobs()]
         for name, content in tables.items():
-            put_table(options.write, name, content)
+            put_table(options.write, name, content, done)
     for name, content in tables.items():
         print(f"{TABLES[name].__doc__}\n\n{content}\n")
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.pages import put_table, table
+from dd3.run import read_job
 from dd3.study.runs import FIRST, Run, differences
 from dd3.tables import Row, read_table, totals
 
@@ -247,8 +248,9 @@ def write(work: Path, document: Path) -> None:
     programs = sorted({row["program"] for row in results.row.values()})
     tables["size"] = (f"{len(results.row)} runs, {seconds:.0f} s of processor time together, by the program "
                       f"{', '.join(programs)} (the first digits of its SHA-256).")
+    jobs = [read_job(work / case) for case in results.row]
     for name, content in tables.items():
-        put_table(document, name, content)
+        put_table(document, name, content, jobs)
 
 
 def main(words: Sequence[str] | None = None) -> None:
