@@ -190,8 +190,8 @@ def inputs_in_the_way(program, directory):
                 deck.rename(victim)
                 deck.write_text(f'*INCLUDE "{name}"\n', encoding="utf-8")
             else:
-                (output / "punch.bez").rename(victim)
-                deck.write_text(text.replace("punch.bez", name), encoding="utf-8")
+                (output / "blank_holder.bez").rename(victim)
+                deck.write_text(text.replace("blank_holder.bez", name), encoding="utf-8")
             if kind == "link":
                 deck = directory / f"{name}.dat"
                 deck.symlink_to(victim)
