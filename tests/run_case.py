@@ -15,7 +15,10 @@ A case is a folder with a case.json:
     tolerance   per column {"relative": r, "absolute": a}; "*" holds for the columns not named. A value passes if
                 |value - reference| <= a + r |reference|
     last        per column [value, tolerance]: the last row of history.csv
-    equal       lists [column, column, tolerance] of columns that agree in every row of history.csv
+    equal       lists [left, right, tolerance] of what agrees in every row of history.csv: columns, or lists of columns
+                that are summed, such as forces in equilibrium
+    same        per column [factor, tolerance]: the last row is that of the first variant times the factor, within a
+                relative tolerance
     status      per column of status.csv [lowest, highest]: bounds of every row
     codes       codes of messages that the run must give, a list; those of docs/messages.md
     contains    texts that the program's output must contain, a list: names and numbers, not sentences
@@ -38,8 +41,8 @@ from dd3.programs import command, find_program, launch
 from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
-KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains",
-         "codes", "files", "variants", "labels", "timeout", "description"}
+KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "same", "status",
+         "contains", "codes", "files", "variants", "labels", "timeout", "description"}
 
 
 class Mismatch(Exception):
@@ -105,6 +108,21 @@ def compare_reference(case, folder, history, path):
     return sum(count for count, _ in found)
 
 
+def total(row, columns, path):
+    """Return the value of a column, or the sum of several."""
+    return sum(number(row, column, path) for column in ([columns] if isinstance(columns, str) else columns))
+
+
+def compare_variants(case, history, first, path):
+    """Compare the last row of the history with that of the first variant; return the number of values compared."""
+    for column, (factor, tolerance) in case.get("same", {}).items():
+        value, expected = number(history[-1], column, path), factor * number(first[-1], column, path)
+        if not abs(value - expected) <= tolerance * abs(expected):
+            raise Mismatch(f"last row: {column} = {value:.9g}, in the first variant times {factor:g} {expected:.9g}, "
+                           f"expected equal +- {tolerance:.3g} of it")
+    return len(case.get("same", {}))
+
+
 def compare_ends(case, history, path, results):
     """Compare the last row of the history and the ranges of the status table; return the number of values compared."""
     compared = 0
@@ -115,10 +133,10 @@ def compare_ends(case, history, path, results):
             raise Mismatch(f"last row: {column} = {value:.9g}, expected {expected:.9g} +- {tolerance:.3g}")
     for left, right, tolerance in case.get("equal", []):
         for row in history:
-            values = number(row, left, path), number(row, right, path)
+            values = [total(row, side, path) for side in (left, right)]
             compared += 1
             if not abs(values[0] - values[1]) <= tolerance:
-                raise Mismatch(f"increment {row['increment']}: {left} = {values[0]:.9g}, {right} = {values[1]:.9g}, "
+                raise Mismatch(f"increment {row.get('increment')}: {left} = {values[0]:.9g}, {right} = {values[1]:.9g}, "
                                f"expected equal +- {tolerance:.3g}")
     for column, (lowest, highest) in case.get("status", {}).items():
         for row in read_table(results / "status.csv"):
@@ -161,8 +179,8 @@ def check_codes(case, found):
         raise Mismatch(f"expected the messages {', '.join(sorted(missing))}, got {', '.join(sorted(map(str, given)))}")
 
 
-def run(case, folder, program, results, arguments):
-    """Run the case once; return the number of values compared."""
+def run(case, folder, program, results, arguments, first):
+    """Run the case once; return the number of values compared. `first`: the history of the first variant."""
     shutil.rmtree(results, ignore_errors=True)
     results.parent.mkdir(parents=True, exist_ok=True)
     words = command(program, folder / case.get("deck", "case.dat"), results, [*case.get("arguments", []), *arguments])
@@ -174,6 +192,8 @@ def run(case, folder, program, results, arguments):
     if path.exists():
         history = read_table(path)
         compared += compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)
+        compared += compare_variants(case, history, first, path) if first else 0
+        first += history if not first else []
     return compared
 
 
@@ -189,11 +209,11 @@ def main():
     unknown = {key for own in (case, *case.get("variants", [])) if isinstance(own, dict) for key in own} - KNOWN
     if unknown:
         sys.exit(f"case.json: unknown: {', '.join(sorted(unknown))}")
-    program, compared = find_program(options.program), 0
+    program, compared, first = find_program(options.program), 0, []
     for i, (one, arguments) in enumerate(variants(case)):
         results = options.work.resolve() / (folder.name + (f"-{i + 1}" if i else "") + ".out")
         try:
-            compared += run(one, folder, program, results, arguments)
+            compared += run(one, folder, program, results, arguments, first)
         except (Mismatch, Problem, OSError) as error:
             sys.exit(f"FAILED {folder.name} {' '.join(arguments)}\n{error}")
     if compared == 0 and case.get("exit_code", 0) == 0:

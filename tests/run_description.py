@@ -3,6 +3,7 @@
 Without the package jsonschema the schema is not used.
 """
 import json
+import math
 import pathlib
 
 from dd3.errors import Problem
@@ -66,5 +67,11 @@ def check_counts(found, folder):
                             ("iterations", sum(int(row["iterations"]) for row in own))):
             if result[name] != value:
                 raise Problem(f"{place}: {name} of phase {phase['name']} = {result[name]}, {value} in status.csv")
+        accepted = [row for row in own if row["outcome"] == "accepted"]
+        if accepted and not math.isclose(float(accepted[-1]["travel"]), result["travel"], rel_tol=1e-9, abs_tol=1e-9):
+            raise Problem(f"{place}: travel of phase {phase['name']} = {result['travel']}, {accepted[-1]['travel']} "
+                          "in status.csv")
+        if result["ended_by"] == "progress" and abs(result["progress"] - 1) > 1e-9:
+            raise Problem(f"{place}: progress of phase {phase['name']} at its end = {result['progress']}")
         if sum(result["limiters"].values()) != result["increments"]:
             raise Problem(f"{place}: the limiters of phase {phase['name']} do not add up to its increments")

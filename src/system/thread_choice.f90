@@ -36,6 +36,7 @@ module dd3_system_thread_choice
   contains
     procedure :: begin_iteration
     procedure :: end_iteration
+    procedure :: record
   end type thread_choice_t
 
 contains
@@ -68,16 +69,24 @@ contains
     self%began = wall_time()
   end subroutine begin_iteration
 
-  !> End that iteration: record its time in a trial. After the last one, choose the faster if the
-  !> difference exceeds the scatter, and set when to compare again.
+  !> End that iteration and record its time.
   subroutine end_iteration(self)
     class(thread_choice_t), intent(inout) :: self
+
+    call self%record(wall_time() - self%began)
+  end subroutine end_iteration
+
+  !> Record the time of an iteration of a trial. After the last one, choose the faster if the
+  !> difference exceeds the scatter, and set when to compare again.
+  subroutine record(self, seconds)
+    class(thread_choice_t), intent(inout) :: self
+    real(wp), intent(in) :: seconds
 
     integer :: which, faster
 
     if (self%left == 0) return
     which = merge(1, 2, self%now == 1)
-    self%seconds(which) = min(self%seconds(which), wall_time() - self%began)
+    self%seconds(which) = min(self%seconds(which), seconds)
     self%left = self%left - 1
     if (self%left == 0) then
       faster = self%chosen
@@ -94,6 +103,6 @@ contains
       self%wait = self%interval
     end if
     call set_threads(self%chosen)
-  end subroutine end_iteration
+  end subroutine record
 
 end module dd3_system_thread_choice

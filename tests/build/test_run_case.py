@@ -157,6 +157,18 @@ class RunCase(unittest.TestCase):
         self.refuse("last row: force = 40", reference=None, last={"force": [41, 0.5]})
         self.refuse("iterations = 3", reference=None, status={"iterations": [0, 2]})
 
+    def test_sums_of_columns(self):
+        code, output = self.run_case(reference=None, equal=[[["force", "travel"], ["travel", "force"], 0]])
+        self.assertEqual(code, 0, output)
+        self.refuse("['force', 'travel'] = 42", reference=None, equal=[[["force", "travel"], "force", 1]])
+
+    def test_same_in_the_variants(self):
+        double = {"arguments": ["--factor", "2"], "same": {"force": [2, 1e-9]}}
+        code, output = self.run_case(reference=None, last={"travel": [2, 0]}, variants=[[], double])
+        self.assertEqual(code, 0, output)
+        self.refuse("in the first variant times 1", reference=None, last={"travel": [2, 0]}, same={"force": [1, 0.4]},
+                    variants=[[], ["--factor", "2"]])
+
     def test_text_file_and_key(self):
         self.refuse("does not contain: converged", contains=["converged"])
         self.refuse("fields.vtkhdf was not written", files=["fields.vtkhdf"])

@@ -9,10 +9,9 @@ import argparse
 import pathlib
 import random
 import signal
-import time
 
 from runs import (Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of,
-                  table)
+                  seconds_of_runs, table)
 
 # Phases before the last one, and the beginning of that.
 MOTIONS = """*PHASE turn
@@ -66,9 +65,9 @@ class Killed:
         changes, self.settings = CASES[name]
         self.runner, self.work, self.random = runner, fresh(work), random.Random(seed)
         self.deck = Deck(work / "deck.dat", *changes)
-        began = time.monotonic()
+        before = seconds_of_runs()
         runner.run(self.deck, work / "whole", settings=self.settings)
-        self.seconds = time.monotonic() - began
+        self.seconds = seconds_of_runs() - before
         self.output = work / "killed"
 
     def kill(self, make_condition):

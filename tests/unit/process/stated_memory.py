@@ -28,8 +28,9 @@ def peak(program, deck, folder, settings):
         words += ["--set", setting]
     with subprocess.Popen(words, stderr=subprocess.DEVNULL) as process:
         status = folder / "status.csv"
-        until = time.monotonic() + 100
-        while time.monotonic() < until and not (status.exists() and status.read_text(encoding="utf-8").count("\n") > 4):
+        while not (status.exists() and status.read_text(encoding="utf-8").count("\n") > 4):
+            if os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+                break
             time.sleep(0.05)
         process.send_signal(signal.SIGTERM)
         _, code, used = os.wait4(process.pid, 0)

@@ -11,7 +11,8 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
+
+from surroundings import start
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -175,12 +176,7 @@ def next_to_old(program, directory):
 
 def interrupted(program, directory):
     """Test that Ctrl-C ends the run after the current increment."""
-    with subprocess.Popen([program, "--output", directory, BENDING], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True) as process:
-        until = time.monotonic() + 60
-        while not (directory / "status.csv").exists() and time.monotonic() < until:
-            time.sleep(0.05)
-        time.sleep(0.5)
+    with start(program, directory, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=60)
     check(process.returncode == 3, f"expected exit code 3, got {process.returncode}:\n{output}")

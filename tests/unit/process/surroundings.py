@@ -20,6 +20,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "input_files" / "bending"
 BENDING = FOLDER / "bending.dat"
 TENSION = ROOT / "tests" / "cases" / "tension_00" / "case.dat"
+# Increments of a thousandth of those tried: a test stops the run long before its end.
+ENDLESS = ("--set", "strain=1e-9")
 # Uniaxial tension of a point in many steps: rows come faster than they are written.
 POINT = """*MATERIAL steel
   young = 2.1e5
@@ -51,17 +53,24 @@ def rows(path, killed=False):
     return found[1:]
 
 
-def start(program, directory, deck=BENDING, after="status.csv", **options):
-    """Start a run; return it once it has been writing results for a while."""
+def start(program, directory, deck=BENDING, settings=ENDLESS, **options):
+    """Start a run that does not end by itself; return it once rows of increments have been written."""
     directory.parent.mkdir(parents=True, exist_ok=True)
     options = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **options}
-    process = subprocess.Popen([program, "--output", directory, deck], text=True, **options)
-    until = time.monotonic() + 60
-    while not (directory / after).exists() and time.monotonic() < until:
-        time.sleep(0.02)
-    time.sleep(0.5)
-    check(process.poll() is None, f"the run ended early: {process.returncode}")
+    process = subprocess.Popen([program, "--output", directory, *settings, deck], text=True, **options)
+    wait_for_rows(process, directory)
     return process
+
+
+def wait_for_rows(process, directory, times=4):
+    """Wait until the history of a run has grown so many times; the run must not end before."""
+    path, size = directory / "history.csv", 0
+    while times > 0:
+        check(process.poll() is None, f"the run ended early: {process.returncode}")
+        now = path.stat().st_size if path.exists() else 0
+        times -= now > size
+        size = max(size, now)
+        time.sleep(0.005)
 
 
 def finish(process, code):
@@ -95,8 +104,7 @@ def kept_signals(program, directory):
     """Test that SIGHUP stays ignored under nohup."""
     process = start(program, directory, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     process.send_signal(signal.SIGHUP)
-    time.sleep(0.5)
-    check(process.poll() is None, "the run ended")
+    wait_for_rows(process, directory)
     process.send_signal(signal.SIGTERM)
     finish(process, 3)
 
@@ -107,7 +115,7 @@ def closed_output(program, directory):
         output = directory / stream
         reading, writing = os.pipe()
         errors = writing if stream == "both" else subprocess.PIPE
-        process = start(program, output, stdout=writing, stderr=errors)
+        process = start(program, output, settings=(), stdout=writing, stderr=errors)
         os.close(writing)
         os.close(reading)
         finish(process, 3)
@@ -116,18 +124,16 @@ def closed_output(program, directory):
 
 
 def killed(program, directory):
-    """Test SIGKILL: rows of at most about a second before, all whole but the last, and a job.log that is not empty."""
+    """Test SIGKILL: rows are written while the run goes on, all whole but the last, and job.log is not empty."""
     directory.mkdir(parents=True)
     deck = directory / "point.dat"
     deck.write_text(POINT, encoding="utf-8")
     for i in range(5):
         output = directory / f"point-{i}"
-        process = start(program, output, deck, "history.csv")
-        time.sleep(1.0 + 0.17 * i)
+        process = start(program, output, deck, ())
+        wait_for_rows(process, output, 10 * i)
         process.kill()
         finish(process, -signal.SIGKILL)
-        age = time.time() - (output / "history.csv").stat().st_mtime
-        check(age < 2.0, f"the last rows are {age:.1f} s old")
         check(len(rows(output / "history.csv", killed=True)) > 100, "the rows are lost")
         said(output, "point.dat")
     for i in range(3):
@@ -184,8 +190,8 @@ def inputs_in_the_way(program, directory):
                 deck.rename(victim)
                 deck.write_text(f'*INCLUDE "{name}"\n', encoding="utf-8")
             else:
-                (output / "punch.bez").rename(victim)
-                deck.write_text(text.replace("punch.bez", name), encoding="utf-8")
+                (output / "blank_holder.bez").rename(victim)
+                deck.write_text(text.replace("blank_holder.bez", name), encoding="utf-8")
             if kind == "link":
                 deck = directory / f"{name}.dat"
                 deck.symlink_to(victim)
@@ -233,7 +239,7 @@ def little_memory(program, directory):
 
 
 def long_inputs(program, directory):
-    """Test very long lines and very many keys, blocks and parameters: an answer in time."""
+    """Test very long lines and very many keys, blocks and parameters: an answer within 20 s of processor time."""
     directory.mkdir(parents=True)
     good, n = TENSION.read_text(encoding="utf-8"), 20000
     numbers = " ".join(str(i) for i in range(n))
@@ -248,7 +254,8 @@ def long_inputs(program, directory):
             ("continued", f"{good}\n*OUTPUT\n  fields = at" + "".join(f" &\n {i}" for i in range(n)) + "\n", 2)):
         deck = directory / f"{name}.dat"
         deck.write_text(text, encoding="utf-8")
-        done = subprocess.run([program, "--check", deck], capture_output=True, text=True, timeout=20, check=False)
+        done = subprocess.run([program, "--check", deck], capture_output=True, text=True, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (20, 20)))
         check(done.returncode == code, f"{name}: exit code {done.returncode}:\n{done.stderr[:2000]}")
         check(len(done.stderr) < 1_000_000, f"{name}: it says {len(done.stderr)} characters")
 
