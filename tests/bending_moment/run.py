@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "bending_moment"}
 """Moment of a strip of hex8 in pure bending over the exact one: the table of the element's length in docs/manual.md.
 
     run.py --program build/release/dd3imp --work build/bending_moment        compare with the manual
@@ -9,13 +10,12 @@ linear through the thickness. The curvature is that between the plane of symmetr
 t^3 / 12 (1 - nu^2) in the elastic range; beyond it, fibres in plane strain without stress through the thickness,
 integrated over their strain ln(1 + z/R) and over the thickness.
 """
-import argparse
 import math
 import pathlib
 import re
 import sys
 
-from dd3.programs import command, find_program, launch
+from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import interpolate, number, read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -165,14 +165,11 @@ def expected(name):
 
 def main():
     """Run all rows; exit code 1 if one differs from the manual."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--layers", type=int, default=2, help="elements through the thickness (2)")
     parser.add_argument("--print", action="store_true", help="print the quotients, without a comparison")
     options = parser.parse_args()
-    program = find_program(options.program)
-    options.work.mkdir(parents=True, exist_ok=True)
+    program = options.program
     wrong = 0
     for name, length, quotient in quotients(program, options.work, options.layers):
         line = f"{name}, elements of {length} thicknesses: {100 * (quotient - 1):.1f} % too high"

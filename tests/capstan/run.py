@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "capstan", "labels": ["case", "slow"], "timeout": 600}
 """A thin strip that slides over a quarter of a cylinder, with several thicknesses and settings of the contact.
 
     run.py --program build/release/dd3imp --work build/capstan           check
@@ -8,13 +9,12 @@ The ratio of the tensions is exp(mu pi/2) = 1.25382 (Euler, Eytelwein). Each run
 with no node more than 1e-3 mm inside the cylinder in any increment, or stop with a message. The deck is that of
 tests/cases/capstan; its loads are proportional to the thickness.
 """
-import argparse
 import math
 import pathlib
 import re
 import sys
 
-from dd3.programs import command, find_program, launch
+from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import number, read_table, totals
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -78,13 +78,10 @@ def measure(program, work, thickness, contact):
 
 def main():
     """Run all settings; exit code 1 if one of them ends wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--write", action="store_true", help="put the table into the report")
     options = parser.parse_args()
-    program = find_program(options.program)
-    options.work.mkdir(parents=True, exist_ok=True)
+    program = options.program
     lines, wrong = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)], []
     for setting in SETTINGS:
         row, faults = measure(program, options.work, *setting)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
+#: {"name": "forming_parts", "timeout": 400}
 """Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
 
 Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, and the ears and
 the height of the round cup's script on a profile that is known.
 """
-import argparse
 import math
 import pathlib
 import subprocess
@@ -14,7 +14,7 @@ import numpy as np
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.programs import command, find_program, launch
+from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -71,11 +71,7 @@ def check_ears():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=find_program, required=True)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = parser_of_runs(__doc__).parse_args()
     check_tools(options.work)
     check_ears()
     check_runs(options)

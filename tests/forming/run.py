@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "forming", "timeout": 400}
 """Compare the results of forming in fields.vtkhdf and history.csv with closed forms.
 
     run.py --program build/release/dd3imp --work build/forming

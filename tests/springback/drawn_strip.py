@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "springback_drawn_strip", "timeout": 600}
 """Release of a drawn strip whose bends yield, between a die, a punch and a light holder.
 
     drawn_strip.py --program build/release/dd3imp --work build/drawn_strip

@@ -1,4 +1,4 @@
-"""Elastic unloading of the bent strip, computed independently of the program: the source of the numbers in case.json.
+"""Elastic unloading of the bent strip, computed independently of the program: the source of the numbers in case.dat.
 
     dd3imp --set tolerance=1e-5 --output tight.out case.dat
     unloading.py tight.out
@@ -15,7 +15,7 @@ increments, with its own kinematics and tangents. T0 at the integration points i
 changed by the least amount (norm over all components) that puts x0 in equilibrium with f0.
 
 Result: arm_uz = -0.38958 mm; the program gives -0.38957 mm. With the tolerance of the case, 1e-2, the draw ends out of
-balance by up to 8 N at a node, and the program gives -0.3882 mm: hence the tolerance of 0.01 mm in case.json.
+balance by up to 8 N at a node, and the program gives -0.3882 mm: hence the tolerance of 0.01 mm in case.dat.
 """
 
 import sys
@@ -116,7 +116,7 @@ def unload(nodes, elements, stress0, contact, held):
 
 
 def main():
-    """Print the displacements that case.json expects."""
+    """Print the displacements that case.dat expects."""
     fields = Fields(sys.argv[1])
     first, drawn, last = 0, int(np.flatnonzero(fields.travel <= 5.0)[-1]), fields.count - 1
     initial, nodes = fields.points(first).astype(float), fields.points(drawn).astype(float)
