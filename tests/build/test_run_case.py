@@ -164,8 +164,8 @@ class RunCase(unittest.TestCase):
 
     def test_case_in_a_deck(self):
         deck = self.folder / "case.dat"
-        deck.write_text('*TITLE\n#: {"last": {"force": [40, 0]},\n#:  "tolerance": {"*": {}}}\n#| travel,force\n#| 2,40\n'
-                        "#> the run\n#> is over\n")
+        deck.write_text('*TITLE\n#: {"last": {"force": [40, 0]},\n#:  "tolerance": {"*": {}}}\n'
+                        "#| travel,force\n#| 2,40\n#> the run\n#> is over\n")
         code, output = self.call()
         self.assertEqual(code, 0, output)
         with deck.open("a") as file:

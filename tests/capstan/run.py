@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-#: {"name": "capstan", "labels": ["case", "slow"], "timeout": 600}
+#: {"name": "capstan", "timeout": 600}
 """A thin strip that slides over a quarter of a cylinder, with several thicknesses and settings of the contact.
 
     run.py --program build/release/dd3imp --work build/capstan           check

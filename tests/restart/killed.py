@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 #: {"name": "restart_killed", "arguments": ["--kills", "3"]}
 #: {"name": "restart_killed_often", "arguments": ["--kills", "20", "--fields", "100"], "labels": ["case", "slow"],
-#:  "timeout": 1800}
+#:  "timeout": 3600, "cost": 240}
 """Runs that are killed and continued: their results are those of a run that is not, bit for bit.
 
     killed.py --program build/release/dd3imp --work build/killed --kills 3
