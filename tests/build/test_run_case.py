@@ -12,6 +12,7 @@ SCHEMA = json.loads((TESTS.parent / "docs" / "run.schema.json").read_text(encodi
 sys.path.insert(0, str(TESTS))
 from case_file import Unlisted, cases  # noqa: E402
 from run_description import check_description, jsonschema  # noqa: E402
+
 from dd3.errors import Problem  # noqa: E402
 
 PROGRAM = """#!{python}

@@ -14,14 +14,14 @@ import pathlib
 import re
 import sys
 
-from dd3.programs import command, launch, parser_of_runs
-from dd3.tables import number, read_table, totals
+from dd3.programs import parser_of_runs
+from dd3.tables import read_table, totals
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
 REPORT = ROOT / "docs" / "reports" / "capstan.md"
 sys.path.insert(0, str(ROOT / "tests"))
-from run_description import check_description  # noqa: E402
+from bench import Bench  # noqa: E402
 
 EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0
@@ -46,26 +46,22 @@ def deck(thickness, contact):
     return text
 
 
-def measure(program, work, thickness, contact):
+def measure(bench, thickness, contact):
     """Run one setting; return its row of the table and what is wrong."""
     name = re.sub("[ =]+", "_", f"{thickness:g} {contact}".strip())
-    file, out = work / f"{name}.dat", work / name
-    file.write_text(deck(thickness, contact), encoding="utf-8")
-    done = launch(command(program, file, out, ["--quiet"]), timeout=600)
-    check_description(out, done.code)
-    history = read_table(out / "history.csv")
-    total = totals(read_table(out / "status.csv"))
-    depth = max(RADIUS - math.hypot(number(row, f"node{i}_x", out), number(row, f"node{i}_z", out) + RADIUS)
-                for row in history for i in range(ELEMENTS + 1))
+    found = bench.run(name, deck(thickness, contact), codes=(0, 3))
+    total = totals(read_table(found.folder / "status.csv"))
+    depth = max(RADIUS - math.hypot(x, z + RADIUS) for i in range(ELEMENTS + 1)
+                for x, z in zip(found.column(f"node{i}_x"), found.column(f"node{i}_z")))
     depth = max(depth, 0.0)
-    ratio = -LOAD * thickness / THICKNESS / number(history[-1], "left_rx", out)
+    ratio = -LOAD * thickness / THICKNESS / found.last("left_rx")
     error, wrong = ratio / EXACT - 1, []
-    if done.code == 3 and "dd3imp: stopped E2" in done.errors:
+    if found.code == 3 and "dd3imp: stopped E2" in found.errors:
         end, results = "stopped", ["", ""]
     else:
         end, results = "reached", [f"{ratio:.5f}", f"{100 * error:+.2f}"]
-        if done.code != 0:
-            wrong.append(f"exit code {done.code}: {done.errors}")
+        if found.code != 0:
+            wrong.append(f"exit code {found.code}: {found.errors}")
         if abs(error) > ALLOWED_RATIO:
             wrong.append(f"T1/T2 = {ratio:.5f}, expected {EXACT:.5f}")
     if depth > ALLOWED_DEPTH:
@@ -81,10 +77,10 @@ def main():
     parser = parser_of_runs(__doc__)
     parser.add_argument("--write", action="store_true", help="put the table into the report")
     options = parser.parse_args()
-    program = options.program
+    bench = Bench(options.program, options.work)
     lines, wrong = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)], []
     for setting in SETTINGS:
-        row, faults = measure(program, options.work, *setting)
+        row, faults = measure(bench, *setting)
         lines.append("| " + " | ".join(row) + " |")
         wrong += faults
     print("\n".join(lines + wrong))
