@@ -63,10 +63,9 @@ def read_case(path):
     """Return the case of a deck or of a file of JSON; the texts and the table of comment lines are keys of it."""
     case = dict(objects(path)[0]) if objects(path) else {}
     if path.suffix != ".json":
-        case = {"deck": path.name, **case, "contains": [*case.get("contains", []), *lines(path, "#>")],
-                "rows": lines(path, "#|")}
+        case = {"deck": path.name, **case, "printed": lines(path, "#>"), "rows": lines(path, "#|")}
     if path.parent.name == BAD.name:
-        case = {"exit_code": 2, **case}
+        case = {"exit_code": 2, "timeout": 60, **case}
     return case
 
 

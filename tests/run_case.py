@@ -19,8 +19,9 @@ A case is a deck that says in comment lines what is expected (case_file.py), or 
     equal       lists [column, column, tolerance] of columns that agree in every row of history.csv
     status      per column of status.csv [lowest, highest]: bounds of every row
     codes       codes of messages that the run must give, a list; those of docs/messages.md
-    contains    texts that the program's output must contain, in this order, a list: names and numbers, not sentences;
-                after an exit code of 1 or 2 the error stream alone
+    contains    texts that the program's output must contain, a list: names and numbers, not sentences; after an exit
+                code of 1 or 2 the error stream alone
+    printed     texts that it must contain in this order; default those of comment lines
     files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"],
                 none after an exit code of 1 or 2
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
@@ -43,7 +44,7 @@ from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "status", "contains",
-         "codes", "files", "variants", "labels", "timeout", "cost", "description", "rows"}
+         "printed", "rows", "codes", "files", "variants", "labels", "timeout", "cost", "description"}
 REFUSED = (1, 2)  # exit codes of a run that was not begun
 TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer")
 
@@ -154,9 +155,12 @@ def check_output(case, done, results):
         raise Mismatch(f"exit code {done.code}, expected {expected}")
     said, place = done.errors if expected in REFUSED else done.output + done.errors, 0
     for text in case.get("contains", []):
+        if text not in said:
+            raise Mismatch(f"the output does not contain: {text}")
+    for text in case.get("printed", []):
         found = said.find(text, place)
         if found < 0:
-            raise Mismatch(f"the output does not contain{', in this order' if text in said else ''}: {text}")
+            raise Mismatch(f"the output does not contain, in this order: {text}")
         place = found + len(text)
     for trace in TRACES:
         if trace in done.errors:
@@ -201,7 +205,7 @@ def run(case, folder, program, results, arguments):
     check_output(case, done, results)
     if place != results.parent and set(place.rglob("*")) != before:
         raise Mismatch(f"files are left: {sorted(set(place.rglob('*')) - before)}")
-    compared, path = len(case.get("contains", [])) + len(case.get("codes", [])), results / "history.csv"
+    compared, path = sum(len(case.get(key, [])) for key in ("contains", "printed", "codes")), results / "history.csv"
     if path.exists():
         history = read_table(path)
         compared += compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-#: {"name": "docs", "labels": ["docs"], "timeout": 60}
+#: {"name": "docs", "labels": ["docs"], "timeout": 300}
 """Check README.md, CONTRIBUTING.md and docs/.
 
     check_documents.py --program build/release/dd3imp
