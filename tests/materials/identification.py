@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-#: {"labels": ["utils"]}
+#: {"labels": ["utils"], "timeout": 900}
 """Check dd3 identify and dd3 fit.
 
     identification.py --program build/release/dd3imp
