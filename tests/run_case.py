@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""Run one case of tests/cases/, compare its history with the reference and validate its run.json.
+"""Run cases, compare their histories with the reference and validate their run.json.
 
-    run_case.py --program build/release/dd3imp --work build/cases tests/cases/tension
+    run_case.py --program build/release/dd3imp --work build/cases tests/cases/roll_up/case.dat
+    run_case.py --program build/release/dd3imp --work build tests/bad_input          all cases of a folder
 
-A case is a folder with a case.json:
+A case is a deck that says in comment lines what is expected (case_file.py), or a file of JSON for a deck elsewhere:
 
     description what the case checks, and where the expected numbers come from
-    deck        the input file, default case.dat; a path relative to the folder
+    deck        the input file, default that with the comment lines, or case.dat; a path relative to the folder
     arguments   further arguments of the program, a list
-    exit_code   expected exit code, default 0
-    reference   csv file with the columns of history.csv to compare; default reference.csv if it exists
+    exit_code   expected exit code, default 0, in bad_input/ 2. After 1 or 2 no new file may be left
+    reference   csv file with the columns of history.csv to compare; default the rows of comment lines, or reference.csv
     along       the column along which values are interpolated, default travel; if the reference has a column `phase`
                 or `point`, only the rows of that phase or point are used
     tolerance   per column {"relative": r, "absolute": a}; "*" holds for the columns not named. A value passes if
@@ -21,28 +22,34 @@ A case is a folder with a case.json:
                 relative tolerance
     status      per column of status.csv [lowest, highest]: bounds of every row
     codes       codes of messages that the run must give, a list; those of docs/messages.md
-    contains    texts that the program's output must contain, a list: names and numbers, not sentences
-    files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"]
+    contains    texts that the program's output must contain, a list: names and numbers, not sentences; after an exit
+                code of 1 or 2 the error stream alone
+    printed     texts that it must contain in this order; default those of comment lines
+    files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"],
+                none after an exit code of 1 or 2
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
                 `arguments` and keys that replace those of the case, such as a reference of their own
     labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` adds it to the debug build
-    timeout     seconds, default 300
+    timeout     seconds of one run, default 300
+    cost        seconds of all runs on one processor, of a slow case
 """
-import argparse
-import json
+import functools
 import pathlib
 import shutil
 import sys
 
+from case_file import SECONDS, cases, name_of, read_case
 from run_description import check_description
 
 from dd3.errors import Problem
-from dd3.programs import command, find_program, launch
+from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "same", "status",
-         "contains", "codes", "files", "variants", "labels", "timeout", "description"}
+         "contains", "printed", "rows", "codes", "files", "variants", "labels", "timeout", "cost", "description"}
+REFUSED = (1, 2)  # exit codes of a run that was not begun
+TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer")
 
 
 class Mismatch(Exception):
@@ -96,6 +103,9 @@ def compare_row(case, name, row, history, path):
 def compare_reference(case, folder, history, path):
     """Compare the history with the reference row by row; return the number of values compared."""
     name = case.get("reference", "reference.csv")
+    if "reference" not in case and case.get("rows"):
+        folder, name = path.parent, "reference.csv"
+        (folder / name).write_text("\n".join(case["rows"]) + "\n", encoding="utf-8")
     if "reference" not in case and not (folder / name).exists():
         return 0
     reference = read_table(folder / name)
@@ -161,10 +171,19 @@ def check_output(case, done, results):
     expected = case.get("exit_code", 0)
     if done.code != expected:
         raise Mismatch(f"exit code {done.code}, expected {expected}")
+    said, place = done.errors if expected in REFUSED else done.output + done.errors, 0
     for text in case.get("contains", []):
-        if text not in done.output + done.errors:
+        if text not in said:
             raise Mismatch(f"the output does not contain: {text}")
-    for name in case.get("files", ["history.csv", "status.csv", "job.log"]):
+    for text in case.get("printed", []):
+        found = said.find(text, place)
+        if found < 0:
+            raise Mismatch(f"the output does not contain, in this order: {text}")
+        place = found + len(text)
+    for trace in TRACES:
+        if trace in done.errors:
+            raise Mismatch(f"the program says {trace!r}")
+    for name in case.get("files", [] if expected in REFUSED else ["history.csv", "status.csv", "job.log"]):
         if not (results / name).exists():
             raise Mismatch(f"{name} was not written")
     if expected in (0, 3):
@@ -179,16 +198,32 @@ def check_codes(case, found):
         raise Mismatch(f"expected the messages {', '.join(sorted(missing))}, got {', '.join(sorted(map(str, given)))}")
 
 
+@functools.cache
+def copied(folder, work):
+    """Return a copy of a folder, for runs that would write into it, and the paths in it."""
+    copy = work / f"{folder.name}.copy"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(folder, copy)
+    return copy, set(copy.rglob("*"))
+
+
 def run(case, folder, program, results, arguments, first):
     """Run the case once; return the number of values compared. `first`: the history of the first variant."""
     shutil.rmtree(results, ignore_errors=True)
     results.parent.mkdir(parents=True, exist_ok=True)
-    words = command(program, folder / case.get("deck", "case.dat"), results, [*case.get("arguments", []), *arguments])
+    deck, arguments, place = case.get("deck", "case.dat"), [*case.get("arguments", []), *arguments], results.parent
+    if case.get("exit_code", 0) in REFUSED:
+        place, before = copied(folder, place)
+        words = command(program, deck, None, arguments)
+    else:
+        words = command(program, folder / deck, results, arguments)
     print(" ".join(words), flush=True)
-    done = launch(words, timeout=case.get("timeout", 300), folder=results.parent, one_core=False)
+    done = launch(words, timeout=case.get("timeout", SECONDS), folder=place, one_core=False)
     print("\n".join((done.output + done.errors).splitlines()[-40:]))
     check_output(case, done, results)
-    compared, path = len(case.get("contains", [])) + len(case.get("codes", [])), results / "history.csv"
+    if place != results.parent and set(place.rglob("*")) != before:
+        raise Mismatch(f"files are left: {sorted(set(place.rglob('*')) - before)}")
+    compared, path = sum(len(case.get(key, [])) for key in ("contains", "printed", "codes")), results / "history.csv"
     if path.exists():
         history = read_table(path)
         compared += compare_reference(case, folder, history, path) + compare_ends(case, history, path, results)
@@ -197,28 +232,34 @@ def run(case, folder, program, results, arguments, first):
     return compared
 
 
-def main():
-    """Run the case in all its variants."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results")
-    parser.add_argument("case", type=pathlib.Path, help="folder of the case")
-    options = parser.parse_args()
-    folder = options.case.resolve()
-    case = json.loads((folder / "case.json").read_text(encoding="utf-8"))
+def run_variants(path, options):
+    """Run the case of a file in all its variants; return what is wrong, nothing if all pass."""
+    case, folder, compared = read_case(path), path.parent, 0
     unknown = {key for own in (case, *case.get("variants", [])) if isinstance(own, dict) for key in own} - KNOWN
     if unknown:
-        sys.exit(f"case.json: unknown: {', '.join(sorted(unknown))}")
-    program, compared, first = find_program(options.program), 0, []
+        return f"{path.name}: unknown: {', '.join(sorted(unknown))}"
+    first = []
     for i, (one, arguments) in enumerate(variants(case)):
-        results = options.work.resolve() / (folder.name + (f"-{i + 1}" if i else "") + ".out")
+        results = options.work.resolve() / (name_of(path) + (f"-{i + 1}" if i else "") + ".out")
         try:
-            compared += run(one, folder, program, results, arguments, first)
+            compared += run(one, folder, options.program, results, arguments, first)
         except (Mismatch, Problem, OSError) as error:
-            sys.exit(f"FAILED {folder.name} {' '.join(arguments)}\n{error}")
-    if compared == 0 and case.get("exit_code", 0) == 0:
-        sys.exit(f"FAILED {folder.name}: nothing was compared")
+            return f"FAILED {name_of(path)} {' '.join([one.get('deck', ''), *arguments]).strip()}\n{error}"
+    if compared == 0:
+        return f"FAILED {name_of(path)}: nothing was compared"
     print(f"passed, {compared} values compared")
+    return ""
+
+
+def main():
+    """Run the cases."""
+    parser = parser_of_runs(__doc__)
+    parser.add_argument("case", type=pathlib.Path, nargs="+", help="file of a case, or a folder of cases")
+    options = parser.parse_args()
+    files = [file for path in options.case for file in (cases(path.resolve()) if path.is_dir() else [path.resolve()])]
+    failed = [text for text in (run_variants(path, options) for path in files) if text]
+    print(f"{len(files)} cases, {len(failed)} failed")
+    sys.exit("\n".join(failed) if failed or not files else 0)
 
 
 if __name__ == "__main__":

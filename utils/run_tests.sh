@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds and runs all tests except those labelled slow; the last line is `N passed, N failed`.
+# Installs what is missing, builds and runs the tests; the last line is `N passed, N failed`.
 #
 #   utils/run_tests.sh          the optimised build, the debug build (bounds checks, floating-point traps) and, where
-#                               PETSc is installed, the build for several processes
-#   utils/run_tests.sh --slow   also the slow cases
+#                               PETSc is installed, the build for several processes; of the slow tests a part that takes
+#                               ten minutes at most: the parts follow each other from day to day
+#   utils/run_tests.sh --slow   all slow tests
 #
 # JOBS=<n> sets the number of parallel tests and compilers (default: the number of cores).
 set -uo pipefail
@@ -24,8 +25,8 @@ failed=0
 run_tests() {
   local log=build/$1/tests.log run good=0 bad=1
   mkdir -p "build/$1"
-  echo "== testing: $1"
-  ctest --preset "$1" -j "$jobs" --no-tests=error >"$log" 2>&1
+  echo "== testing: $*"
+  ctest --preset "$@" -j "$jobs" --no-tests=error >"$log" 2>&1
   sed -n '/tests passed/,$p' "$log"
   run=$(sed -n 's/.* tests failed out of \([0-9]*\)$/\1/p' "$log")
   if [ -n "$run" ]; then
@@ -48,6 +49,18 @@ build() {
   fi
 }
 
+# Runs the part of the slow tests whose turn it is, by the number of the day (UTC); case_file.py makes the parts.
+run_slow_part() {
+  local parts part
+  parts=$(ctest --preset slow --print-labels | grep -c '^  part_')
+  part=part_$(($(date +%s) / 86400 % (parts > 0 ? parts : 1)))
+  echo "== slow tests that run today ($part of $parts), and those that do not"
+  ctest --preset slow -N -L "^$part\$" | grep ' Test '
+  echo "--"
+  ctest --preset slow -N -LE "^$part\$" | grep ' Test '
+  run_tests slow -L "^$part\$"
+}
+
 finish() {
   echo "$passed passed, $failed failed"
   [ "$failed" -eq 0 ]
@@ -62,5 +75,7 @@ if pkg-config --exists PETSc; then
 fi
 if [ "${1:-}" = --slow ]; then
   run_tests slow
+else
+  run_slow_part
 fi
 finish

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "bending_moment"}
 """Moment of a strip of hex8 in pure bending over the exact one: the table of the element's length in docs/manual.md.
 
     run.py --program build/release/dd3imp --work build/bending_moment        compare with the manual
@@ -9,18 +10,17 @@ linear through the thickness. The curvature is that between the plane of symmetr
 t^3 / 12 (1 - nu^2) in the elastic range; beyond it, fibres in plane strain without stress through the thickness,
 integrated over their strain ln(1 + z/R) and over the thickness.
 """
-import argparse
 import math
 import pathlib
 import re
 import sys
 
-from dd3.programs import command, find_program, launch
-from dd3.tables import interpolate, number, read_table
+from dd3.programs import parser_of_runs
+from dd3.tables import interpolate, number
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from run_description import check_description  # noqa: E402
+from bench import Bench  # noqa: E402
 
 THICKNESS, YOUNG, POISSON = 0.78, 2.1e5, 0.3
 K, E0, N = 565.0, 0.007117, 0.259
@@ -113,7 +113,7 @@ def exact_moment(radius, points=60):
     return 2 * depth * sum(z * fibre_stress(math.log(1 + z / radius)) for z in places)
 
 
-def moments(program, work, length, layers, elements, force, hardening):
+def moments(bench, length, layers, elements, force, hardening):
     """Return the curvatures, 1/mm, and moments, N, of a run with elements of a length in thicknesses."""
     step, small = length * THICKNESS, 1e-4
     section, end = elements // 2 * step, elements * step
@@ -122,27 +122,22 @@ def moments(program, work, length, layers, elements, force, hardening):
     for name, x, z in (("end_top", end, THICKNESS), ("end_bottom", end, 0), ("top", section, THICKNESS),
                        ("bottom", section, 0)):
         text += LINE.format(name=name, x0=x - small, x1=x + small, z0=z - small, z1=z + small)
-    deck, out = work / "deck.dat", work / "results"
-    deck.write_text(text, encoding="utf-8")
-    done = launch(command(program, deck, out), timeout=120)
-    if done.code not in (0, 3):  # it may stop beyond the radius
-        sys.exit(f"{deck}: exit code {done.code}:\n{done.output}")
-    check_description(out, done.code)
+    found = bench.run("strip", text, codes=(0, 3))  # it may stop beyond the radius
     curvatures, values = [], []
-    for row in read_table(out / "history.csv"):
-        at = {name: number(row, name, out) for name in row if name.endswith(("_x", "_z", "progress"))}
+    for row in found.history:
+        at = {name: number(row, name, found.path) for name in row if name.endswith(("_x", "_z", "progress"))}
         angle = math.atan2(at["top_x"] - at["bottom_x"], at["top_z"] - at["bottom_z"])
         curvatures.append(angle / section)
         values.append(at["progress"] * force * (at["end_top_z"] - at["end_bottom_z"]))
     return curvatures, values
 
 
-def quotients(program, work, layers):
+def quotients(bench, layers):
     """Yield row, length and moment over the exact one."""
     for name, (radius, runs) in ROWS.items():
         exact = exact_moment(radius) if radius else None
         for length, (elements, force) in runs.items():
-            curvatures, values = moments(program, work, length, layers, elements, force, PLASTIC if radius else ELASTIC)
+            curvatures, values = moments(bench, length, layers, elements, force, PLASTIC if radius else ELASTIC)
             if radius:
                 moment = interpolate(curvatures, values, 1 / radius)
                 if moment is None:
@@ -165,16 +160,12 @@ def expected(name):
 
 def main():
     """Run all rows; exit code 1 if one differs from the manual."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--layers", type=int, default=2, help="elements through the thickness (2)")
     parser.add_argument("--print", action="store_true", help="print the quotients, without a comparison")
     options = parser.parse_args()
-    program = find_program(options.program)
-    options.work.mkdir(parents=True, exist_ok=True)
     wrong = 0
-    for name, length, quotient in quotients(program, options.work, options.layers):
+    for name, length, quotient in quotients(Bench(options.program, options.work), options.layers):
         line = f"{name}, elements of {length} thicknesses: {100 * (quotient - 1):.1f} % too high"
         if not options.print:
             manual = expected(name)[length]

@@ -6,11 +6,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
-#: What begins and ends a comment, by the end of a file's name.
+# What begins and ends a comment, by the end of a file's name.
 COMMENTS = {".f90": ("! ", ""), ".pf": ("! ", ""), ".f90.in": ("! ", ""), ".c": ("/* ", " */"), ".h": ("/* ", " */"),
             ".py": ("# ", ""), ".sh": ("# ", ""), ".cmake": ("# ", ""), ".cmake.in": ("# ", ""),
             "CMakeLists.txt": ("# ", ""), "Dockerfile": ("# ", ""), ".ci/run": ("# ", "")}
-#: Files without the line: tests refer to their lines by number.
+# Files without the line: tests refer to their lines by number.
 WITHOUT = ("tests/standin/refused/", "tests/standin/failing/")
 
 

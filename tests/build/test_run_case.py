@@ -10,7 +10,9 @@ TESTS = pathlib.Path(__file__).resolve().parent.parent
 RUNNER = TESTS / "run_case.py"
 SCHEMA = json.loads((TESTS.parent / "docs" / "run.schema.json").read_text(encoding="utf-8"))
 sys.path.insert(0, str(TESTS))
+from case_file import Unlisted, cases  # noqa: E402
 from run_description import check_description, jsonschema  # noqa: E402
+
 from dd3.errors import Problem  # noqa: E402
 
 PROGRAM = """#!{python}
@@ -102,6 +104,10 @@ class RunCase(unittest.TestCase):
         (self.folder / "case.json").write_text(json.dumps(case))
         if reference:
             (self.folder / "reference.csv").write_text(reference)
+        return self.call()
+
+    def call(self):
+        """Return exit code and output of the runner with the folder."""
         done = subprocess.run([sys.executable, RUNNER, "--program", self.program, "--work",
                                pathlib.Path(self.scratch.name) / "work", self.folder],
                               capture_output=True, text=True, check=False)
@@ -168,6 +174,32 @@ class RunCase(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.refuse("in the first variant times 1", reference=None, last={"travel": [2, 0]}, same={"force": [1, 0.4]},
                     variants=[[], ["--factor", "2"]])
+
+    def test_case_in_a_deck(self):
+        deck = self.folder / "case.dat"
+        deck.write_text('*TITLE\n#: {"last": {"force": [40, 0]},\n#:  "tolerance": {"*": {}}}\n'
+                        "#| travel,force\n#| 2,40\n#> the run\n#> is over\n")
+        code, output = self.call()
+        self.assertEqual(code, 0, output)
+        with deck.open("a") as file:
+            file.write("#> the run\n")
+        code, output = self.call()
+        self.assertNotEqual(code, 0)
+        self.assertIn("does not contain, in this order: the run", output)
+
+    def test_refused_input(self):
+        self.program.write_text(f"#!{sys.executable}\nimport sys\nopen('left', 'w') if '--leave' in sys.argv else 0\n"
+                                "sys.exit('error E101' + ' Backtrace' * ('--trace' in sys.argv))\n")
+        case = {"reference": None, "exit_code": 1, "contains": ["E101"]}
+        code, output = self.run_case(**case)
+        self.assertEqual(code, 0, output)
+        self.refuse("says 'Backtrace'", arguments=["--trace"], **case)
+        self.refuse("files are left", arguments=["--leave"], **case)
+
+    def test_file_that_is_no_case(self):
+        (self.folder / "case.dat").write_text("*TITLE\n")
+        with self.assertRaises(Unlisted):
+            cases(self.folder)
 
     def test_text_file_and_key(self):
         self.refuse("does not contain: converged", contains=["converged"])

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "capstan", "timeout": 600}
 """A thin strip that slides over a quarter of a cylinder, with several thicknesses and settings of the contact.
 
     run.py --program build/release/dd3imp --work build/capstan           check
@@ -8,21 +9,20 @@ The ratio of the tensions is exp(mu pi/2) = 1.25382 (Euler, Eytelwein). Each run
 with no node more than 1e-3 mm inside the cylinder in any increment, or stop with a message. The deck is that of
 tests/cases/capstan; its loads are proportional to the thickness.
 """
-import argparse
 import math
 import pathlib
 import re
 import sys
 
 from dd3.pages import put_table, table
-from dd3.programs import command, find_program, launch
-from dd3.tables import number, read_table, totals
+from dd3.programs import parser_of_runs
+from dd3.tables import read_table, totals
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
 REPORT = ROOT / "docs" / "reports" / "capstan.md"
 sys.path.insert(0, str(ROOT / "tests"))
-from run_description import check_description  # noqa: E402
+from bench import Bench  # noqa: E402
 
 EXACT = math.exp(0.144 * math.pi / 2)
 RADIUS, ELEMENTS, LENGTH, START = 10.0, 59, 23.708, -4.0
@@ -47,26 +47,22 @@ def deck(thickness, contact):
     return text
 
 
-def measure(program, work, thickness, contact):
+def measure(bench, thickness, contact):
     """Run one setting; return its row of the table, what is wrong, and its run.json."""
     name = re.sub("[ =]+", "_", f"{thickness:g} {contact}".strip())
-    file, out = work / f"{name}.dat", work / name
-    file.write_text(deck(thickness, contact), encoding="utf-8")
-    done = launch(command(program, file, out, ["--quiet"]), timeout=600)
-    job = check_description(out, done.code)
-    history = read_table(out / "history.csv")
-    total = totals(read_table(out / "status.csv"))
-    depth = max(RADIUS - math.hypot(number(row, f"node{i}_x", out), number(row, f"node{i}_z", out) + RADIUS)
-                for row in history for i in range(ELEMENTS + 1))
+    found = bench.run(name, deck(thickness, contact), codes=(0, 3))
+    total = totals(read_table(found.folder / "status.csv"))
+    depth = max(RADIUS - math.hypot(x, z + RADIUS) for i in range(ELEMENTS + 1)
+                for x, z in zip(found.column(f"node{i}_x"), found.column(f"node{i}_z")))
     depth = max(depth, 0.0)
-    ratio = -LOAD * thickness / THICKNESS / number(history[-1], "left_rx", out)
+    ratio = -LOAD * thickness / THICKNESS / found.last("left_rx")
     error, wrong = ratio / EXACT - 1, []
-    if done.code == 3 and "dd3imp: stopped E2" in done.errors:
+    if found.code == 3 and "dd3imp: stopped E2" in found.errors:
         end, results = "stopped", ["", ""]
     else:
         end, results = "reached", [f"{ratio:.5f}", f"{100 * error:+.2f}"]
-        if done.code != 0:
-            wrong.append(f"exit code {done.code}: {done.errors}")
+        if found.code != 0:
+            wrong.append(f"exit code {found.code}: {found.errors}")
         if abs(error) > ALLOWED_RATIO:
             wrong.append(f"T1/T2 = {ratio:.5f}, expected {EXACT:.5f}")
     if depth > ALLOWED_DEPTH:
@@ -74,19 +70,16 @@ def measure(program, work, thickness, contact):
     row = [f"{thickness:g}", f"`{contact}`" if contact else "", end,
            str(total.increments), str(total.cutbacks),
            str(total.iterations), *results, f"{depth:.1e}"]
-    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong], job
+    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong], found.job
 
 
 def main():
     """Run all settings; exit code 1 if one of them ends wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--write", action="store_true", help="put the table into the report")
     options = parser.parse_args()
-    program = find_program(options.program)
-    options.work.mkdir(parents=True, exist_ok=True)
-    rows, wrong, jobs = zip(*(measure(program, options.work, *setting) for setting in SETTINGS), strict=True)
+    bench = Bench(options.program, options.work)
+    rows, wrong, jobs = zip(*(measure(bench, *setting) for setting in SETTINGS), strict=True)
     wrong = [fault for faults in wrong for fault in faults]
     print(table(HEAD, rows), *wrong, sep="\n")
     if options.write:

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "docs", "labels": ["docs"], "timeout": 300}
 """Check README.md, CONTRIBUTING.md and docs/.
 
     check_documents.py --program build/release/dd3imp
@@ -13,7 +14,6 @@
   the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
   input_files/laws/<law>.dat runs to its end.
 """
-import argparse
 import json
 import pathlib
 import re
@@ -24,6 +24,7 @@ from functools import cache
 from itertools import takewhile
 
 from dd3.command import COMMANDS
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -215,9 +216,7 @@ def broken_laws(program, reference):
 
 def main():
     """Print the errors; exit code 1 if there are any."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    program = parser.parse_args().program
+    program = parser_of_runs(__doc__).parse_args().program
     wrong = []
     printed, _ = run(program, "--help", "markdown")
     if printed != (ROOT / "docs" / "keywords.md").read_text(encoding="utf-8"):

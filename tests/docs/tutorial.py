@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
+#: {"name": "docs_tutorial", "labels": ["docs", "slow"], "timeout": 1800, "cost": 80}
 """Run the commands of docs/tutorial.md and compare what they print with the page.
 
   tutorial.py --program build/release/dd3imp --work build/tutorial [--write]
 
 --write copies the pictures into docs/images.
 """
-import argparse
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "tutorial.md"
@@ -30,15 +32,13 @@ def commands():
 
 def main():
     """Run the commands in a folder that looks like the repository."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=pathlib.Path, required=True)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     work = options.work.resolve()
     shutil.rmtree(work, ignore_errors=True)
     (work / "build" / "release").mkdir(parents=True)
-    (work / "build" / "release" / "dd3imp").symlink_to(options.program.resolve())
+    (work / "build" / "release" / "dd3imp").symlink_to(pathlib.Path(options.program).resolve())
     shutil.copytree(ROOT / "input_files" / "tutorial", work / "input_files" / "tutorial")
     folder = pathlib.Path(sys.executable).parent
     failed = 0

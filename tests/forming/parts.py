@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
+#: {"name": "forming_parts", "timeout": 400}
 """Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
 
 Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, and the ears and
 the height of the round cup's script on a profile that is known.
 """
-import argparse
 import math
 import pathlib
 import subprocess
@@ -14,11 +14,11 @@ import numpy as np
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.programs import command, find_program, launch
-from dd3.tables import read_table
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-
+sys.path.insert(0, str(ROOT / "tests"))
+from bench import Bench, Value, check_values  # noqa: E402
 
 # Deck, parameters, force of the holder (N).
 RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
@@ -28,21 +28,17 @@ RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
         "rail/rail.dat": ({"divisions": "10 6 1", "points": 3, "depth": 1}, 20000)}
 
 
-def check_runs(options):
+def check_runs(bench):
     """Run the decks."""
     for name, (settings, force) in RUNS.items():
-        folder = options.work / pathlib.Path(name).stem
-        done = launch(command(options.program, ROOT / "input_files" / name, folder, ["--quiet"], settings), 300)
-        assert done.code == 0, f"{name}: {done.code}\n{done.errors}"
-        rows = read_table(folder / "history.csv")
-        clamped = [row for row in rows if row["phase"] == "clamp"][-1]
-        assert abs(float(clamped["holder_fz"]) / force - 1) < 0.02, (name, clamped["holder_fz"])
-        assert float(rows[-1]["travel"]) >= 1.0, name
+        found = bench.run(pathlib.Path(name).stem, ROOT / "input_files" / name, settings)
+        check_values(Value(f"{name}: force of the holder, N", force, found.last("holder_fz", "clamp"), 0.02))
+        assert found.last("travel") >= 1.0, name
 
 
 def check_rail(options):
     """Check that the rail is the same turned by 180 degrees, before it springs back."""
-    fields = Fields(options.work / "rail")
+    fields = Fields(options.work / "rail.out")
     step = int(np.flatnonzero(np.abs(fields.travel - 1) < 1e-7)[0])
     points = fields.points(step).reshape(11, 7, 2, 3)
     turned = points[::-1, ::-1] * (-1, -1, 1)
@@ -71,14 +67,10 @@ def check_ears():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=find_program, required=True)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = parser_of_runs(__doc__).parse_args()
     check_tools(options.work)
     check_ears()
-    check_runs(options)
+    check_runs(Bench(options.program, options.work))
     check_rail(options)
     print("the parts run")
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "forming", "timeout": 400}
 """Compare the results of forming in fields.vtkhdf and history.csv with closed forms.
 
     run.py --program build/release/dd3imp --work build/forming
@@ -10,12 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from dd3.fields import Fields
-from dd3.programs import command, launch, parser_of_runs
-from dd3.tables import read_table
+from dd3.programs import parser_of_runs
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from run_description import check_description  # noqa: E402
+from bench import Bench  # noqa: E402
 
 K, E0, N, YOUNG, POISSON = 565.0, 0.007117, 0.259, 2.1e5, 0.3
 MATERIAL = f"*MATERIAL steel\n  young = {YOUNG}\n  poisson = {POISSON}\n  yield = von_mises\n" \
@@ -112,9 +112,9 @@ SLIDE = ROOT / "tests" / "cases" / "friction_slide"
 class Results:
     """Fields of the last step, and the last row of the history."""
 
-    def __init__(self, folder):
-        self.fields = Fields(folder)
-        self.row = {key: value for key, value in read_table(folder / "history.csv")[-1].items() if key != "phase"}
+    def __init__(self, run):
+        self.fields = Fields(run.folder)
+        self.last = run.last
 
     def field(self, name, at_cells=False, phase=None):
         """Return a field at the end of a phase, the last one by default."""
@@ -122,17 +122,12 @@ class Results:
         return self.fields.values(np.flatnonzero(phases == (phase or phases[-1]))[-1], name, at_cells)[0]
 
     def __getitem__(self, column):
-        return float(self.row[column])
+        return self.last(column)
 
 
 def run(options, name, text):
     """Run a deck and return its results."""
-    deck, folder = options.work / f"{name}.dat", options.work / f"{name}.out"
-    deck.write_text(text, encoding="utf-8")
-    done = launch(command(options.program, deck, folder, ["--quiet"]), timeout=100)
-    assert done.code == 0, f"{name}: exit code {done.code}\n{done.errors}"
-    check_description(folder, done.code)
-    return Results(folder)
+    return Results(Bench(options.program, options.work).run(name, text))
 
 
 def close(what, value, expected, relative=1e-9, absolute=1e-9):

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+#: {"name": "fuzz_check", "arguments": ["--seed", "1", "--count", "300", "--limit", "60"], "timeout": 600}
+#: {"name": "fuzz_runs", "arguments": ["--seed", "1", "--count", "30", "--runs"], "timeout": 600}
 """Run the program on mutated input files: it must answer each with an exit code and a sentence.
 
     fuzz.py --program build/release/dd3imp --work build/fuzz --count 400          mutated decks through --check
@@ -19,7 +21,6 @@ mutated as well. Deck i of a series depends on the seed and on i only. A deck fa
 
 Failing decks stay in the folder `failed` of the work folder, each with what the program said.
 """
-import argparse
 import concurrent.futures
 import os
 import pathlib
@@ -30,6 +31,8 @@ import shutil
 import signal
 import subprocess
 import sys
+
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ("input_files", "tests/cases", "tests/bad_input")
@@ -53,6 +56,8 @@ class Corpus:
             shutil.copytree(ROOT / source, work / source, dirs_exist_ok=True)
             self.decks += [path for path in (work / source).rglob("*.dat") if path.is_file()]
         self.decks.sort()
+        for path in self.decks:  # without what is expected of them
+            path.write_bytes(re.sub(rb"^#[:|>].*\n", b"", path.read_bytes(), flags=re.MULTILINE))
         if smallest_only:
             self.decks = [path for path in self.decks if is_small(path)]
         self.valid = [path for path in self.decks if "bad_input" not in path.parts]
@@ -279,9 +284,7 @@ def try_deck(index, options, corpus):
 
 def main():
     """Run a series of decks; exit code 1 if one of them fails."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the decks and the results")
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--seed", type=int, default=1, help="number of the series (1)")
     parser.add_argument("--count", type=int, default=400, help="number of decks (400)")
     parser.add_argument("--first", type=int, default=0, help="number of the first deck (0), to share a series")
@@ -291,8 +294,7 @@ def main():
     parser.add_argument("--limit", type=float, default=10.0, help="longest time of --check, s (10)")
     parser.add_argument("--memory", type=int, default=0, help="limit of the address space, MB; not with a sanitizer")
     options = parser.parse_args()
-    options.program, options.work = options.program.resolve(), options.work.resolve()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options.work = options.work.resolve()
     corpus = Corpus(options.work / "decks", options.runs)
     numbers = range(options.first, options.count) if options.only is None else [options.only]
     codes, failed = {}, 0

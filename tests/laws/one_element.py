@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+#: {"name": "laws_one_element", "labels": ["case", "debug"],
+#:  "arguments": ["--library", "$<$<TARGET_EXISTS:dd3laws>:$<TARGET_FILE:dd3laws>>"]}
 """One element in tension, shear and cyclic loads: forces of the program, and by the library of the laws.
 
     tests/laws/one_element.py --program build/release/dd3imp --library build/release/libdd3laws.so --work /tmp/laws
@@ -18,7 +20,7 @@ from cases import CASES, SIZE, deck, displacements
 from dd3.programs import find_program, launch
 from dd3.tables import read_table
 
-#: Largest difference of a force, relative to the largest of its direction.
+# Largest difference of a force, relative to the largest of its direction.
 TOLERANCE = 1e-6
 
 
@@ -166,6 +168,8 @@ def main():
     parser.add_argument("--library", required=True, type=Path)
     parser.add_argument("--work", type=Path, help="folder of the runs, kept")
     options = parser.parse_args()
+    if not options.library.is_file():
+        sys.exit(77)  # a build without the library
     library = ctypes.CDLL(str(options.library.resolve()))
     failed = False
     with tempfile.TemporaryDirectory() as name:

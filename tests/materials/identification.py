@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"labels": ["utils"], "timeout": 900}
 """Check dd3 identify and dd3 fit.
 
     identification.py --program build/release/dd3imp
@@ -8,7 +9,6 @@
 - Scattered and missing values; a curve with a reversal; messages for unusable input.
 - Each file written is read by the program.
 """
-import argparse
 import contextlib
 import io
 import os
@@ -23,6 +23,7 @@ from dd3.command import dispatch
 from dd3.errors import Problem, run
 from dd3.identify import least_squares as fit
 from dd3.identify.measurements import TENSION, Datum
+from dd3.programs import parser_of_runs
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -304,9 +305,7 @@ def check_mistakes(trial):
 
 def main():
     """Run all checks."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, help="the program dd3imp")
-    trial = Trial(str(Path(parser.parse_args().program).resolve()))
+    trial = Trial(str(parser_of_runs(__doc__).parse_args().program))
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for name, text in FILES.items():

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "materials", "labels": ["case", "debug"]}
 """Check the material files of input_files/materials.
 
     library.py --program build/release/dd3imp
@@ -9,12 +10,11 @@
   its header states, to the digits printed there (0.6 of a unit of the last).
 - r-values in tension and compression are positive every 15 degrees, as those of any sheet.
 """
-import argparse
 import pathlib
 import re
 import sys
 
-from dd3.programs import run_points
+from dd3.programs import parser_of_runs, run_points
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -81,9 +81,7 @@ def check(program, path):
 
 def main():
     """Check all files."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, help="the program dd3imp")
-    program = parser.parse_args().program
+    program = parser_of_runs(__doc__).parse_args().program
     files = sorted(FOLDER.glob("*.dat"))
     bad = [f"{path.name}: {problem}" for path in files for problem in check(program, path)]
     print("\n".join(bad) or f"{len(files)} files are right")

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
+#: {"labels": ["case", "debug"]}
 """Check the special cases stated in docs/laws: both laws of a pair give the same stresses.
 
     special_cases.py --program build/release/dd3imp
 
 Both materials undergo the same random strain paths, in all six components, with a change of direction.
 """
-import argparse
 import random
 import sys
 
-from dd3.programs import run_points
+from dd3.programs import parser_of_runs, run_points
 
 PATHS = 12
 UNIT = "perfect Y0=100"
@@ -117,9 +117,7 @@ def stresses(program, text):
 
 def main():
     """Compare all pairs."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, help="the program dd3imp")
-    program = parser.parse_args().program
+    program = parser_of_runs(__doc__).parse_args().program
     pairs = [([f"  yield = {law}", f"  hardening = {UNIT}"] for law in pair) for pair in CRITERIA]
     pairs += [(["  yield = hill48 r0=1.79 r45=1.51 r90=2.27", f"  hardening = {law}"] for law in pair)
               for pair in HARDENING]

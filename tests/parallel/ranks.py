@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
+#: {"labels": ["petsc"], "processors": 2, "timeout": 900, "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}"]}
 """Runs on several ranks give the history of the serial run, and end as it does.
 
     ranks.py --program build/petsc/dd3imp --mpirun mpirun --work build/ranks --ranks 2 4
 """
-import argparse
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
 
+from dd3.programs import parser_of_runs
 from dd3.tables import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -94,10 +95,8 @@ def check(options, name, method, code):
 
 def main():
     """Run the test."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp, built with PETSc")
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--mpirun", default="mpirun", help="the command that starts several ranks")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
     parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="numbers of ranks")
     options = parser.parse_args()
     options.work = options.work.resolve()

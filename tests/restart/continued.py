@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
+#: {"name": "restart_continued", "arguments": ["--every", "8"], "timeout": 600}
+#: {"name": "restart_continued_often", "arguments": ["--every", "1"], "labels": ["case", "slow"],
+#:  "timeout": 3600, "cost": 240}
 """Runs continued from a restart file: after an interruption or a stop, from every increment, with changed input.
 
     continued.py --program build/release/dd3imp --work build/continued --every 4
 """
-import argparse
 import os
-import pathlib
 import random
 import resource
 import shutil
@@ -13,7 +14,6 @@ import signal
 import subprocess
 
 import h5py
-
 from killed import CASES
 from runs import (
     RECORDS,
@@ -30,6 +30,8 @@ from runs import (
     seconds_of_runs,
     table,
 )
+
+from dd3.programs import parser_of_runs
 
 # Number of interrupted runs.
 INTERRUPTIONS = 3
@@ -227,9 +229,7 @@ def small_disk(runner, work):
 
 def main():
     """Run all of them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--every", type=int, default=6, help="interval of the increments from which runs continue")
     options = parser.parse_args()
     runner, work = Runner(options.program), fresh(options.work.resolve())

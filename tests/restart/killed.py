@@ -1,17 +1,33 @@
 #!/usr/bin/env python3
+#: {"name": "restart_killed", "arguments": ["--kills", "3"]}
+#: {"name": "restart_killed_often", "arguments": ["--kills", "20", "--fields", "100"], "labels": ["case", "slow"],
+#:  "timeout": 3600, "cost": 240}
 """Runs that are killed and continued: their results are those of a run that is not, bit for bit.
 
     killed.py --program build/release/dd3imp --work build/killed --kills 3
 
 A run is killed at random instants, within a change of phase, and while its restart file is written.
 """
-import argparse
-import pathlib
 import random
 import signal
 
-from runs import (Deck, Runner, after, being_written, call_tests, check, compare, fresh, growing, replaced, restart_of,
-                  seconds_of_runs, table)
+from runs import (
+    Deck,
+    Runner,
+    after,
+    being_written,
+    call_tests,
+    check,
+    compare,
+    fresh,
+    growing,
+    replaced,
+    restart_of,
+    seconds_of_runs,
+    table,
+)
+
+from dd3.programs import parser_of_runs
 
 # Phases before the last one, and the beginning of that.
 MOTIONS = """*PHASE turn
@@ -153,9 +169,7 @@ def has_fallback(work):
 
 def main():
     """Run all of them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
+    parser = parser_of_runs(__doc__)
     parser.add_argument("--kills", type=int, default=3, help="number of kills, at least 3")
     parser.add_argument("--fields", type=int, default=0, help="number of kills while fields are written")
     parser.add_argument("--seed", type=int, default=1, help="of the random instants")

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
+#: {"name": "restart_refused", "labels": ["case", "debug"]}
 """Restart files and decks that are refused: a sentence each, exit code 2, and nothing touched.
 
     refused.py --program build/release/dd3imp --work build/refused
 """
-import argparse
 import os
 import pathlib
 import shutil
 import subprocess
 
 import h5py
-
 from runs import ROOT, Deck, Runner, call_tests, check, fresh
+
+from dd3.programs import parser_of_runs
 
 DIE = ROOT / "input_files" / "bending" / "die.bez"
 # Phases reached by the restart file: the first two. Changes of the deck and what the message names as different.
@@ -195,10 +196,7 @@ class Refusals:
 
 def main():
     """Run all of them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     refusals = Refusals(Runner(options.program), fresh(options.work.resolve()))
     tests = [(name, lambda name=name: refusals.different(name)) for name in DIFFERENT]
     tests += [(name, lambda name=name: refusals.damaged(name)) for name in DAMAGED]

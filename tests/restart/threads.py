@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
+#: {"name": "same_bits_with_threads", "timeout": 600}
 """Results with 1, 2 and 4 threads are the same bits, on sheets with more elements and candidates than one thread takes.
 
     threads.py --program build/release/dd3imp --work build/threads
 """
-import argparse
-import pathlib
 import types
 
 from runs import ROOT, Deck, Runner, call_tests, check, compare, fresh, table
+
+from dd3.programs import parser_of_runs
 
 # A thread takes at least 128 elements: four of them are in use.
 CHANGES = (("divisions = 10 2 1", "divisions = 20 13 2"),
@@ -35,10 +36,7 @@ def same_bits_of_cup(runner, work):
 
 def main():
     """Run the test."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     runner, work = Runner(options.program), fresh(options.work.resolve())
     shell = (("element = hex8", "element = solid_shell\n  thickness_points = 3"),
              ("divisions = 20 13 2", "divisions = 20 13 1"))

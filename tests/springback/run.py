@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+#: {"name": "springback_free_shape"}
 """Springback by `unload = on` of a strip bent over two cylinders: with two planes of symmetry, one, and none.
 
     run.py --program build/release/dd3imp --work build/springback
@@ -13,12 +14,12 @@ import re
 import sys
 
 from dd3.errors import check
-from dd3.programs import command, launch, parser_of_runs
-from dd3.tables import number, read_table
+from dd3.programs import parser_of_runs
+from dd3.tables import number
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from run_description import check_description  # noqa: E402
+from bench import Bench  # noqa: E402
 
 MODEL = """
 *MATERIAL steel
@@ -67,51 +68,46 @@ MODELS = {
              "  displace = edge z 0\n  displace = edge x 0\n  displace = tip z 0\n", 6)}
 
 
-def write_deck(path, name, unload):
-    """Write the input file of a model, with the springback phase by `unload` or by `release`."""
+def deck(name, unload):
+    """Return the input file of a model, with the springback phase by `unload` or by `release`."""
     blank, supports, hold, free, by_hand, _ = MODELS[name]
     points = "".join(f"*SET {point}\n  near = {' '.join(map(str, at))}\n"
                      f"*HISTORY at_{point}\n  set = {point}\n  quantities = position\n" for point, at in POINTS.items())
     end = UNLOAD + free if unload else RELEASE + free + by_hand
-    path.write_text(BLANK.format(*blank) + supports + points + MODEL.format(here=HERE) + hold + end, encoding="utf-8")
+    return BLANK.format(*blank) + supports + points + MODEL.format(here=HERE) + hold + end
 
 
-def distances(path):
+def distances(found):
     """Return the distances between the points at the start of the springback, and at its end."""
-    rows = read_table(path)
-    bent = [row for row in rows if row["phase"] == "bend"][-1]
-    found = []
-    for row in (bent, rows[-1]):
-        place = {point: [number(row, f"at_{point}_{axis}", path) for axis in "xyz"] for point in POINTS}
-        found.append([math.dist(place[a], place[b]) for a, b in itertools.combinations(POINTS, 2)])
-    return found
+    values = []
+    for row in (found.row("bend"), found.row()):
+        place = {point: [number(row, f"at_{point}_{axis}", found.path) for axis in "xyz"] for point in POINTS}
+        values.append([math.dist(place[a], place[b]) for a, b in itertools.combinations(POINTS, 2)])
+    return values
 
 
-def run(program, work, name, unload):
+def run(bench, name, unload):
     """Run a model; return its distances before and after springback."""
     run_name = f"{name}_{'unload' if unload else 'release'}"
-    deck, folder = work / f"{run_name}.dat", work / run_name
-    write_deck(deck, name, unload)
-    done = launch(command(program, deck, folder), timeout=120)
-    check(done.code == 0, f"{run_name}: exit code {done.code}\n{done.output}{done.errors}")
-    log = (folder / "job.log").read_text(encoding="utf-8")
-    warnings = [found for found in check_description(folder, done.code)["warnings"] if found["code"] != "W009"]
+    found = bench.run(run_name, deck(name, unload))
+    log = (found.folder / "job.log").read_text(encoding="utf-8")
+    warnings = [warning for warning in found.job["warnings"] if warning["code"] != "W009"]
     check(not warnings, f"{run_name}: a warning\n{warnings}")
     if unload:
         held = re.search(r"held there by (.*)", log)
         check(held and held[1].count("of node") == MODELS[name][-1], f"{run_name}: supports are not as expected\n{log}")
         reaction = re.search(r"largest reaction of the chosen supports is (\S+) N", log)
         check(reaction and float(reaction[1]) < 1e-6, f"{run_name}: reactions are not small\n{log}")
-    return distances(folder / "history.csv")
+    return distances(found)
 
 
 def main():
     """Compare the free shapes."""
     arguments = parser_of_runs(__doc__).parse_args()
-    reference = None
+    bench, reference = Bench(arguments.program, arguments.work), None
     for name in MODELS:
         for unload in (False, True):
-            bent, free = run(arguments.program, arguments.work, name, unload)
+            bent, free = run(bench, name, unload)
             reference = reference or free
             springback = max(abs(a - b) for a, b in zip(bent, free))
             difference = max(abs(a - b) for a, b in zip(reference, free))

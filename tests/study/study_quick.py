@@ -1,16 +1,17 @@
+#: {"labels": ["utils"]}
 """Run the quick cases of the bending study, gather the table and check it.
 
 If snakemake is installed, the workflow must give the same, run a case again that was lost, and do nothing when all
 cases are done.
 """
 
-import argparse
 import importlib.util
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from dd3.programs import parser_of_runs
 from dd3.tables import read_table
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,15 +75,12 @@ def by_workflow(program, work):
 
 def main():
     """Run the steps, and the workflow."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=Path, required=True)
-    parser.add_argument("--work", type=Path, required=True)
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
-    by_steps(options.program.resolve(), options.work.resolve() / "steps")
+    by_steps(options.program, options.work.resolve() / "steps")
     print("steps: passed")
     if importlib.util.find_spec("snakemake"):
-        by_workflow(options.program.resolve(), options.work.resolve() / "workflow")
+        by_workflow(options.program, options.work.resolve() / "workflow")
         print("workflow: passed")
     else:
         print("workflow: skipped, snakemake is not installed")

@@ -1,4 +1,7 @@
 #!/usr/bin/env python3
+#: {"name": "verification", "timeout": 600}
+#: {"name": "verification_slow", "arguments": ["--slow"], "labels": ["case", "slow"],
+#:  "timeout": 3600, "cost": 300}
 """Run the cases of the verification manual, docs/verification.md, and compare them with it.
 
     run.py --program build/release/dd3imp --work build/verification              the quick sections

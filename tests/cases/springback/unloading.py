@@ -1,4 +1,4 @@
-"""Elastic unloading of the bent strip, computed independently of the program: the source of the numbers in case.json.
+"""Elastic unloading of the bent strip, computed independently of the program: the source of the numbers in case.dat.
 
     dd3imp --set tolerance=1e-5 --output tight.out case.dat
     unloading.py tight.out
@@ -117,7 +117,7 @@ def unload(nodes, elements, stress0, contact, held):
 
 
 def main():
-    """Print the displacements that case.json expects."""
+    """Print the displacements that case.dat expects."""
     fields = Fields(sys.argv[1])
     first, drawn, last = 0, int(np.flatnonzero(fields.travel <= 5.0)[-1]), fields.count - 1
     initial, nodes = fields.points(first).astype(float), fields.points(drawn).astype(float)

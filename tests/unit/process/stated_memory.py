@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
+#: {"timeout": 400}
 """The memory stated in job.log before a run agrees with the peak of the run within 20 %.
 
     stated_memory.py --program build/release/dd3imp --work build/stated_memory
 """
-import argparse
 import os
 import pathlib
 import re
@@ -12,6 +12,8 @@ import signal
 import subprocess
 import sys
 import time
+
+from dd3.programs import parser_of_runs
 
 INPUT = pathlib.Path(__file__).resolve().parents[3] / "input_files"
 CUP = INPUT / "square_cup" / "square_cup.dat"
@@ -40,17 +42,14 @@ def peak(program, deck, folder, settings):
 
 def main():
     """Run the test."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     work = options.work.resolve()
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     failed = False
     for number, (deck, settings) in enumerate(JOBS):
         folder = work / str(number)
-        used = peak(options.program.resolve(), deck, folder, settings)
+        used = peak(options.program, deck, folder, settings)
         found = re.search(r"memory: about (\d+) MB", (folder / "job.log").read_text(encoding="utf-8"))
         stated = 1e6 * int(found[1]) if found else 0.0
         print(f"{deck.name} {' '.join(settings)}: stated {stated / 1e6:.0f} MB, used {used / 1e6:.0f} MB")

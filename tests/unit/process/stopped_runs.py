@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
+#: {"labels": ["case", "debug"]}
 """Test runs that stop early: exit code 3, a message with location and reason, complete results.
 
     stopped_runs.py --program build/release/dd3imp --work build/stopped
 """
-import argparse
 import csv
 import pathlib
 import resource
@@ -13,6 +13,8 @@ import subprocess
 import sys
 
 from surroundings import start
+
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -209,15 +211,12 @@ def initial(program, directory):
 
 def main():
     """Run all tests."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
     for test in (no_convergence, inside_out, free_sheet, led_into_tool, small_disk, full_disk, full_device,
                  no_directory, next_to_old, interrupted, initial):
-        test(options.program.resolve(), options.work.resolve() / test.__name__)
+        test(options.program, options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
+#: {}
 """Test runs whose surroundings fail: signals, a closed output, a folder removed or shared, inputs where results go.
 
     surroundings.py --program build/release/dd3imp --work build/surroundings [name of a test ...]
 """
-import argparse
 import csv
 import json
 import os
@@ -15,6 +15,8 @@ import signal
 import subprocess
 import sys
 import time
+
+from dd3.programs import parser_of_runs
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "input_files" / "bending"
@@ -266,9 +268,7 @@ TESTS = (signals, kept_signals, closed_output, killed, vanished_folder, shared_f
 
 def main():
     """Run all tests, or those named."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program dd3imp")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the results; it is emptied")
+    parser = parser_of_runs(__doc__)
     parser.add_argument("name", nargs="*", help="tests to run; all when left out")
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
@@ -276,7 +276,7 @@ def main():
     for test in TESTS:
         if options.name and test.__name__ not in options.name:
             continue
-        test(options.program.resolve(), options.work.resolve() / test.__name__)
+        test(options.program, options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}", flush=True)
 
 
