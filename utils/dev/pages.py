@@ -72,7 +72,7 @@ PAGES = {
         labelled("mixed_no_line_search", contact=MIXED, newton=OFF) + f" --problems {MIXED_PROBLEMS}",
         envelope("--compare compliant no_line_search mixed mixed_no_line_search --ablation"))),
     "answers": Page(2, "src tests/answers", (f"tests/answers/run.py{RUN}",)),
-    "bending_criteria": Page(3, f"{BENDING} tests/cases/bending_criteria",
+    "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),
     "bending_study": Page(25, f"{BENDING} input_files/bending_study", (
         "-m dd3 study run --program {program} --work {work} --cores 1",
@@ -86,11 +86,11 @@ PAGES = {
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
-    "rail": forming("rail", 30),
+    "rail": forming("rail", 15),
     "robustness": Page(10, "src/material tests/benchmark/robustness.f90 tests/benchmark/parameter_sets.f90", (
         "cmake --build {build} --target benchmark_robustness",
         "tests/benchmark/robustness.py --build {build} --write")),
-    "round_cup": forming("round_cup", 8),
+    "round_cup": forming("round_cup", 5),
     "round_cup_aa6016": forming("round_cup_aa6016", 15),
     "solvers": Page(20, "src/linalg src/system", (
         "cmake --build {build} --target benchmark_write_matrices benchmark_solvers benchmark_run_matrices",
@@ -99,7 +99,7 @@ PAGES = {
         "utils/dev/benchmark.py --program {program} --write docs/reports/speed.md input_files/bending/bending.dat "
         "input_files/bending/fine.dat",
         "tests/benchmark/speed.py --program {program} --increments 2 --write", f"tests/benchmark/peer.py{RUN}")),
-    "square_cup": forming("square_cup", 12),
+    "square_cup": forming("square_cup", 10),
 }
 
 
