@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Find METIS with integers of 4 bytes.
 #
 #   METIS::metis      target to link

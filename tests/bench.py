@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs of scripts that test: deck and command in, values of the history out, compared within tolerances."""
 import math
 import pathlib

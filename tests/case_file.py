@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the files of tests/ say about themselves, and the CTest tests that follow from it.
 
     case_file.py tests.cmake

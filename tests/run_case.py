@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run cases, compare their histories with the reference and validate their run.json.
 
     run_case.py --program build/release/dd3imp --work build/cases tests/cases/roll_up/case.dat

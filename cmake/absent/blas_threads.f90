@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> In place of `src/external/blas_threads.f90` where the BLAS is not OpenBLAS.
 module dd3_external_blas_threads
   implicit none

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> In place of `src/external/metis_library.f90` where METIS is not installed: every call fails.
 module dd3_external_metis_library
   use, intrinsic :: iso_c_binding, only : c_int, c_ptr

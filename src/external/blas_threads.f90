@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Restrict OpenBLAS to one thread, so that only the option --threads starts further ones. With
 !> another BLAS the build takes `cmake/absent/blas_threads.f90` instead.
 module dd3_external_blas_threads

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Entries of the library METIS (Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998), with integers of
 !> 4 bytes. Where it is not installed, the build takes `cmake/absent/metis_library.f90` instead.
 module dd3_external_metis_library

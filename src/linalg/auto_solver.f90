@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Automatic choice of the solver: the complete factorisation on blocks, by rows or by fronts as the
 !> counted operations say, and UMFPACK, which interchanges rows freely, where that fails. The choice
 !> depends on the matrix alone. CGS with an incomplete factorisation is not considered: on sheets

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Orderings and partitions of a matrix by METIS, where the program was built with it.
 module dd3_linalg_metis
   use, intrinsic :: iso_c_binding, only : c_int, c_null_ptr

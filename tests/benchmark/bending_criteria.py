@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the bending test with each yield criterion and make the table of docs/reports/bending_criteria.md.
 
     tests/benchmark/bending_criteria.py --program build/release/dd3imp --work build/bending_criteria --write

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make the tables of docs/reports/robustness.md from the output of benchmark_robustness.
 
     cmake --build --preset release --target benchmark_robustness

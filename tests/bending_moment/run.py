@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "bending_moment"}
 """Moment of a strip of hex8 in pure bending over the exact one: the table of the element's length in docs/manual.md.
 

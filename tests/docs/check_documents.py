@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "docs", "labels": ["docs"], "timeout": 300}
 """Check README.md, CONTRIBUTING.md and docs/.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "docs_tutorial", "labels": ["docs", "slow"], "timeout": 1800, "cost": 80}
 """Run the commands of docs/tutorial.md and compare what they print with the page.
 

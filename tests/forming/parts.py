@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_parts", "timeout": 400}
 """Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
 

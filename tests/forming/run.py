@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming", "timeout": 400}
 """Compare the results of forming in fields.vtkhdf and history.csv with closed forms.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "fuzz_check", "arguments": ["--seed", "1", "--count", "300", "--limit", "60"], "timeout": 600}
 #: {"name": "fuzz_runs", "arguments": ["--seed", "1", "--count", "30", "--runs"], "timeout": 600}
 """Run the program on mutated input files: it must answer each with an exit code and a sentence.

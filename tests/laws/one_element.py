@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "laws_one_element", "labels": ["case", "debug"],
 #:  "arguments": ["--library", "$<$<TARGET_EXISTS:dd3laws>:$<TARGET_FILE:dd3laws>>"]}
 """One element in tension, shear and cyclic loads: forces of the program, and by the library of the laws.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"labels": ["utils"], "timeout": 900}
 """Check dd3 identify and dd3 fit.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "materials", "labels": ["case", "debug"]}
 """Check the material files of input_files/materials.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"labels": ["case", "debug"]}
 """Check the special cases stated in docs/laws: both laws of a pair give the same stresses.
 

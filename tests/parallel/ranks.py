@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"labels": ["petsc"], "processors": 2, "timeout": 900, "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}"]}
 """Runs on several ranks give the history of the serial run, and end as it does.
 

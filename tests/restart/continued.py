@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "restart_continued", "arguments": ["--every", "8"], "timeout": 600}
 #: {"name": "restart_continued_often", "arguments": ["--every", "1"], "labels": ["case", "slow"],
 #:  "timeout": 3600, "cost": 240}

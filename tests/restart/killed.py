@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "restart_killed", "arguments": ["--kills", "3"]}
 #: {"name": "restart_killed_often", "arguments": ["--kills", "20", "--fields", "100"], "labels": ["case", "slow"],
 #:  "timeout": 3600, "cost": 240}

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "strip_bending"}
 """Plane-strain bending of a strip of 0.78 mm and its springback, against an integration through its thickness.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"labels": ["utils"]}
 """Run the quick cases of the bending study, gather the table and check it.
 

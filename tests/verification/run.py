@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "verification", "timeout": 600}
 #: {"name": "verification_slow", "arguments": ["--slow"], "labels": ["case", "slow"],
 #:  "timeout": 3600, "cost": 300}

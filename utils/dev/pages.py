@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make the pages of docs/reports anew, and check their stamps.
 
     utils/dev/pages.py                    all that together take less than an hour, the quick ones first

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Build the site of the documents with MkDocs, and the interface of the sources with FORD.
 
   site.py --work build/site      the pages are in build/site/site
@@ -40,6 +41,7 @@ def copy_pages(pages):
         text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
         (pages / copy).write_text(text.replace("](LICENSE)", "](LICENSE.txt)"), encoding="utf-8")
     shutil.copy(ROOT / "LICENSE", pages / "LICENSE.txt")
+    shutil.copy(ROOT / "CITATION.cff", pages)
     for page in pages.rglob("*.md"):
         text = page.read_text(encoding="utf-8")
         up = "../" * (len(page.relative_to(pages).parts) - 1)
