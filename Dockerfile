@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # dd3imp on Debian 12: the program, its utilities, examples and documents in /usr/local, the work in /work.
 #
 #   docker build --tag dd3imp .

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # dd3_build_description(<sources> LIBRARIES <name> <version>...)
 #
 # Generate the modules that say how the program was built, and store their paths in <sources>. The commit of the source

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Flags of the build types. They are the initial values of CMAKE_Fortran_FLAGS_<type>, so a user's -D has precedence.
 #
 # -fcheck=mem: lack of memory for a temporary ends the run with a message (src/app/memory.f90), not in a null pointer.

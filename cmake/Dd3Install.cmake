@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` copies beside the program: utilities, examples and documents.
 #
 #   <bindir>/dd3                   the utilities, a link to dd3.sh

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The constitutive laws as the shared library dd3laws, for C and as Abaqus' UMAT: src/library/ and what it uses. It needs
 # no other library than those of the compiler, and shows no other names than those of dd3laws.h and umat_.
 foreach(folder IN ITEMS base linalg input material laws library)

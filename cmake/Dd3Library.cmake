@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # dd3_library(<folder> [USES <folder>...] [PACKAGES <target>...] [GENERATED <file>...])
 #
 # Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only

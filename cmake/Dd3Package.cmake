@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` copies for other programs, see docs/laws_library.md. Not in a build with PETSc.
 #
 #   <libdir>/libdd3laws.so          constitutive laws for C, and UMAT: the target dd3imp::laws

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Find the required libraries, or name the package to install; and the optional ones.
 function(dd3_missing what package)
   message(FATAL_ERROR "${what} was not found. On Debian or Ubuntu: apt-get install ${package}")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Several processes (MPI) and the linear solvers of PETSc: optional.
 #
 #   petsc_base, petsc_linalg   sources of base and linalg: of src/parallel/ and src/external/, or those in their place

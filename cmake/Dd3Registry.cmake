@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # dd3_registry(<source> KIND <kind> BASE <module> ONE <singular> MANY <plural> TITLE <words>)
 #
 # Generate the registry of the laws in src/material/<kind>/ and store its path in <source>. Each line of registry.txt

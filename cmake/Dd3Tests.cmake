@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # add_pfunit_ctest(<name> TEST_SOURCES <x.pf>... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [LABELS ...]
 #                  [WORKING_DIRECTORY <dir>])
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Find the sequential double-precision library MUMPS.
 #
 #   MUMPS::dmumps        target to link

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Find UMFPACK and AMD of SuiteSparse.
 #
 #   SuiteSparse::umfpack   target to link

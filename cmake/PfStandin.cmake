@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A small stand-in for pFUnit if it is not installed: the same .pf files, the same asserts.
 #
 #   pf_preprocess   converts x.pf to x.F90

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -D SOURCE=<folder> -D WRITTEN=<file> -P commit.cmake
 #
 # Write the commit of the source into a module; the file is left alone if nothing has changed.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run one case of tests/cases/, compare its history with the reference and validate its run.json.
 
     run_case.py --program build/release/dd3imp --work build/cases tests/cases/tension

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check of the run.json of a run against its schema, its exit code and its status.csv.
 
 Without the package jsonschema the schema is not used.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The command dd3 of the Python environment that install_needed.sh makes beside this folder.
 here=$(dirname "$(realpath "$0")")
 if [ ! -x "$here/../.venv/bin/dd3" ]; then

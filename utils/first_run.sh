@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # From a clone to the first result: installs what is missing, builds, runs the bending test with and without the limit
 # on the contact forces, draws its curve, the sheet, and the size of the increments of both runs.
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what is missing to build and run dd3imp: compiler, libraries, and the Python environment .venv with
 # the utilities. Needs root only if a package is missing. Not installed: libmumps-seq-dev, the optional linear solver.
 #

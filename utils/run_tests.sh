@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what is missing, builds and runs all tests except those labelled slow; the last line is `N passed, N failed`.
 #
 #   utils/run_tests.sh          the optimised build, the debug build (bounds checks, floating-point traps) and, where

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> In place of `src/external/mumps_library.f90` where MUMPS is not installed: every job fails.
 module dd3_external_mumps_library
   use dd3_base_kinds, only : i8, wp

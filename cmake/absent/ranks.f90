@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> In place of `src/parallel/ranks.f90` in a build without MPI: a single rank.
 submodule (dd3_base_ranks) dd3_absent_ranks
   implicit none

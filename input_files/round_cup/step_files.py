@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Write punch.step, die.step and holder.step, the tools of the cylindrical cup as CAD surfaces.
 
     step_files.py build/round_cup

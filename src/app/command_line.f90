@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Command line: the options and their errors.
 module dd3_app_command_line
   use dd3_base_error, only : error_t, fatal_error

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sheet metal forming with rigid tools: read a keyword file, run the process that it describes and
 !> write the results.
 program dd3imp

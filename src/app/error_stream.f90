@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Lines on the error stream, which may be closed.
 module dd3_app_error_stream
   use, intrinsic :: iso_fortran_env, only : error_unit

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Exit codes of the program.
 module dd3_app_exit_codes
   implicit none

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Answers to `--help` and `--version`.
 module dd3_app_help
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit

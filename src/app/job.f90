@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> One job from the options to the exit code.
 module dd3_app_job
   use, intrinsic :: iso_fortran_env, only : output_unit

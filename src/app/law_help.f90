@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Help on the laws and their reference in the manual, from the registries.
 module dd3_app_law_help
   use dd3_base_text, only : newline, same_name

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Ends of the program that no caller can handle, above all for lack of memory: a sentence on the
 !> error stream and in job.log, a run.json that was composed before, and exit code 3.
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> OpenBLAS starts its threads when it is loaded, each with 128 MB of address space. Under a limit
 !> of the address space they fail, and the program waits for them at its end for ever. There the
 !> program starts itself again with a single one.

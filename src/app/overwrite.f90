@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check that no result would be written over a file that the job reads.
 module dd3_app_overwrite
   use dd3_base_error, only : error_list_t, location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Help on the elements and the linear solvers, printed from their registries.
 module dd3_app_registry_help
   use dd3_base_error, only : error_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Run of a job whose input has no errors, with its log and run.json.
 module dd3_app_run
   use, intrinsic :: iso_c_binding, only : c_int

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Warnings of unusual input: magnitudes most often caused by a wrong unit or a typing error,
 !> settings and meshes that make results inaccurate, loads on held directions, tools that probably
 !> are not as meant. They are not errors: a unit cube of a model material is a valid case.

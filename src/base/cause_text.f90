@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Texts of the causes of failures, for the log and status.csv.
 module dd3_base_cause_text
   use dd3_base_text, only : to_text

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Wall-clock and processor time, and the time spent in the sections of a run.
 module dd3_base_clock
   use, intrinsic :: iso_c_binding, only : c_int, c_long

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check sum of data, to compare two sets of data.
 !> Source: CRC-32 of ISO 3309, reflected polynomial EDB88320.
 module dd3_base_digest

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Surroundings of the program: time, machine, working directory.
 module dd3_base_environment
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char, c_ptr, c_associated, c_size_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Set-up errors as values: passed to the caller, collected in a list, and reported together.
 module dd3_base_error
   use dd3_base_kinds, only : i8, wp

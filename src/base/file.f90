@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Text files with checked writes. The flush of the Fortran library does not report a full disk, so
 !> these files use the POSIX calls creat, write, ftruncate and close. After a failed write the file
 !> is truncated to its last complete line. A file may reserve disk space for its buffer: a full disk

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Operations on whole files: read, replace by another, synchronise with the disk.
 module dd3_base_file_system
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Identity of files, whatever their names: device and inode, by statx (Linux). Symbolic links are
 !> followed.
 module dd3_base_identity

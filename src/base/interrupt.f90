@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Interruption of a run: from the keyboard (SIGINT), by the system (SIGTERM), by the end of the
 !> session (SIGHUP) or because nobody reads the output any more (SIGPIPE). The run ends after the
 !> current iteration with the results of all accepted increments. A second signal of the same kind

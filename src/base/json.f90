@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Writer of JSON (RFC 8259): objects, arrays, texts, numbers, logicals, null. A number has as many
 !> digits as give the same number when it is read; one that is not finite is null. Bytes that are
 !> not UTF-8 are replaced.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Kinds and mathematical constants.
 module dd3_base_kinds
   use, intrinsic :: iso_fortran_env, only : real64, int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Files that only one program writes: opened without being truncated, locked by flock, then
 !> truncated. The system releases the lock when the program ends, however it ends. File systems
 !> without locks give the file without one.

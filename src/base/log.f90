@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Log of a run, on the screen and in job.log. On a terminal, a status line is rewritten in place;
 !> it is cleared before anything else is written. Of several ranks only the first writes.
 module dd3_base_log

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Memory of the program and of the machine (Linux).
 module dd3_base_machine_memory
   use dd3_base_kinds, only : wp

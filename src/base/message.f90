@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Messages of a run: warnings and notes with a stable code, their place in the input and in the
 !> process.
 module dd3_base_message

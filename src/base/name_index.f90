@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Index of names: finds the number of a name in a time that does not depend on how many there are.
 !> Hash table with open addressing (Knuth, The Art of Computer Programming, vol. 3, 6.4); the hash
 !> is FNV-1a (Fowler, Noll, Vo), reduced to 31 bits.

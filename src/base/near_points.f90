@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Pairs of points at nearly the same place, by a sweep along a direction in which few points have
 !> the same abscissa.
 module dd3_base_near_points

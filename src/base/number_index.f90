@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Index of numbers: finds the position of a label in a time that does not depend on how many there
 !> are. Hash table with open addressing (Knuth, The Art of Computer Programming, vol. 3, 6.4) and
 !> multiplicative hashing.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Row of a keyword table. The parser, the checks, the echo, `--help` and the manual derive from it.
 module dd3_base_parameter
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Ranks: processes, on one or several machines, that run one job together (MPI). Every rank runs
 !> the whole program on the same input. Work that is divided among them is exchanged here, so that
 !> all ranks decide on the same data. Only rank 0 writes. The procedures must be called by all ranks

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sorting by merging (Knuth, The Art of Computer Programming, vol. 3, 5.2.4): stable, n log n.
 module dd3_base_sorting
   use dd3_base_kinds, only : wp

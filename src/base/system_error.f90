@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The last error of a system call: its number and its message.
 module dd3_base_system_error
   use, intrinsic :: iso_c_binding, only : c_associated, c_f_pointer, c_char, c_int, c_ptr, c_size_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Text utilities.
 module dd3_base_text
   use dd3_base_kinds, only : wp, i8

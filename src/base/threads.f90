@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Threads (OpenMP) of the loops whose passes do not depend on one another. Every such loop asks
 !> here how many threads to take; its results must be the same bits for any number.
 module dd3_base_threads

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Verdict of a numerical step. Numerics neither stop nor print; they return one of these, with the
 !> cause of a failure and its data. `dd3_base_cause_text` makes the text.
 module dd3_base_verdict

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Bernstein polynomials, by the triangular recurrence
 !> B_i^k = (1-t) B_i^(k-1) + t B_(i-1)^(k-1), which adds only positive numbers for t from 0 to 1 and
 !> is stable for any degree. Derivatives are differences of the polynomials of the next lower

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Polynomial and rational Bézier patches of any degree, and their derivatives.
 !>
 !> S(u,v) = sum B_i^m(u) B_j^n(v) w_ij P_ij / sum B_i^m(u) B_j^n(v) w_ij. Rational patches are

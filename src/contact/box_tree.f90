@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Tree of the bounding boxes of patches (bounding volume hierarchy). The boxes are halved at the
 !> median of their centres along the longest side of their common box until few are left. The halves
 !> of a node are side by side, followed by all nodes below the first half, then those below the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Closest point of a tool's surface to a node.
 !>
 !> The global search runs once per increment, and again for a node that has moved far: it projects

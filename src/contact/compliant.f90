@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact of a point with a rigid tool in the compliant formulation. The tool's surface carries a
 !> layer of height h, in which the pressure p depends on the gap g that is left of it:
 !>     p = p_0 (h/g - 2 + g/h) for g < h,    p = 0 for g >= h.

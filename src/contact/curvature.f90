@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Curvature of a surface.
 !> Source: Farin, Curves and Surfaces for CAGD, 5th ed. (2002), chapter 19 (fundamental forms).
 module dd3_contact_curvature

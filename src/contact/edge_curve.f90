@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Open edges of a surface as curves: their points, bounding boxes and the closest point to a point.
 module dd3_contact_edge_curve
   use dd3_base_kinds, only : wp

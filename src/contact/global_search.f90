@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Closest point of a whole surface to a node. A tree of bounding boxes gives the patches that are
 !> near enough; of equal points that of the first patch is kept.
 module dd3_contact_global_search

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Projection of a node on a patch without derivatives, used if Newton's method fails: the best
 !> point of a fine grid, improved by golden sections in u and v in turn.
 !> Source: Kiefer, Proc. Amer. Math. Soc. 4 (1953) 502-506.

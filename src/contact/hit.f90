@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Gap, normal and gradient of the normal at the closest point.
 !>
 !> Inside a patch, with a_ab = y_,a . y_,b, b_ab = y_,ab . n and A = a - d b:

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Joints of a tool's surface: how many edges are joined, and where they are not although they
 !> nearly coincide. Open edges are compared pair by pair where their bounding boxes are near, by a
 !> sweep along the longest axis of the surface.

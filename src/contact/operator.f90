@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact of a node with a rigid tool in the mixed formulation: the augmented Lagrangian operators
 !> with Coulomb friction and their exact linearisation, including the terms of the tool's curvature.
 !> The compliant formulation shares Coulomb's law.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Oriented bounding boxes of patches: along the mean directions of u and v and their normal. On an
 !> inclined patch they are much smaller than the boxes along the coordinate axes.
 !> Source: Gottschalk, Lin and Manocha, SIGGRAPH (1996) 171-180.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Placement of a tool: the rigid transformation x = R X + t from the frame of its surface to the
 !> global one. Tools do not turn yet: R is the identity.
 module dd3_contact_placement

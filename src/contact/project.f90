@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Closest-point projection of a node on a patch: Newton's method on half the squared distance,
 !> within bounds of the parameters.
 !>

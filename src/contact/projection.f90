@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The projection of a node on a patch: the closest point and what is known there.
 module dd3_contact_projection
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Distance between the surfaces of two tools, and the displacement at which it has a given value.
 !> The distance is the smallest one from the sample points of the patches of each tool to the other
 !> surface: exact for plane faces.

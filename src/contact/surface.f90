@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The surface of a tool: its patches, their bounding box and their neighbours across edges.
 module dd3_contact_surface
   use dd3_base_kinds, only : wp

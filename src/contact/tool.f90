@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A rigid tool: its surface, friction and initial position, and the closest point to a point of the
 !> sheet where it is placed.
 module dd3_contact_tool

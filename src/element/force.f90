@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Internal forces of an element: f_a = sum w j (s G_a + pi g_a), s and pi the deviator and the mean
 !> of the Cauchy stress, g_a the group's mean gradient; sum w j T G_a for points without a group.
 !> With a projection of the dilatation the sum of pi g_a is that of Pi_k g_a,k over its groups.

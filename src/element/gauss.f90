@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Gauss-Legendre quadrature on -1 ... 1. Abscissae are the zeros of the Legendre polynomial, found
 !> by Newton's method (Abramowitz & Stegun 1964, 25.4.29).
 module dd3_element_gauss

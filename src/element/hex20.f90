@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Hexahedron with 20 nodes, the serendipity functions of Zienkiewicz & Taylor (The Finite Element
 !> Method, 1989, chap. 7), with the points and the selective reduced integration of hex27.
 module dd3_element_hex20

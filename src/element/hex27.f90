@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Hexahedron with 27 nodes, products of quadratic Lagrange polynomials (Zienkiewicz & Taylor, The
 !> Finite Element Method, 1989, chap. 7), and selective reduced integration: 3 x 3 x 3 Gauss points,
 !> the dilatation of 2 x 2 x 2 points (Hughes 1980, B-bar). It is projected on the trilinear

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Hexahedron with 8 nodes, 2 x 2 x 2 Gauss points and selective reduced integration: all points
 !> share one mean dilatation (Nagtegaal, Parks & Rice 1974; Hughes 1980, the mean-dilatation form of
 !> B-bar).

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Kinematics of an element: gradients in the trial configuration, their means over the groups that
 !> share a mean dilatation, volumes, and the deformation gradient of the increment. Mean dilatation
 !> after Nagtegaal, Parks & Rice (1974): det F is replaced by J_0 = v/V of the group, with the mean

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Logarithmic strain increment E = ln U at the points, from the polar decomposition F = R U, in the
 !> material frame, with the volume change replaced by the mean one. The material axes rotate with R,
 !> so tensors stored in them need no rotation (Hughes 1984; Weber & Anand 1990).

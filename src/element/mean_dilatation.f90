@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The formulation of elements with a mean dilatation, or none: kernels in the trial configuration
 !> that work from the element's table.
 module dd3_element_mean_dilatation

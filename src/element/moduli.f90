@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Exact tangent moduli of the incremental update: dT = c : d + w T - T w for any change of shape
 !> d + w, d symmetric, w skew.
 !>

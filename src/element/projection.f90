@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Kinematics of elements whose dilatation is projected on functions N_k of the natural coordinates
 !> (Hughes 1980, B-bar; Nagtegaal, Parks & Rice 1974). With a_pk = N_k at point p, the groups have
 !> the volumes v_k = sum_p a_pk w j, V_k when committed, and the dilatation of the increment at a

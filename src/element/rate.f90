@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> First-order strain and rotation increments of a trial displacement at the points, for the limits
 !> on the increment.
 module dd3_element_rate

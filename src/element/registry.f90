@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The registry of elements: one row per element, with its name and constructor. An element without
 !> kernels of its own gets those of the mean dilatation.
 module dd3_element_registry

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Deformation of the solid-shell at its integration points.
 !>
 !> With the committed material axes Q and the contravariant base G^i of the committed configuration,

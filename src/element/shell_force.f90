@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Internal forces of the solid-shell. S = J U^-1 T U^-1 is the second Piola-Kirchhoff stress on the
 !> committed configuration, T the Cauchy stress before the rotation of the increment, so the forces
 !>   f = sum w j (de/dx) : S

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Modes of the solid-shell's enhanced strains, with parameters that are internal to the element and
 !> to the increment.
 !>

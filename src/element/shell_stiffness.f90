@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Exact derivative of the solid-shell's forces, with the enhanced parameters condensed.
 !>
 !> With dT = c : d + w T - T w (dd3_element_moduli) the second Piola-Kirchhoff stress changes by

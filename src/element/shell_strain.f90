@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Natural strains of the solid-shell: the covariant Green-Lagrange strain of the increment,
 !>   e_ij = (G_i . u,j + G_j . u,i + u,i . u,j)/2,
 !> evaluated from the displacement increment u, and its derivative in the nodal positions. In a

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Workspace of the solid-shell's kernels, and what they share: the numbering of the generalised
 !> strains and of the points.
 !>

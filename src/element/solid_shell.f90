@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Solid-shell: 8 nodes, 2 x 2 columns of integration points through the thickness, assumed natural
 !> transverse shear and thickness strain, enhanced thickness strain, mid-surface and directors that
 !> are quadratic along the edges. For small angles between its sections one layer bends exactly

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Exact derivative of the internal forces with respect to the current positions.
 !>
 !> With dl = du_b (x) G_b, d = sym and w = skw of dl plus the mean-dilatation correction, the stress

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The table that describes an element type: nodes, faces, integration points, shape functions,
 !> which points share a mean dilatation, and the kernels of its formulation. Those of the mean
 !> dilatation (mean_dilatation.f90) work from the table for any number of nodes, points and groups;

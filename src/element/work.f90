@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The workspace of the element kernels, one per thread, reused for every element.
 module dd3_element_work
   use dd3_base_kinds, only : wp

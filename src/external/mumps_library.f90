@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Entry and data structure of the library MUMPS, as its header declares them. Where the library is
 !> not installed, the build takes `cmake/absent/mumps_library.f90` instead.
 module dd3_external_mumps_library

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Procedures of the library PETSc (C interface, integers of 4 bytes). Objects are pointers; all
 !> indices are 0-based; the functions return an error code, 0 for none.
 module dd3_external_petsc

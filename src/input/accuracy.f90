@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Limits of the predictor by the accuracy that the user states. Their errors are those of
 !> docs/reports/increments.md.
 module dd3_input_accuracy

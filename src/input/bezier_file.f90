@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reader of `.bez` files: the Bézier patches of a tool surface as plain data.
 !>
 !> Each patch begins with a line `patch m n` giving the degrees along u and v, followed by

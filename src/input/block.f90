@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The words of the input, grouped into blocks: `*BLOCK name`, followed by lines
 !> `key = value value ...`. Every word keeps its location.
 module dd3_input_block

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The case: the checked, plain description of a job. Units are those of the input file (mm, N, MPa,
 !> degrees), names are in lower case. `source` is the block a part was read from:
 !> `part%source%at("key")` is the place to show in an error. Defaults stand in the keyword table

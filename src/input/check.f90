@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of the blocks of an input against the keyword table; fills in the defaults.
 module dd3_input_check
   use dd3_base_kinds, only : wp

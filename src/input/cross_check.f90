@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of relations between the values of the case. Blocks with earlier errors are skipped.
 module dd3_input_cross_check
   use dd3_base_kinds, only : wp

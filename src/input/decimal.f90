@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fast reading of numbers from a line, for large files: plain decimals such as 12, -0.5 or 1.25.
 !>
 !> A number m/10^k of at most 18 digits is the quotient of integers of 128 bits: m is shifted so

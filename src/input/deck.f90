@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reader of the input text: comments, continuation lines, included files, parameters, blocks.
 module dd3_input_deck
   use dd3_base_error, only : error_t, error_list_t, location_t

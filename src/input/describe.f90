@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Description of the values that a keyword's row expects, and splitting of its word lists.
 module dd3_input_describe
   use dd3_base_parameter, only : parameter_t, range_text, kind_real, kind_integer, kind_logical, &

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of relations between the values of the draw-beads.
 module dd3_input_drawbead_check
   use dd3_base_error, only : error_list_t

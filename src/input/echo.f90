@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The checked input as text, with all defaults filled in and marked, for the log and `--check`.
 module dd3_input_echo
   use dd3_base_kinds, only : i8

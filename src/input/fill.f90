@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fills the case from the checked blocks.
 module dd3_input_fill
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fills the blank, the mesh and the node sets of the case.
 module dd3_input_fill_blank
   use dd3_base_kinds, only : wp

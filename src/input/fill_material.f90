@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fills the materials of the case and their laws.
 module dd3_input_fill_material
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fills the phases of the case, and the settings that a phase may change.
 module dd3_input_fill_phase
   use dd3_base_kinds, only : wp

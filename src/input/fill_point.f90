@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fills the single-point runs of the case.
 module dd3_input_fill_point
   use dd3_base_kinds, only : wp, pi

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of values that have a form of their own, given by `form` in the keyword's row.
 module dd3_input_form_check
   use dd3_base_kinds, only : wp

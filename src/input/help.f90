@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Help on blocks and keys, and the manual's keyword reference, from the keyword table.
 module dd3_input_help
   use dd3_base_kinds, only : i8

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The keys of every block of the input, one row each.
 module dd3_input_keys
   use dd3_base_kinds, only : wp

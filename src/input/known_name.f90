@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of a name in the input against the names in a registry.
 module dd3_input_known_name
   use dd3_base_error, only : as_written, error_list_t, location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of a law as written in the input against the registry's names and parameters.
 module dd3_input_law
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Outline of a law as written: a name, then `key = value` pairs or value pairs `p:Y`. The names and
 !> values themselves are checked against the law's table, see dd3_input_law.
 module dd3_input_law_outline

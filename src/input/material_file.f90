@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A single material from a file or a text: its block *MATERIAL, read and checked as in a job. Other
 !> blocks are skipped, so that the file may be a whole job; *PARAMETER and *INCLUDE take effect.
 module dd3_input_material_file

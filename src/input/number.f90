@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Parser of numbers as in Fortran or C: 12, -1.5, .5, 1.e-3, 1d3, 2.1E+5.
 module dd3_input_number
   use, intrinsic :: iso_c_binding, only : c_char, c_double, c_null_char, c_null_ptr, c_ptr

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of the numbers in a value: type, range, how many.
 module dd3_input_number_check
   use dd3_base_kinds, only : wp

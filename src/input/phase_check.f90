@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of the phases: one action for each tool, consistent with the phases before.
 module dd3_input_phase_check
   use dd3_base_kinds, only : wp

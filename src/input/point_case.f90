@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of the case: runs of single material points.
 module dd3_input_point_case
   use dd3_base_error, only : location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of the single-point runs: the prescribed quantities, and that no deformation gradient
 !> inverts the material on its path.
 module dd3_input_point_check

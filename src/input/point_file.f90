@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reader of files of points in plan: x and y in each line; # or ! begins a comment.
 module dd3_input_point_file
   use dd3_base_kinds, only : wp

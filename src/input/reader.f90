@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> From the input file to the case: read, check against the keyword table, fill, cross-check.
 module dd3_input_reader
   use dd3_base_error, only : error_list_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check that the sets, tools and materials named in the input exist.
 module dd3_input_reference
   use dd3_base_error, only : as_written, error_list_t

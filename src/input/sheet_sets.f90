@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Names of the node sets that the program makes for a sheet, and portions of a round blank.
 module dd3_input_sheet_sets
   use dd3_input_block, only : deck_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Parameters of the input: `name = value` in `*PARAMETER`, used as `${name}` in later values.
 module dd3_input_substitution
   use dd3_base_error, only : as_written, error_list_t, location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The keyword table: one row for every block, with the rows of its keys. The parser, the checks,
 !> the echo, `--help` and the manual's reference derive from it.
 module dd3_input_table

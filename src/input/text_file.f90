@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Text files as lists of lines: any line end, any line length, no control characters.
 module dd3_input_text_file
   use dd3_base_kinds, only : i8

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Splits a line of the input into words with their locations.
 module dd3_input_token
   use dd3_base_error, only : location_t, error_list_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check of a key's value against its row: form, type, range, known words.
 module dd3_input_value
   use dd3_base_error, only : error_list_t

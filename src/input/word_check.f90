@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of the words in a value: on and off, names, options, texts.
 module dd3_input_word_check
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A law as written in the input, checked against the registries, with the location of every
 !> problem.
 module dd3_laws_choice

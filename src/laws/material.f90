@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A material from its specification in the input.
 module dd3_laws_material
   use dd3_base_digest, only : digest_t

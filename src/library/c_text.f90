@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Texts of C.
 module dd3_library_c_text
   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_null_char, c_ptr, &

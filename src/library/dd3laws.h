@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The constitutive laws of dd3imp for C, and as Abaqus' user subroutine UMAT (umat.c).
  *
  * A material is made from the lines of a block *MATERIAL of dd3imp's input, so that each yield criterion, hardening

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The constitutive laws for C, see dd3laws.h. A handle is the address of a `law_material_t`, which
 !> does not change after it was made: any number of threads may use it.
 module dd3_library_interface

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A material of the library: its laws, its axes and the names of its internal variables.
 module dd3_library_law_material
   use dd3_base_kinds, only : wp

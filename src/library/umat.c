@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Abaqus' user subroutine UMAT by the constitutive laws, for Abaqus/Standard, CalculiX and codes that call it.
  *
  * The material is read from the file that the environment variable DD3_MATERIALS names, dd3_materials.dat by default.

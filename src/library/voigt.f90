@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Vectors of Abaqus' order, 11 22 33 12 13 23 with engineering shear strains, and Kelvin vectors.
 module dd3_library_voigt
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Automatic choice of the solver.
 !>
 !> The set-up counts operations. If a complete factorisation on blocks costs no more than an

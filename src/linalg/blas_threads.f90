@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Restrict OpenBLAS to one thread, so that only the option --threads starts further ones. The call
 !> is looked up by name in the running program; no-op with any other BLAS.
 module dd3_linalg_blas_threads

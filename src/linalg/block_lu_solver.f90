@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Direct solver: complete LU factorisation on 3x3 blocks, by rows where the numbering gives a
 !> narrow band and by the multifrontal method elsewhere, refined by conjugate gradients squared.
 module dd3_linalg_block_lu_solver

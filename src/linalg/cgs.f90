@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Conjugate gradients squared (Sonneveld 1989), right-preconditioned, so that the residual is the
 !> true one.
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Iterative solver: conjugate gradients squared, preconditioned by ILU(k).
 module dd3_linalg_cgs_solver
   use dd3_base_kinds, only : wp

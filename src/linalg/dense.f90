@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Interfaces of the procedures of BLAS and LAPACK that the factorisation of dense fronts uses.
 module dd3_linalg_dense
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Innermost kernel of the incomplete factorisation, in a file of its own so that it is not inlined:
 !> as dummy arguments its arrays cannot overlap, so the loop vectorises without run-time tests.
 module dd3_linalg_elimination

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sparsity pattern of an incomplete LU factorisation by level of fill (Watts 1981; Saad, Iterative
 !> Methods for Sparse Linear Systems, 2nd ed. 2003, section 10.3.3): entries of the matrix have
 !> level 0, fill-in at (i,j) through row k has level lev(i,k) + lev(k,j) + 1, the least over all k

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Assembly of a front, a dense matrix of `p` pivots and `u` rows of border in three parts: the
 !> columns of the pivots `left(p + u, p)`, the rows of the pivots in the other columns
 !> `upper(p, u)`, and `rest(u, u)`.

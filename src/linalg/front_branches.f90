@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Branches of the tree of fronts for the threads, and the workspace of a branch. A branch is a
 !> front with all that comes before it in the tree, a sequence in postorder; branches do not depend
 !> on one another. The fronts that are in no branch form the trunk.

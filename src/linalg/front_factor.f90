@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Elimination of the pivots of a front, see dd3_linalg_front_assembly for its parts. Rows and
 !> columns are divided into blocks, for threads or not, that depend on the size of the front only:
 !> the results are the same for any number of threads.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Symbolic factorisation for the multifrontal method: the tree of the fronts of a complete LU
 !> factorisation with a symmetric pattern.
 !>

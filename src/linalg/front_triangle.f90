@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Division of rectangular blocks by triangular factors, by halves, so that nearly all operations are
 !> matrix products: the triangular solves of BLAS take several times as long. The diagonal blocks are
 !> inverted beforehand.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Incomplete LU factorisation by level of fill, ILU(k), on 3x3 blocks.
 !>
 !> The numeric factorisation goes row by row (IKJ; Saad, Iterative Methods for Sparse Linear

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Kernels of the numeric ILU factorisation, one block row at a time; see `ilu_t` for the arrays.
 module dd3_linalg_ilu_factor
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sparse square matrix of 3x3 blocks, stored by block rows with sorted columns.
 module dd3_linalg_matrix
   use dd3_base_kinds, only : wp

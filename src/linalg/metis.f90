@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Ordering by nested dissection (Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998; METIS 5), and
 !> partition of the graph of a matrix. The library is part of the program where SuiteSparse's
 !> CHOLMOD, which UMFPACK uses, was built with it: its procedures are looked up by name in the

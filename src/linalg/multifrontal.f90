@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Complete LU factorisation by the multifrontal method (Duff and Reid, ACM Trans. Math. Softw. 9,
 !> 1983), on dense fronts by BLAS and LAPACK. Rows are interchanged among the pivots of a front
 !> only, so that the pattern is fixed; a nearly singular block of pivots is shifted, and the

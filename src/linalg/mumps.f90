@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Complete LU factorisation by the library MUMPS (Amestoy, Duff, L'Excellent and Koster, SIAM J.
 !> Matrix Anal. Appl. 23, 2001): multifrontal, with partial pivoting in the fronts. It is analysed
 !> once for a pattern, in the ordering of the program's own factorisation by fronts.

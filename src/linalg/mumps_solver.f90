@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Direct solver: complete LU factorisation by MUMPS, refined by conjugate gradients squared.
 module dd3_linalg_mumps_solver
   use dd3_base_kinds, only : wp

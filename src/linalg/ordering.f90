@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Orderings of the block rows for the incomplete factorisation: none, approximate minimum degree
 !> (Amestoy, Davis and Duff 1996; SuiteSparse), reverse Cuthill-McKee (Cuthill and McKee 1969; start
 !> node after George and Liu 1979), or the one of these that suits the matrix.

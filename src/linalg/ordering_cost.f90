@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Cost of a complete factorisation of a matrix with a symmetric pattern for an ordering of its
 !> rows, without the pattern of the factors: the rows of L are the paths in the elimination tree
 !> from the entries of a row to it (Liu, SIAM J. Matrix Anal. Appl. 11, 1990).

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Partition of a matrix among the ranks: each holds some block rows. The rows of a rank are
 !> connected, with few couplings to those of the others (multilevel k-way partitioning, Karypis and
 !> Kumar, J. Parallel Distrib. Comput. 48, 1998; METIS 5).

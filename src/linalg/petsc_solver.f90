@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Solvers of the library PETSc, which work on matrices distributed among ranks:
 !> MUMPS factorises completely; BiCGSTAB iterates (van der Vorst, SIAM J. Sci. Stat. Comput. 13,
 !> 1992), preconditioned by the additive Schwarz method with ILU(k) on the rows of each rank.

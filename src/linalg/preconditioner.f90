@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Abstract preconditioner: set up once per sparsity pattern, built once per matrix, then applied.
 module dd3_linalg_preconditioner
   use dd3_base_kinds, only : wp

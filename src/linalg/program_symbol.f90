@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Procedures of libraries that may be part of the running program, looked up by name.
 module dd3_linalg_program_symbol
   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_null_char, c_null_ptr, c_ptr

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Dot product and residual of a linear system.
 module dd3_linalg_residual
   use dd3_base_kinds, only : wp

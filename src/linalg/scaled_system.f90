@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Renumbered, row-scaled copy of a linear system. Each row is divided by the sum of its absolute
 !> values, so that equilibrium, contact and displacement rows have the same weight.
 module dd3_linalg_scaled_system

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Abstract linear solver: set up once per sparsity pattern, factorised once per matrix, solved once
 !> per right-hand side.
 !>

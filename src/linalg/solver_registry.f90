@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Registry of the linear solvers.
 module dd3_linalg_solver_registry
   use dd3_base_error, only : error_t, fatal_error

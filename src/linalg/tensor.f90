@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Algebra of 3-vectors, 3x3 tensors, Kelvin 6-vectors and small dense systems.
 !>
 !> Kelvin vectors (Thomson 1856; Mandel 1965; Mehrabadi and Cowin 1990, eq. 8) hold a symmetric

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Triangular solves with block factors.
 module dd3_linalg_triangular_solve
   use dd3_base_kinds, only : wp

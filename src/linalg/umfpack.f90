@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sparse LU factors with pivoting by the unsymmetric multifrontal method (Davis 2004, UMFPACK 5).
 !> The symbolic factorisation depends on the pattern alone, so that results do not depend on which
 !> matrix comes first; solutions are refined iteratively.

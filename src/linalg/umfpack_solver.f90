@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Direct solver: sparse LU factorisation by UMFPACK.
 module dd3_linalg_umfpack_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite

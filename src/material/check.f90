@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Common access to the three registries: the descriptions of the laws and the check of the values
 !> given to one.
 module dd3_material_check

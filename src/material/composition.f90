@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The laws of a material: elasticity, a criterion, a hardening law and any number of back-stresses,
 !> which add up. The internal variables of a point are the equivalent plastic strain, six components
 !> of each back-stress, then those of the hardening law.

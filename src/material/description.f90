@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Description of a law and of its internal variables, and the problems found in the values given to
 !> it. The look-up by name, the checks, `--help`, the manual and the generic tests derive from the
 !> description.

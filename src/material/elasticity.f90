@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Isotropic linear elasticity (Hooke), in Kelvin vectors.
 module dd3_material_elasticity
   use dd3_base_kinds, only : wp

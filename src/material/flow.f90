@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Results of criterion, hardening law and back-stress laws at one stress, for the return mapping.
 !> Tensors are Kelvin vectors and matrices in the orthotropy axes.
 module dd3_material_flow

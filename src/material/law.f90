@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Base of the yield criteria, hardening laws and back-stress laws: description, parameters, checks.
 module dd3_material_law
   use dd3_base_parameter, only : law_value_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A material: elasticity, yield criterion, hardening law and back-stresses, evaluated at a point.
 !> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> A single material point without a mesh: each component of strain or stress is driven to a target,
 !> in axes that need not be those of the material, by Newton's method on the consistent tangent. A
 !> path that fails in one step is divided into halves, quarters and so on.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> One step of the stress integration: elastic, or a return to the yield surface by backward Euler,
 !> for any criterion, hardening law and back-stresses. Unknowns are the effective stress xi = T - X
 !> and the plastic increment dp:

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Integration of a point's stress and internal variables over a strain increment in equal substeps,
 !> with the derivative of the final stress in the whole strain.
 module dd3_material_update

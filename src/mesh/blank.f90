@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Mesh generator of a structured blank: a box of hexahedra, graded and skewed. The nodes lie on a
 !> grid of half an element's interval, of which the element uses a part: the corners only, or also
 !> the middle of edges, of faces and of the element.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Builds the mesh of a case: nodes, elements and node sets; checks the prescribed displacements and
 !> the directions that are free again.
 module dd3_mesh_build

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Topology of a mesh of hexahedra: faces, neighbours, and the shape of the elements at their
 !> corners. The corners are numbered as in VTK, bottom face first.
 module dd3_mesh_hexahedra

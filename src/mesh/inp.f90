@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The content of an `.inp` file as plain data: nodes and elements by label, sets, and the line of
 !> each part for the messages.
 module dd3_mesh_inp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of the elements of an `.inp` file: order of the nodes, shape, nodes at the same place,
 !> neighbours. Every error names the element and shows its line.
 module dd3_mesh_inp_check

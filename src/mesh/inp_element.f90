@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Element types of `.inp` files, with the order of their nodes.
 !> Source: Abaqus Analysis User's Guide, "Three-dimensional solid element library".
 module dd3_mesh_inp_element

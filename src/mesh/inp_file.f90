@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reader of a strict subset of the `.inp` files of Abaqus and CalculiX: *HEADING, *NODE, *ELEMENT
 !> of one type, *NSET and *ELSET. Anything else is refused by name and line. The result is the file
 !> as plain data, with nodes and elements by label; all errors of a file are reported.

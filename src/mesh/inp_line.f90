@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Lines of an `.inp` file: fields separated by commas, keywords with parameters. Fields keep their
 !> columns, and numbers are parsed without copies, as a mesh has millions of them.
 module dd3_mesh_inp_line

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Mesh from an `.inp` file: labels become numbers, elements are turned so that their first face is
 !> the bottom of the sheet, sets and materials are assigned.
 module dd3_mesh_inp_mesh

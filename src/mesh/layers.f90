@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Thickness direction of the elements of a sheet. A mesh of hexahedra is extruded in a direction if
 !> that direction can be carried from element to element through all faces without contradiction;
 !> a sheet is thin in one such direction.

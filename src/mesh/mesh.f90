@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The mesh: nodes, elements, node sets.
 module dd3_mesh_mesh
   use dd3_base_kinds, only : wp

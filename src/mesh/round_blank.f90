@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Mesh generator of a round blank: an O-grid. Each quarter has a core with three edges, two along
 !> the axes and one bulged, and a ring from it to the rim. The bulge makes three equal angles of 120
 !> degrees where core and ring meet on the diagonal; a square core would leave 135 degrees to the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Selection of nodes: in a plane, in a box, by number, nearest to a point.
 module dd3_mesh_select
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Errors in the input, by kind.
 module dd3_message_input_errors
   use dd3_message_row, only : message_row_t, row

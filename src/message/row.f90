@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Entry of the list of messages: code, title, cause, remedy.
 module dd3_message_row
   implicit none

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> What stops a run; docs/status.md has more on increments that fail.
 module dd3_message_stops
   use dd3_message_row, only : message_row_t, row

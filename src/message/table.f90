@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The list of all messages with a code, for `--help` and docs/messages.md.
 module dd3_message_table
   use dd3_base_text, only : newline, same_name

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Warnings and notes.
 module dd3_message_warnings
   use dd3_message_row, only : message_row_t, row

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Points at which draw-beads act on the sheet: integration points of the parts of their lines that
 !> lie on its faces, seen along z. A bead acts with half its force on the lower faces and with half
 !> on the upper ones, so that it does not bend the sheet. Faces with 9 nodes count as four

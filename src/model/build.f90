@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Build of the model from the checked case: names become numbers, and what needs the mesh or the
 !> tools is checked. All errors of the input are collected.
 module dd3_model_build

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact layer of the tools in the compliant formulation, and penalty in the mixed one. A tool may
 !> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
 !> the layer begins behind its place by what is missing, and advances to it over the first part of

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact point: a point of the sheet's surface at which the law of contact holds. It is a node, or
 !> lies on a face or an edge between nodes, on the surface
 !>     x = sum_a N_a x_a + sum_a (v_a.n_a) n_a,    v_a = sum_b s_ab x_b,

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact points of the sheet. In the mixed formulation they are the nodes of the contact faces; in
 !> the compliant one each face is divided, and the corners of the parts are the points, those on an
 !> edge common to its faces. The area of a point is the integral of the hat function of its part

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact between the candidates and the tools: closest points and, in a committed state, gap to the
 !> nearest tool and pressure, which is normal force over area.
 module dd3_model_contact_results

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Prescribed displacements of the phases. A direction that a phase displaces stays prescribed in
 !> later phases, with no further displacement, until one frees it.
 module dd3_model_displacements

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Draw-bead: a line in plan that restrains the sheet which slides across it, without the shape of
 !> the bead. The restraining force per length follows a regularised friction law: it grows with an
 !> elastic slip up to a limit, which depends on the path that the sheet has slid so far.

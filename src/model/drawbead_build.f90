@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Build of the draw-beads from the case: their lines, laws and the faces on which they act.
 module dd3_model_drawbead_build
   use dd3_base_error, only : error_list_t, location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Length of the elements that tools bend. hex8 with one mean dilatation is too stiff in bending if
 !> it is long compared with the thickness of the sheet, whatever the number of layers: its edges
 !> stay straight.

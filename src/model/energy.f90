@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp

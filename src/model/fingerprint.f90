@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fingerprint of a model: a check sum for each part of it that a restart must find unchanged. What
 !> may change between a run and its continuation (limits, tolerances, penalty, solver, output) does
 !> not enter.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Loads on directions that supports or `displace` hold: there they do not act on the sheet.
 module dd3_model_held_loads
   use dd3_base_kinds, only : wp

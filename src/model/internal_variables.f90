@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Internal variables of all materials of a model, for output: those of equal name form one field,
 !> which a material without the variable leaves at zero. The equivalent plastic strain, which every
 !> material has first, is not listed.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> External forces on the nodes: the loads of the input, each the total force on a node set, the
 !> fading forces of lost constraints, and pressures on faces of the sheet. A pressure acts along the
 !> inward normal of the deformed faces, integrated with the shape functions of the element; its

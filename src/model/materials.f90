@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Materials of the model from the case, and the sources of their laws.
 module dd3_model_materials
   use dd3_base_error, only : error_list_t

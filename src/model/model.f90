@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Constant data of a run: mesh, element table, materials, tools, contact candidates, supports and
 !> phases.
 module dd3_model_model

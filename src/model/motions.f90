@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Curved motions of node sets over a phase: rotation about an axis, and the motion of the end
 !> section of a bar that is bent to an arc while its middle line keeps its length: at the angle phi
 !> of the section the arc has the radius L/phi.

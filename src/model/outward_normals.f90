@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Outward normals of the sheet at the contact points. A tool touches the sheet where their normals
 !> are opposite; this tells the side of the tool's surface on which a point belongs.
 module dd3_model_outward_normals

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Phase of the process as in the input, with all names resolved: tools moved and pressed, nodes
 !> displaced and loaded, early end. It never changes in a run.
 module dd3_model_phase

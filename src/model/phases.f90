@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Phases of the case with all names resolved. What a phase does not name stays unchanged: tools are
 !> held, forces and loads kept.
 module dd3_model_phases

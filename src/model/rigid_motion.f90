@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Rigid-body motions of the sheet that the supports leave free. A node held in a direction d
 !> excludes the motions u = t + w x (x - c) with u . d /= 0. The free motions are the null space of
 !> the sum of the dyadic products of all such conditions, found by elimination with diagonal pivots,

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Supports against the rigid motions that are left free: as few as there are free motions, so that
 !> they carry no reaction if the forces on the sheet are in equilibrium. Each is chosen as the nodal
 !> direction with the largest component in the free motions (pivoted Gram-Schmidt), and those

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Rim of the sheet, the boundary faces between its lower and upper face without those on planes of
 !> symmetry, and the draw-in: displacement of the rim along its initial inward normal.
 module dd3_model_rim

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Settings that follow from the model where the input gives no value, as text for `--check` and the
 !> log: contact, limits of the predictor, lengths of the draw-beads on the initial sheet.
 module dd3_model_settings_report

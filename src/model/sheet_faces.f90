@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Faces on the boundary of the sheet and their outward normals.
 module dd3_model_sheet_faces
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> State of a run: all that changes in it and decides how it continues. Two copies exist, the
 !> committed state (configuration N-1, in equilibrium) and the trial state (configuration N);
 !> acceptance and cut-back are assignments. The walk over the components in state_walk.f90 serves

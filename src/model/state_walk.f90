@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Walk over the components of a state: `visit_state` passes every component with its name to a
 !> visitor. Restart (output/restart.f90) and the tests are visitors, so that a component is named in
 !> one place only.

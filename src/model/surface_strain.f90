@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Logarithmic strains in the surface of the sheet at its lower face, middle and upper face, for any
 !> element: principal values of the right stretch of the surface, whose positions are interpolated
 !> between the columns' bottom and top nodes with the shape functions of the elements' lower faces.

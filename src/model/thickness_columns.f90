@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Columns of nodes through the thickness of the sheet, from the pairs of opposite nodes of the
 !> elements.
 module dd3_model_thickness_columns

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Lengths that count as zero, or as far, relative to the thickness and to the size of the sheet;
 !> all in one place. Only the depth of a start inside the sheet, part of the input format, is
 !> absolute.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> What the input says about the tools: the joints of their surfaces as text, and warnings of edges
 !> that nearly coincide and of candidates on the wrong face of the sheet.
 module dd3_model_tool_report

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Tool surfaces: the patches of a `.bez` file as a contact surface, and the checks of its geometry.
 module dd3_model_tool_surface
   use dd3_base_kinds, only : wp

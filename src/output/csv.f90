@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Tables of comma-separated values, written row by row.
 module dd3_output_csv
   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Datasets of fields.vtkhdf: those of a field with the offsets of its steps, constant ones, and
 !> their copies from an earlier file.
 module dd3_output_field_series

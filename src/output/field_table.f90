@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Table of the output fields: name, location, components, unit, meaning, and procedure. A field of
 !> the integration points is written twice: its mean at the cells, and extrapolated at the nodes.
 module dd3_output_field_table

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Values of an output field at the nodes and at the cells. A field of the integration points is
 !> extrapolated to the nodes of each element and averaged over the elements that share a node; its
 !> value at a cell is the mean of its points, by their quadrature weights.

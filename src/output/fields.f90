@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> fields.vtkhdf: the deformed sheet and its fields as a series of steps for ParaView.
 !> The format is VTKHDF 2.0, temporal UnstructuredGrid (VTK file formats, Kitware). A step is added
 !> in an order that leaves the file readable whenever the program is killed: data, offsets of the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Columns of history.csv that follow those of the tools and of the node sets: contact area and
 !> largest pressure of each tool, work and energies.
 module dd3_output_forming_columns

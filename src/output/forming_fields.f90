@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Procedures of the fields that describe the result of forming: thinning, strains in the surface,
 !> draw-in and contact.
 module dd3_output_forming_fields

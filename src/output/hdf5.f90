@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Growing datasets of an HDF5 file. Its files remain readable after a kill only with the default
 !> version of the library's format, and if data, flush, number of steps, flush follow in this order.
 module dd3_output_hdf5

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reading of HDF5 files: datasets of numbers as one-dimensional arrays, attributes.
 module dd3_output_hdf5_read
   use dd3_base_kinds, only : wp, i8

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> history.csv: travel, displacements and forces of the tools, and the quantities of the node sets
 !> of *HISTORY. One row for the initial state and for every n-th accepted increment; the last state
 !> of a phase and of the run always has a row.

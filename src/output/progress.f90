@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Display of the progress of a run: on a terminal one line, rewritten in place at most ten times a
 !> second; otherwise, and always in job.log, a plain line for every twentieth of a phase. The last
 !> line of a phase stays on the terminal too.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Records of a run: history.csv, status.csv, fields.vtkhdf and restart.h5. Of several ranks only
 !> the first writes them, and gives the others its errors.
 module dd3_output_records

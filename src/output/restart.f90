@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> restart.h5: the committed state of a run and the fingerprint of its model. The file is written
 !> aside, synced and renamed, so that a run that is killed leaves the last whole one.
 module dd3_output_restart

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Totals of a run and of its phases: how far each came, how it ended and what it cost.
 module dd3_output_run_summary
   use dd3_base_clock, only : profile_t

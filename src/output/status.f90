@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> status.csv: one row per attempt at an increment, accepted or not: its limit, its iterations, the
 !> contact status and the reason of a failure.
 module dd3_output_status

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Solvers of PETSc: a matrix of 3x3 blocks (MATBAIJ) of which each rank holds its rows, and a
 !> Krylov solver (KSP) that PETSc's options database configures.
 submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Ranks by MPI, which PETSc starts.
 submodule (dd3_base_ranks) dd3_parallel_ranks
   use, intrinsic :: iso_c_binding, only : c_int

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> history.csv of material points: strain, stress, plastic strain, flow stress and the internal
 !> variables of the laws. One row for the start of each point and for every n-th step; the last step
 !> of a point always has a row.

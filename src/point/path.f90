@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Path of a material point: the segments of a `*POINT` run, components in the order of Kelvin
 !> vectors, shears with their factor, deformation gradients as matrices.
 module dd3_point_path

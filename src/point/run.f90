@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Runs of material points, without a mesh: segment by segment, step by step, with their history. A
 !> prescribed deformation gradient is integrated with the incremental kinematics of the elements:
 !> polar decomposition of the step, logarithmic strain, material axes that turn with the rotation.

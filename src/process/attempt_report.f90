@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reports on an attempt: its row of status.csv and, if it was the last one, the message with the
 !> first remedy to try. docs/status.md contains the remedies; a test compares them.
 module dd3_process_attempt_report

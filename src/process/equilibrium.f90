@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Equilibrium of a trial state, as the problem that the corrector solves: element forces, loads,
 !> contact and supports, with all non-linearities (plasticity, large rotations, contact, friction)
 !> in one residual.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Forces of a trial state: external ones, those of the contact, and the residuals of the nodes and
 !> of the pressed tools. External are loads, pressures, draw-beads, and the forces of lost
 !> constraints, which fade over the phase with springs that hold the sheet where the constraints

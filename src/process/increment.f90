@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> One increment: predict, limit, correct.
 module dd3_process_increment
   use dd3_base_kinds, only : wp

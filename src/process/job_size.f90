@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Size of a job, known before it runs: unknowns, matrix, factors of the linear solver, and memory.
 module dd3_process_job_size
   use dd3_base_error, only : error_t

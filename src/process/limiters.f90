@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Limiters of the factor r, the fraction of the trial increment that is made. Each limiter is a
 !> function that returns a bound with its location, applied in `limit_increment`.
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.

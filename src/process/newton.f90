@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Newton-Raphson iterations on an abstract problem. The step du is that of the linearised problem,
 !> with a line search: at the fraction s of the step the residual R does the work
 !>     g(s) = du . R(u + s du),

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Norm that decides the convergence of a trial state: the residuals of nodes, contact and enhanced
 !> strains, the balance of the pressed tools, and the free body in springback. All its factors and
 !> tolerances stand here; they have no unit.

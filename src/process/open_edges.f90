@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Points under pressure that leave the surface of a tool over an open edge: one without a
 !> neighbouring patch, where the surface ends.
 module dd3_process_open_edges

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> End of a phase and its outputs of fields, as progress of the phase.
 module dd3_process_phase_end
   use dd3_base_kinds, only : wp

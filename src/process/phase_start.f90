@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Start of a phase: a transition from the state at the end of the phase before. It depends on the
 !> model and the state alone, and stores all that the phase starts from in the state.
 module dd3_process_phase_start

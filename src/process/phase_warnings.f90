@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Notes and warnings at the start and at the end of a phase: nodes that stay held, a pressed tool
 !> without contact, an unsupported sheet, yielding during a release, gaps of the contact layers, and
 !> those on chosen supports and on tools.

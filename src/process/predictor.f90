@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Predictor: the tangent explicit method. The trial increment of the controlling tool, or of the
 !> loads, is imposed on the tangent system of the committed configuration; the solution is linear in
 !> it, and the increment made is r times the trial one.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Run of a job: phase by phase, increment by increment, with its records.
 module dd3_process_run
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Control of the steps: the attempts at an increment, from the first r to the last cut-back, and
 !> the bound that an accepted increment sets for the next one.
 module dd3_process_step_control

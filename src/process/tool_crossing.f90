@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Tools that cross each other: points of one tool that a phase moved from the front of another
 !> tool's surface to behind it. Points are samples of the patches, and only those not far behind are
 !> found, so that slight overlaps may be missed.

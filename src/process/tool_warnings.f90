@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Warnings about the tools at the end of a phase, or of a run that stops within one: without
 !> contact, entered between the nodes of the sheet, left over an open edge, ironing with contact
 !> points between nodes, crossed.

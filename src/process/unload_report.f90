@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reports on the supports that the program chooses for an unloaded sheet: which they are, whether
 !> the forces on the sheet are in equilibrium without them, and their reactions.
 module dd3_process_unload_report

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Work and slip of an accepted increment. Forces are the means of those before and after it, so
 !> that the sums approximate the integrals to second order in the increment.
 module dd3_process_work

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: format, program, machine, call.
 module dd3_run_file_head
   use, intrinsic :: iso_fortran_env, only : compiler_version

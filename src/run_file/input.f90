@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: the input as read, from the keyword table.
 module dd3_run_file_input
   use dd3_base_error, only : location_t

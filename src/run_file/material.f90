@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: materials with their laws, and single points.
 module dd3_run_file_material
   use dd3_base_error, only : error_list_t, location_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: the phases as resolved, and what happened in them.
 module dd3_run_file_phase
   use dd3_base_json, only : json_t

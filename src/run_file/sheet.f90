@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: the sheet, its node sets and supports, what is recorded.
 module dd3_run_file_sheet
   use dd3_base_json, only : json_t

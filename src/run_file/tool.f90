@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of run.json: tools and draw-beads.
 module dd3_run_file_tool
   use dd3_base_json, only : json_t

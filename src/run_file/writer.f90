@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> run.json: description of a run beside its results, see docs/run.schema.json. It is written as a
 !> whole, at the start and at the end of the run; of several ranks the first writes it.
 module dd3_run_file_writer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contact of the candidates: nearest tool, status, force and linearisation, in a trial state
 !> (corrector) or at the committed state with its stored status (predictor).
 module dd3_system_contact

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Data of the contact of the candidates in one state, for the residuals and the reduced system.
 module dd3_system_contact_work
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Forces of the draw-beads on the nodes and their stiffness. The points of a bead are found in the
 !> committed state and keep their place in the material for the increment, so that the restraining
 !> force depends on the displacements through the slip alone. The next increment finds new points;

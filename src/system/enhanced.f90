@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Parameters of the enhanced strains, internal to the elements, as unknowns of the increment. They
 !> are eliminated from the linear system element by element and follow the displacements (stored
 !> condensation, Simo & Rifai 1990): da = -(offset + gain : du).

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Internal forces and stiffness of the sheet: the loops over the elements and their integration
 !> points.
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear problem of an iteration or a prediction, and the step of the unknowns that solves it.
 module dd3_system_linear_problem
   use dd3_base_kinds, only : wp

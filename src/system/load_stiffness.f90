@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Stiffness of the loads that depend on the displacements: pressures, which follow the surface,
 !> draw-beads, and the springs that hold the sheet where lost constraints left it, while they fade.
 module dd3_system_load_stiffness

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Partition of the work among the ranks. Each evaluates the elements at the nodes whose rows it
 !> holds, so that these rows and the forces on these nodes are complete without an exchange;
 !> elements between the nodes of two ranks are evaluated by both, with the same result.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Contributions of the contact points to the reduced system in the compliant formulation.
 !>
 !> The law of contact has one force at a gap, so that the force lambda of a point follows from its

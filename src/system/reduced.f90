@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reduced system: contact forces eliminated node by node from the mixed equations, supports, and a
 !> row of force balance for every pressed tool.
 !>

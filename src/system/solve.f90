@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Solution of the reduced system.
 module dd3_system_solve
   use dd3_base_clock, only : section_assembly, section_factorisation, section_solve

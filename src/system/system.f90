@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> System of equations of a job: matrices on fixed patterns, work arrays, linear solver and profile.
 module dd3_system_system
   use dd3_base_kinds, only : wp

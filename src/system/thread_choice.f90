@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Choice between all threads and one by measured time. Where other work keeps the processors busy,
 !> each thread waits for the slowest, and several can be slower than one. The results do not depend
 !> on the number.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Rows of the tools that can be pressed in the reduced system: for each the balance of its force
 !> along its line, and two that constrain it to the line.
 module dd3_system_tool_rows

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Decks that earlier versions answered wrongly, and what the program answers: the table of docs/reports/answers.md.
 
     run.py --program build/release/dd3imp --work build/answers           compare with the table

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the program on inputs that must be refused.
 
 Each <name>.expected belongs to <name>.dat (which may be missing or a folder). Its lines must appear in this order in

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Time closest-point queries and the contact operator on the tools of the bending test, in ns.
 !>
 !>     benchmark_contact [folder of the tool files]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Compare the default settings with the published ones: the bending test on both meshes, with four penalties.
 
     tests/benchmark/default_settings.py --program build/release/dd3imp --work build/default_settings

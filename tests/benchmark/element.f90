@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Time the element kernels for every element of the registry, in microseconds per element; an
 !> element with a choice of points through the thickness with 5 and with 7. Columns: deformation,
 !> internal forces and element stiffness, each with the transformation of the stresses that it

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Compare contact settings with stored reference values on a list of forming problems: the envelope of the contact.
 
     tests/benchmark/envelope.py --program build/release/dd3imp --work build/envelope

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Measure the error per increment: forming problems with each accuracy of *LIMITS and with each limit alone.
 
     tests/benchmark/increments.py --program build/release/dd3imp --work build/increments

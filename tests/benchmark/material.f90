@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Time the stress update with its tangent for combinations of the registered laws, in ns.
 !>
 !>     benchmark_material [part of a combination's name, such as "hill48 swift"]

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear systems as text files in the coordinate and array formats of Matrix Market (Boisvert, Pozo
 !> and Remington 1996).
 module matrix_market

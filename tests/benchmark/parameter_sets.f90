@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Yield criteria with published and with extreme parameters, for the benchmarks. The speed of a
 !> criterion is measured with its first set.
 module parameter_sets

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run one bending job with dd3imp and with CalculiX and compare force, increments and processor time.
 
     tests/benchmark/peer.py --program build/release/dd3imp --work /tmp/peer

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Forming problems for measurements: decks, the surfaces of their tools, and changes of their blocks.
 
 A problem is a function that writes what its deck needs into a folder and returns the deck's text.

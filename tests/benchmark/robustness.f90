@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Test the stress update with random strain increments up to 10 % from random admissible states:
 !> every criterion with published and with extreme parameters, the hardening laws, the back-stresses
 !> and their combinations.

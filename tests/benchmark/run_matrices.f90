@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Compare the linear solvers on the matrices of a run: UMFPACK, the automatic choice, the complete
 !> factorisation on blocks, and CGS with ILU(k), k = 0 ... 3, for every ordering.
 !>

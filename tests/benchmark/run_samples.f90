@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear systems of a run, for the comparison of the solvers.
 module run_samples
   use dd3_base_error, only : error_list_t, error_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Time the linear solvers on strips of hexahedra like those of a bending test, or on a system in
 !> Matrix Market format.
 !>

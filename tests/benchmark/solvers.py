@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make the tables of docs/reports/solvers.md anew.
 
     cmake --build --preset release --target benchmark_write_matrices benchmark_solvers benchmark_run_matrices

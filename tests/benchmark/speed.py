@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make the tables of docs/reports/speed.md on sheets of several sizes anew.
 
     tests/benchmark/speed.py --program build/release/dd3imp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Processor time and memory of reading a tool of many patches, and the time of closest-point queries on it. The
 !> tool is a wavy sheet of n x n patches of degrees 2 and 2 with common edges; its file is made if it
 !> is missing.

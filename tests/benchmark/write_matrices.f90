@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Write linear systems of a run in Matrix Market format.
 !>
 !>     benchmark_write_matrices <file> <travel, ...> <input file> [name=value ...]

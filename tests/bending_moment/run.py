@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Moment of a strip of hex8 in pure bending over the exact one: the table of the element's length in docs/manual.md.
 
     run.py --program build/release/dd3imp --work build/bending_moment        compare with the manual

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Build tests/build/boundary. It must compile; with FORBIDDEN it must fail, because the module of an undeclared folder
 # is missing.
 file(REMOVE_RECURSE "${WORK}")

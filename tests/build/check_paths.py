@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check that the files named in README and CONTRIBUTING exist, scripts can be run, README names the folders of src."""
 import pathlib
 import re

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Install into a temporary prefix; run the program, an example and the utilities from there."""
 import argparse
 import os

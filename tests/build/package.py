@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Install into a temporary prefix; build and run a program of C and one of Fortran by find_package(dd3imp)."""
 import argparse
 import os

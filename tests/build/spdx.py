@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check that each source names its licence by an SPDX line in its first two lines; --write adds the missing ones."""
 import pathlib
 import subprocess

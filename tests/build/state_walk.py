@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Checks that the walk over the state names every component that the types of the state declare."""
 import pathlib
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of tests/run_case.py and tests/run_description.py with a stand-in for the program."""
 import json
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check that all files give the version of CMakeLists.txt."""
 import pathlib
 import re

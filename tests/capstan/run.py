@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A thin strip that slides over a quarter of a cylinder, with several thicknesses and settings of the contact.
 
     run.py --program build/release/dd3imp --work build/capstan           check

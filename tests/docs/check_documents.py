@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check README.md, CONTRIBUTING.md and docs/.
 
     check_documents.py --program build/release/dd3imp

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw bending of NUMISHEET'93: angles and curl of the wall after springback, by mesh, holder force and hardening.
 
     draw_bending.py --program build/release/dd3imp --work build/draw_bending            make the runs that are missing

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
 
 Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, and the ears and

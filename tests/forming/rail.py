@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The S-shaped rail: springback of its inner flanges and twist, by mesh.
 
     rail.py --program build/release/dd3imp --work build/rail            make the runs that are missing

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The cylindrical cup of AA2090-T3 by Yld2004-18p and by Hill 1948: height of the wall by angle, ears, thickness.
 
     round_cup.py --program build/release/dd3imp --work build/round_cup            make the runs that are missing

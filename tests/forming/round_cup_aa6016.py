@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The cylindrical cup of AA6016-T4 of the ESAFORM benchmark 2021: height by angle, beside measured and published ones.
 
     round_cup_aa6016.py --program build/release/dd3imp --work build/aa6016            make the runs that are missing

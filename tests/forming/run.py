@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Compare the results of forming in fields.vtkhdf and history.csv with closed forms.
 
     run.py --program build/release/dd3imp --work build/forming

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The square cup of NUMISHEET'93, steel and aluminium, by several meshes and elements: draw-in and thickness.
 
     square_cup.py --program build/release/dd3imp --work build/square_cup            make the runs that are missing

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the studies of this folder share: runs that are kept, and tables in reports."""
 from pathlib import Path
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the program on mutated input files: it must answer each with an exit code and a sentence.
 
     fuzz.py --program build/release/dd3imp --work build/fuzz --count 400          mutated decks through --check

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """One element in CalculiX with the UMAT of the library of the laws, and in dd3imp.
 
     tests/laws/calculix.py --program build/release/dd3imp --library build/release/libdd3laws.so \\

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cases of one element: tension, shear and cyclic loads of a cube, for dd3imp and for the library of the laws.
 
 A case moves faces of the cube x_max, y_max in steps of equal displacement; the other faces are symmetry planes or free.

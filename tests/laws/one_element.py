@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """One element in tension, shear and cyclic loads: forces of the program, and by the library of the laws.
 
     tests/laws/one_element.py --program build/release/dd3imp --library build/release/libdd3laws.so --work /tmp/laws

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check dd3 identify and dd3 fit.
 
     identification.py --program build/release/dd3imp

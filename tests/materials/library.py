@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check the material files of input_files/materials.
 
     library.py --program build/release/dd3imp

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Check the special cases stated in docs/laws: both laws of a pair give the same stresses.
 
     special_cases.py --program build/release/dd3imp

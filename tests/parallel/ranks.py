@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs on several ranks give the history of the serial run, and end as it does.
 
     ranks.py --program build/petsc/dd3imp --mpirun mpirun --work build/ranks --ranks 2 4

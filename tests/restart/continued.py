@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs continued from a restart file: after an interruption or a stop, from every increment, with changed input.
 
     continued.py --program build/release/dd3imp --work build/continued --every 4

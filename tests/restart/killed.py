@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs that are killed and continued: their results are those of a run that is not, bit for bit.
 
     killed.py --program build/release/dd3imp --work build/killed --kills 3

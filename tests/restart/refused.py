@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Restart files and decks that are refused: a sentence each, exit code 2, and nothing touched.
 
     refused.py --program build/release/dd3imp --work build/refused

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs of dd3imp for the tests of restart: decks with changes, runs that are killed, comparison of results."""
 import csv
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Results with 1, 2 and 4 threads are the same bits, on sheets with more elements and candidates than one thread takes.
 
     threads.py --program build/release/dd3imp --work build/threads

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Release of a drawn strip whose bends yield, between a die, a punch and a light holder.
 
     drawn_strip.py --program build/release/dd3imp --work build/drawn_strip

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Springback by `unload = on` of a strip bent over two cylinders: with two planes of symmetry, one, and none.
 
     run.py --program build/release/dd3imp --work build/springback

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DPROGRAM=<executable> -DEXIT_CODE=<n> [-DEXPECTED=<file>] -P check_failing.cmake
 #
 # Run a suite that must fail: with this exit code, stopping at a failed assert, and with output that matches each line

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DPREPROCESSOR=<command> -DCOMPILER=<gfortran> -DMODULES=<folders> -DSOURCE=<x.pf> -DWORK=<folder>
 # [-DGENUINE=ON]
 #       -P check_refused.cmake

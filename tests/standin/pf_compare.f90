@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Comparisons of flattened arrays, behind the asserts with two sides.
 module pf_compare
   use, intrinsic :: iso_fortran_env, only : dp => real64, i8 => int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Failures of the running test.
 !>
 !> They are module variables because the asserts of a test file have no argument for them.

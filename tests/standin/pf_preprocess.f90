@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Convert a test file `x.pf` to `x.F90`: `pf_preprocess x.pf x.F90`.
 !>
 !> Part of the stand-in for pFUnit. It reads line by line, as pFUnit's own preprocessor does, and

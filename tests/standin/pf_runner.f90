@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Run tests in sequence, count them and print the failures.
 module pf_runner
   use, intrinsic :: iso_fortran_env, only : output_unit, error_unit

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Plane-strain bending of a strip to a radius, with springback, integrated through the thickness.
 
     ring.py [RADIUS ...]

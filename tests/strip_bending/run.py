@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Plane-strain bending of a strip of 0.78 mm and its springback, against an integration through its thickness.
 
     run.py --program build/release/dd3imp --work build/strip_bending [--all]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the quick cases of the bending study, gather the table and check it.
 
 If snakemake is installed, the workflow must give the same, run a case again that was lost, and do nothing when all

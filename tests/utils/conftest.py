@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Options and fixtures of these tests: `--program` gives the program dd3imp."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What these tests share: calls of the command, made-up runs."""
 
 import contextlib

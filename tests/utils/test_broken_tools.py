@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Files of tools that users break: each is converted right or refused by a sentence, and never ends in a traceback."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes from files: a blank written to a file and read again gives the same results bit for bit, also with its
 elements turned or numbered otherwise within round-off; models of other programs are read by `dd3 mesh`."""
 

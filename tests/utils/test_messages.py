@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Messages on wrong names, missing files and incomplete results: one line, exit code 2; help with examples."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures of a small made-up run, and of inputs before a run."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Materials at a point: values and pictures of `dd3 plot point`, pictures of the laws, messages on bad input."""
 
 import math

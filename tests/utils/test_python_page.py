@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The interface of docs/python.md: its examples run one after the other on a run of the bending test."""
 
 import re

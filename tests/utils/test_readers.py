@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables, status.csv, blocks of shape files and runs of a stand-in program."""
 
 import json

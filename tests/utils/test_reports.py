@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Sections, forming limits and reports of a made-up run of a U profile, and wrong input."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tool surfaces: exact shapes and CAD against closed forms, options, reports, refusals; a run of the program with
 --check on what was written."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Closed forms of the cases that gathered.py takes from tests/cases. None of them uses the program."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Sections of the verification manual: their values, studies of refinement, and the runs that give them."""
 import importlib.util
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The sections of the manual that use cases of tests/cases, which are not repeated here."""
 import math
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the cases of the verification manual, docs/verification.md, and compare them with it.
 
     run.py --program build/release/dd3imp --work build/verification              the quick sections

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Results of dd3imp in Python, and its tools; the command is `dd3`.
 
     import dd3

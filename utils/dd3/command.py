@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The command dd3: its subcommands, and the parsers of their options."""
 
 import argparse

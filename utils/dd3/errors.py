@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """End of a command: errors as one line on stderr."""
 
 import os

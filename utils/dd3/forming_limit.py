@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the forming limit diagram of a run.
 
     dd3 fld cup.out

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Sessions of Gmsh."""
 
 from collections.abc import Iterator

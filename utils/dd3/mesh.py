@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Bring a mesh of hexahedra into the form that *MESH reads, an .inp file of nodes, elements and sets.
 
     dd3 mesh part.msh sheet.inp                Gmsh, VTK, UNV, MED, Nastran: what Gmsh reads; a .geo file is meshed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs of dd3imp: the program, its command line, single points."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Progress bars on stderr: on a terminal only, for work of more than a second, removed at the end."""
 
 from collections.abc import Iterable, Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make a page about a forming run: one HTML file with its pictures inside, and the pictures as PNG files.
 
     dd3 report cup.out --mirror x y

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Write and draw fields along a section of the sheet or a line of nodes; measure springback of a profile.
 
     dd3 section cup.out --plane y=0 --field thickness

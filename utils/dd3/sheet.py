@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The sheet of a run as surfaces: its faces, outline, sections, and lines of nodes."""
 
 from collections.abc import Sequence

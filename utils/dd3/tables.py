@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables of results; whatever cannot be used raises a Problem."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Make a tool surface, a .bez file, from CAD, from a mesh or STL, or from a profile.
 
     dd3 tool die.step die.bez --toward 0 0 1             STEP, IGES, BREP

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Time jobs with one or several builds of dd3imp.
 
     utils/dev/benchmark.py --program build/release/dd3imp

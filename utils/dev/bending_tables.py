@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run the bending test in all its variants and print the tables of docs/reports/bending_test.md.
 
     utils/dev/bending_tables.py --program build/release/dd3imp

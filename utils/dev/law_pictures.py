@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the pictures of docs/laws: one for each yield criterion, hardening law and back-stress law.
 
     utils/dev/law_pictures.py --program build/release/dd3imp

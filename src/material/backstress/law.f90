@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Back-stress laws: the back-stress at the end of a plastic increment, with its derivatives in the
 !> increment and in the effective stress. Several back-stresses add up.
 module dd3_material_backstress_law

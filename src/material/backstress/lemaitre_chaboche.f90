@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Saturating kinematic hardening, P. J. Armstrong and C. O. Frederick (1966), J. Lemaitre and
 !> J.-L. Chaboche (1985): dX = CX (Xsat N' - X) dp, N' = dev(T - X)/sb.
 module dd3_material_backstress_lemaitre_chaboche

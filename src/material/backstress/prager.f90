@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear kinematic hardening, W. Prager (1955): dX = k N' dp, N' = dev(T - X)/sb. In uniaxial
 !> tension of a von Mises material the stress rises by k per unit of plastic strain.
 module dd3_material_backstress_prager

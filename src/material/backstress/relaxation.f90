@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Integration of dX = (a N' - c X) dp, N' = dev(xi)/sb, the form of back-stress laws with one rate.
 !> It is exact for constant a and N', those of the end: X = e X_n + w a N' with e = exp(-c dp) and
 !> w = (1 - e)/c.

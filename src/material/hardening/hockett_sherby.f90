@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The saturating law of J. E. Hockett and O. D. Sherby (1975): Y = Ysat - (Ysat - Y0)
 !> exp(-(N p)^q), near p = 0 by its chord, as the slope is unbounded there for q < 1.
 module dd3_material_hardening_hockett_sherby

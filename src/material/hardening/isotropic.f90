@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Isotropic hardening laws: the flow stress depends on the equivalent plastic strain alone.
 module dd3_material_hardening_isotropic
   use dd3_base_kinds, only : wp

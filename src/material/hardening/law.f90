@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Hardening laws: the flow stress at the end of a plastic increment, with its derivatives in the
 !> increment and in the stress. A law that depends on the strain path has internal variables of its
 !> own, and possibly a back-stress.

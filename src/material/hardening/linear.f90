@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear isotropic hardening: Y = Y0 + H p.
 module dd3_material_hardening_linear
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The power law of P. Ludwik (1909): Y = Y0 + K p^n, near p = 0 by its chord.
 module dd3_material_hardening_ludwik
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Perfect plasticity: the flow stress is a constant, Y = Y0.
 module dd3_material_hardening_perfect
   use dd3_base_kinds, only : wp

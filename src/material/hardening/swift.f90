@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The power law of H. W. Swift (1952): Y = K (e0 + p)^n, with e0 or the initial flow stress
 !> Y0 = K e0^n given.
 module dd3_material_hardening_swift

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Mixture of the laws of E. Voce (1948) and H. W. Swift (1952), after the mixture of Voce's with
 !> Hollomon's law by J. H. Sung, J. H. Kim and R. H. Wagoner (2010):
 !> Y = alpha (Y0 + Rsat (1 - exp(-CR p))) + (1 - alpha) K (e0 + p)^n.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The flow stress as a table over the equivalent plastic strain, interpolated by a monotone cubic
 !> (F. N. Fritsch, R. E. Carlson, 1980, region 3). Beyond the last pair the curve is straight, with
 !> the slope given or that of the cubic at its end.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The law of C. Teodosiu and Z. Hu (1995, 1998), in the form of H. Haddadi, S. Bouvier, M. Banu,
 !> C. Maier and C. Teodosiu (2006): isotropic hardening R, a back-stress X, the strength S of
 !> persistent dislocation structures (a fourth-order tensor), their polarity P. With N = V/|V|, the

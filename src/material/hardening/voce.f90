@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The saturating law of E. Voce (1948): Y = Y0 + Rsat (1 - exp(-CR p)).
 module dd3_material_hardening_voce
   use dd3_base_kinds, only : wp

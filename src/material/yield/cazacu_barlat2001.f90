@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The orthotropic criterion of O. Cazacu and F. Barlat (2001): Drucker's with both invariants
 !> generalised,
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Check that a criterion with its parameters has a closed and convex surface. Closed: the
 !> equivalent stress of sampled deviators without shears and of the pure shears exceeds a small
 !> fraction of its largest value without shears. Convex: the second derivative has no negative

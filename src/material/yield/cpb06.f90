@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The orthotropic criterion of O. Cazacu, B. Plunkett and F. Barlat, "CPB06", with different
 !> strengths in tension and compression: of the principal values of S = C s, s the deviator,
 !>

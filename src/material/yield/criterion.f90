@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Yield criteria: an equivalent stress, homogeneous of degree one and independent of pressure, with
 !> its first and second derivatives. Stresses are Kelvin vectors in the orthotropy axes; V(-T) may
 !> differ from -V(T).

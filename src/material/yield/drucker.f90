@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The criterion of D. C. Drucker (1949),
 !>
 !>     sb = 3 [(J2^3 - c J3^2)/(27 - 4c)]^(1/6),   J2 = S:S/2,   J3 = det S

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The quadratic criterion of orthotropic sheets, R. Hill (1948), in the axes 1 rolling, 2
 !> transverse, 3 normal:
 !>

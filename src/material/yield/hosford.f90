@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The isotropic criterion of A. V. Hershey (1954) and W. F. Hosford (1972),
 !>
 !>     2 sb^m = |S1-S2|^m + |S2-S3|^m + |S3-S1|^m

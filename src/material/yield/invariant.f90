@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Criteria by generalised second and third invariants of the deviator s, an orthotropic quadratic
 !> and an orthotropic cubic form (O. Cazacu and F. Barlat, 2001, 2003):
 !>

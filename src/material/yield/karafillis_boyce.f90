@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The orthotropic criterion of A. P. Karafillis and M. C. Boyce (1993), a mixture of two functions
 !> of the principal values of the deviator S = L T:
 !>

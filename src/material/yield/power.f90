@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sums of powers and their roots, for criteria of high exponents. All are homogeneous of degree
 !> one: stresses are divided by a scale that brings the largest base to one to avoid overflow.
 module dd3_material_yield_power

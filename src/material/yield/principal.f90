@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Criteria that are symmetric functions q of the principal values of one or two linearly
 !> transformed stresses S = L T. With eigenvectors v_i, N_ij = sym(v_i x v_j) and M_ij = L^T N_ij,
 !>

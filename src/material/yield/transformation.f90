@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Linear transformations S = L T of the stress that preserve orthotropy: a full block for the
 !> normal components and a factor for each shear component, applied to the deviator and therefore
 !> independent of pressure. Shear factors are the same for Kelvin and tensor components.

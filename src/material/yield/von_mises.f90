@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The isotropic criterion of R. von Mises (1913): sb = sqrt(3/2 s:s), s the deviator of the stress.
 module dd3_material_yield_von_mises
   use dd3_base_kinds, only : wp

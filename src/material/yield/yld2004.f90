@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The orthotropic criterion "Yld2004-18p" of F. Barlat and others: all differences between the
 !> principal values of two linear transformations of the deviator s,
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The orthotropic criterion of F. Barlat, D. J. Lege and J. C. Brem, "Yld'91": Hosford's function
 !> of the principal values of S = L T,
 !>

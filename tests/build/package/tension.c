@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Print the stress after tension of 1 % with lateral strains of -0.5 %. */
 #include <dd3laws.h>
 #include <stdio.h>

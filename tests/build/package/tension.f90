@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Print the stress after tension of 1 % with lateral strains of -0.5 %.
 program tension
   use dd3_base_kinds, only : wp

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Print reference.csv: the rate equations of Teodosiu and Hu's law, integrated independently of the program.
 
     rates.py >reference.csv

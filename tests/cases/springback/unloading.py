@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Elastic unloading of the bent strip, computed independently of the program: the source of the numbers in case.json.
 
     dd3imp --set tolerance=1e-5 --output tight.out case.dat

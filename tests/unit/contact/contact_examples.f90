@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Surfaces and random numbers for the contact tests.
 module contact_examples
   use dd3_base_kinds, only : wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Shared by the element tests: random numbers, a smooth material law, patch meshes, evaluation.
 module element_cases
   use dd3_base_kinds, only : wp

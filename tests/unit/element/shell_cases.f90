@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Small solver for the tests of the solid-shell: a mesh of one layer on any surface, Newton's
 !> method with the enhanced parameters condensed, band matrix.
 module shell_cases

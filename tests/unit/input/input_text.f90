@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Inputs for the tests: writes them, joins the messages they give.
 module input_text
   use dd3_base_error, only : error_list_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Materials of the library for the tests, from texts of Fortran.
 module library_cases
   use, intrinsic :: iso_c_binding, only : c_char, c_loc, c_null_char, c_ptr, c_size_t

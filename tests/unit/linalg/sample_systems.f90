@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reproducible linear systems and solver options for the tests of the solvers.
 module sample_systems
   use dd3_base_kinds, only : wp, i8

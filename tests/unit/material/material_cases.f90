@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Shared parts of the material tests: laws with typical and with perturbed parameters, all their
 !> combinations, random and degenerate stresses, and a point driven by stress or strain.
 module material_cases

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> An artificial hardening law that depends on the strain path and has a back-stress, similar to
 !> Teodosiu and Hu's: a polarity P evolves to the flow direction N = V/|V|; the flow stress and the
 !> saturation of the back-stress depend on |P|^2.

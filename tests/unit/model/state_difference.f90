@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Comparison of states, a visitor of `visit_state`.
 module state_difference
   use dd3_base_kinds, only : wp

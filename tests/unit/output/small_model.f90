@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fixtures of the tests of the records: a block of two stacked elements with two tools and two
 !> phases, folders and files.
 module small_model

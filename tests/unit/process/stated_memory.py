@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The memory stated in job.log before a run agrees with the peak of the run within 20 %.
 
     stated_memory.py --program build/release/dd3imp --work build/stated_memory

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Test runs that stop early: exit code 3, a message with location and reason, complete results.
 
     stopped_runs.py --program build/release/dd3imp --work build/stopped

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Test runs whose surroundings fail: signals, a closed output, a folder removed or shared, inputs where results go.
 
     surroundings.py --program build/release/dd3imp --work build/surroundings [name of a test ...]

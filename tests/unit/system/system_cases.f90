@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> Fixtures of the tests of the system: a model from an input file, states far from equilibrium with
 !> every contact status, and the residual of the mixed equations.
 module system_cases

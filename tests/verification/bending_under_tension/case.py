@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A strip drawn over a cylinder under back tension: the force of bending and unbending, and that of friction."""
 import math
 import pathlib

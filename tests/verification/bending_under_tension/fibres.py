@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Work of bending and unbending of a strip under tension in plane strain, by fibres through its thickness.
 
 Fibres without stress through the thickness, von Mises, Swift, backward Euler. The curvature k rises from 0 to 1/R of

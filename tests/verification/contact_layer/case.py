@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A block on a table with a contact layer: pressure of the gap, elastic slip, Coulomb's cone and energy."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A graded sheet between two flat tools: uniform deformation, and the gap of the contact layer (patch test)."""
 import math
 import pathlib

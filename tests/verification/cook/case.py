@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cook's membrane: shear-dominated bending of a tapered panel with oblique elements."""
 import pathlib
 

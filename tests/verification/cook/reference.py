@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tip displacement of Cook's membrane in plane stress: 9-node quadrilaterals, extrapolated. Needs numpy."""
 import numpy as np
 

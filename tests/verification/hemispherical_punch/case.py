@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Stretching over a hemispherical punch: height at given forces against published readings; place of the thinning."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A rigid cylinder on an elastic half-space, without and with a contact layer: half-width and largest pressure."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A rigid cylinder on an elastic half-space under a contact layer, plane strain: an integral equation.
 
 The pressure p(x) is constant over strips. The gap is g = x^2/(2 R) - d + u(x) with the displacement u = A p of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Prandtl's punch: the limit pressure under a rigid strip."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pure bending of a perfectly plastic strip in plane strain, and its springback."""
 import pathlib
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """An elastic strip on a contact layer, plane strain: one half, from the middle to the free end, by multiple shooting.
 
 The strip is a rod that bends, shears and stretches with large rotations (Reissner, J. Appl. Math. Phys. 23 (1972)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """An elastic strip on the contact layer of a table or a cylinder: a linear foundation, and a nonlinear one."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Thick cylinder under internal pressure, perfectly plastic, in plane strain."""
 import math
 import pathlib

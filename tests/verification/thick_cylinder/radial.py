@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Thick cylinder of a perfectly plastic material in plane strain, integrated over its radius.
 
 A chain of layers between radii that move: hoop stretch of the mean radius, radial stretch of the thickness, none along

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Find the parameters of a yield criterion, and of a hardening law, from measured values.
 
 Weighted least squares from several starts. Every trial set is evaluated by dd3imp itself, at single points (*POINT), so

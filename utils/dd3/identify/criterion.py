@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Identification of a yield criterion from measured r-values and yield stresses."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Fit a hardening law, with back-stresses, to a tension curve.
 
     dd3 fit steel voce tension.csv --plot steel.png

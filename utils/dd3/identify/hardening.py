@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Identification of a hardening law, with back-stresses, from a tension curve."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Least squares of what the program computes at single points, from trial parameters of a law."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Measured values of tests on sheets, and curves. Errors name the file, the line and the word."""
 
 import re

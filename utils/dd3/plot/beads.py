@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lines of draw-beads on the sheet, for pictures."""
 
 from collections.abc import Callable, Iterable

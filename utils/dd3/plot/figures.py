@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Figures that need no display, and the options that their commands share."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw tool force against tool displacement, for one or several runs.
 
     dd3 plot force bending.out

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the size of the increments and what limits it, for one or several runs.
 
     dd3 plot increments bending.out

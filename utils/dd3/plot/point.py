@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the response of materials at a point: tension curves, r-values and yield stresses by angle, yield surfaces.
 
     dd3 plot point steel.dat aluminium.dat --program build/release/dd3imp --output materials.png

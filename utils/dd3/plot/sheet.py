@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the deformed sheet between its tools, coloured by a field, and its draw-beads. No display is needed.
 
     dd3 plot sheet bending.out

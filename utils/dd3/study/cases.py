@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cases of the bending study: run one, or gather the table of all; the steps of workflow.smk.
 
     dd3 study command b-1e3       print the command of a case

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the figures of the bending study from its results, numbered like the paper's.
 
     dd3 study figures --work bending_study.out --output docs/images

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Run every case of the bending study of docs/reports/bending_study.md, gather the table and draw the figures.
 
     dd3 study run                        all cases of input_files/bending_study/cases.csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Finished runs of the bending test, and the differences of their punch forces."""
 
 import json

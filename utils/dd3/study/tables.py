@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Rewrite the tables of docs/reports/bending_study.md from the results of the bending study.
 
     dd3 study report docs/reports/bending_study.md

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Keyword blocks of shape files, which have the syntax of dd3imp's input."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package.
 
 The faces are meshed together with quadrilaterals of second order. Their nodes lie on the CAD and are shared, and each

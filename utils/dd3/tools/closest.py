@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Closest points of a CAD face, from the parameters of the patches' nodes by Newton's method."""
 from typing import Any
 

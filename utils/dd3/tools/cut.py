@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cuts of CAD faces that close in themselves, as a fillet or a bead around a whole tool: their parts have four edges,
 and so a regular mesh."""
 from typing import Any

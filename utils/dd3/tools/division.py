@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Division of CAD faces into quadrilaterals: how often each edge is divided, and which faces have a regular mesh."""
 from collections import defaultdict
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of facets: STL, Gmsh, Abaqus, LS-DYNA and VTK files as nodes and triangles or quadrilaterals."""
 import re
 from collections.abc import Iterator, Mapping, Sequence

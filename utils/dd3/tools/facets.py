@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Facets to patches: reading, mending, parts, sides, offset."""
 import argparse
 from pathlib import Path

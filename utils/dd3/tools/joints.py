@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Joints of a surface's patches: shared, free and multiple edges, orientation, bodies, kinks, near misses.
 
 Edges are joined as the program joins them: their points at 0, 1/4, 1/2, 3/4 and 1 coincide within 1e-6 of the diagonal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Calls of a library that on some damaged files does not end, or ends the process by a fault."""
 import os
 import sys

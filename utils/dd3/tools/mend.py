@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Mending of facets: nodes merged, facets without area and doubled ones removed, sides made consistent."""
 from collections.abc import Sequence
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces at another place: rotated and moved, or at a distance along their normals."""
 from collections.abc import Sequence
 

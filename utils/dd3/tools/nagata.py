@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Curved patches from facets: normals at the nodes, quadratic interpolation of the edges.
 
 An edge is the quadratic that is perpendicular to the normals at its ends (Nagata, Computer Aided Geometric Design 22

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Parameters of the nodes on their CAD faces, from where the search of the closest point starts."""
 from typing import Any
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Picture of a tool's patches with their normals. No display is needed."""
 from pathlib import Path
 from typing import Any

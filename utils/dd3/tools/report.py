@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Report on a tool's surface: what it is made of, warnings, and errors that name the faces."""
 import argparse
 from collections.abc import Iterable

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tools without CAD, as exact rational patches: a profile of lines and arcs, extruded, revolved or led around a
 rectangle; punch, die and holder of a box with rounded corners.
 

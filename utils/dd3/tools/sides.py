@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Which side of a surface faces the sheet: turning of bodies, and faces that face away from the sheet."""
 
 import numpy as np

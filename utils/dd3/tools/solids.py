@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tools as CAD by Gmsh: profiles with fillets, and STEP files of parts."""
 import argparse
 from collections.abc import Callable

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces of Bézier patches of degree 2 in u and v, rational or not: evaluation, degree reduction, .bez files.
 
 Planes, cylinders and all else of a lower degree are raised to degree 2 exactly, so that one array holds a surface;

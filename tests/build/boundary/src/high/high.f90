@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The highest folder, which uses both.
 module high
   use low, only : number

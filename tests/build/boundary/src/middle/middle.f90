@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
 !> The folder between, which declares that it uses the lowest.
 module middle
   use low, only : number

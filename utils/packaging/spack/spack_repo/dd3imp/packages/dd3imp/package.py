@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Recipe of Spack for a clone, see utils/packaging/README.md."""
 
 from spack.package import depends_on, license, requires, variant, version
