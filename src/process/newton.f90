@@ -93,6 +93,10 @@ module dd3_process_newton
   !> Ratio |g(s)/g(0)| up to which a step is not shortened. Smaller: more evaluations for hardly
   !> fewer iterations; larger: more iterations where sheets bend and unbend over radii.
   real(wp), parameter :: largest_ratio = 0.3_wp
+  !> Scaled norm below which steps are not shortened. Near the solution residual and step may be
+  !> nearly orthogonal, and the ratio says nothing; with friction and exact contact the iterations
+  !> would crawl there.
+  real(wp), parameter :: near = 1.0e-2_wp
   !> Distance of the next fraction from the ends of its interval, over the interval, and the largest
   !> number of times that a step is shortened.
   real(wp), parameter :: margin = 0.1_wp
@@ -171,6 +175,7 @@ contains
       too_far = .true.
       if (course%verdict%outcome == verdict_converged) then
         if (course%iterations == 1) return
+        if (k == 0 .and. problem%scaled_norm < near) return
         slope = problem%slope()
         too_far = slope*start < 0.0_wp
         if (is_small(slope, start) .or. (k == 0 .and. .not. too_far)) return

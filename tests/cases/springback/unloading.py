@@ -17,7 +17,7 @@ changed by the least amount (norm over all components) that puts x0 in equilibri
 
 Result: arm_uz = -0.3896 mm, far_uz = -6.0882 mm (the height at the end of the draw). The program gives -0.3863 mm: the
 stresses at the nodes are means over the elements that share them, and the correction is as large as they are. With the
-tolerance of the case, 1e-2, the program gives -0.3851 mm.
+tolerance of the case, 1e-2, the program gives -0.3852 mm.
 """
 
 import sys
