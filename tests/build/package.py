@@ -25,6 +25,7 @@ def main():
     parser.add_argument("--cmake", required=True)
     parser.add_argument("--build", required=True, type=pathlib.Path)
     parser.add_argument("--compiler", required=True, help="Fortran compiler of the build")
+    parser.add_argument("--generator", required=True, help="that of the build")
     parser.add_argument("--version", required=True)
     options = parser.parse_args()
     os.environ.pop("DESTDIR", None)
@@ -32,7 +33,7 @@ def main():
         prefix, work = pathlib.Path(name) / "a prefix", pathlib.Path(name) / "work"
         call([options.cmake, "--install", options.build, "--prefix", prefix])
         configure = [options.cmake, "-S", HERE / "package", "-B", work, f"-DCMAKE_PREFIX_PATH={prefix}",
-                     f"-DCMAKE_Fortran_COMPILER={options.compiler}"]
+                     "-G", options.generator, f"-DCMAKE_Fortran_COMPILER={options.compiler}"]
         next_major = int(options.version.split(".")[0]) + 1
         assert "compatible" in call([*configure, f"-DWANTED={next_major}.0"], expected=1)
         call([*configure, f"-DWANTED={options.version}"])
