@@ -45,7 +45,7 @@ module dd3_process_step_control
     type(passage_t) :: passage = passage_t()
   end type attempt_t
 
-  !> Work data of the increments. Only the memory of the solver is kept from one to the next.
+  !> Work data of the increments; nothing in them changes the result of the next one.
   type :: stepper_t
     type(system_t) :: system
     type(prediction_t) :: prediction
