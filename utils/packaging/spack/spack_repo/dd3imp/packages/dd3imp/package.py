@@ -22,6 +22,7 @@ class Dd3imp(CMakePackage):
     depends_on("cmake@3.25:", type="build")
     depends_on("lapack")
     depends_on("suite-sparse")
+    depends_on("metis@5: ~int64")
     depends_on("hdf5+fortran+hl~mpi")
     depends_on("mumps~mpi", when="+mumps")
 
