@@ -8,8 +8,8 @@ module dd3_app_command_line
   public :: options_t, read_command_line, parse_arguments, usage_text
 
   !> Known options.
-  character(len=14), parameter :: known(9) = [character(len=14) :: "--check", "--initial", "--set", &
-      "--output", "--restart", "--threads", "--quiet", "--version", "--help"]
+  character(len=14), parameter :: known(9) = [character(len=14) :: "--check", "--initial", &
+      "--set", "--output", "--restart", "--threads", "--quiet", "--version", "--help"]
 
   !> Options of a call.
   type :: options_t

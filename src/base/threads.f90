@@ -8,8 +8,8 @@ module dd3_base_threads
   public :: set_threads, most_threads, processors, threads_for
   public :: least_points, least_nodes, least_values
 
-  !> Integration points of a loop over elements, passes of one over nodes, candidates or rows, and of
-  !> one over the values of a matrix that occupy a thread longer than it waits for the others.
+  !> Integration points of a loop over elements, passes of one over nodes, candidates or rows, and
+  !> of one over the values of a matrix that occupy a thread longer than it waits for the others.
   integer, parameter :: least_points = 128, least_nodes = 256, least_values = 50000
 
 contains

@@ -38,12 +38,7 @@ contains
     type(c_ptr), value :: text, name, message
     integer(c_size_t), value :: length
 
-    type(law_material_t), pointer :: self
-    type(error_t), allocatable :: error
-
-    allocate (self)
-    call new_law_material(self, text_name, from_c(name), error, from_c(text))
-    material_new = handle_of(self, error, message, length)
+    material_new = new_handle(text_name, name, message, length, from_c(text))
   end function material_new
 
   !> Make a material from a file; null if it has errors.
@@ -51,22 +46,23 @@ contains
     type(c_ptr), value :: file, name, message
     integer(c_size_t), value :: length
 
+    material_read = new_handle(from_c(file), name, message, length)
+  end function material_read
+
+  !> Return the handle of a new material; null if it has errors.
+  function new_handle(file, name, message, length, content) result(handle)
+    character(len=*), intent(in) :: file
+    type(c_ptr), intent(in) :: name, message
+    integer(c_size_t), intent(in) :: length
+    !> Text in place of the file.
+    character(len=*), intent(in), optional :: content
+    type(c_ptr) :: handle
+
     type(law_material_t), pointer :: self
     type(error_t), allocatable :: error
 
     allocate (self)
-    call new_law_material(self, from_c(file), from_c(name), error)
-    material_read = handle_of(self, error, message, length)
-  end function material_read
-
-  !> Return the handle of a new material, or release it if there is an error.
-  function handle_of(self, error, message, length) result(handle)
-    type(law_material_t), pointer, intent(inout) :: self
-    type(error_t), allocatable, intent(in) :: error
-    type(c_ptr), intent(in) :: message
-    integer(c_size_t), intent(in) :: length
-    type(c_ptr) :: handle
-
+    call new_law_material(self, file, from_c(name), error, content)
     if (allocated(error)) then
       call to_c(error%message, message, length)
       deallocate (self)
@@ -75,7 +71,7 @@ contains
       call to_c("", message, length)
       handle = c_loc(self)
     end if
-  end function handle_of
+  end function new_handle
 
   !> Release a material.
   subroutine material_free(handle) bind(c, name="dd3laws_free")

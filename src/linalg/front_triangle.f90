@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Division of rectangular blocks by triangular factors, by halves, so that nearly all operations are
-!> matrix products: the triangular solves of BLAS take several times as long. The diagonal blocks are
-!> inverted beforehand.
+!> Division of rectangular blocks by triangular factors, by halves, so that nearly all operations
+!> are matrix products: the triangular solves of BLAS take several times as long. The diagonal
+!> blocks are inverted beforehand.
 module dd3_linalg_front_triangle
   use dd3_base_kinds, only : wp
   use dd3_linalg_dense, only : dgemm, dtrmm

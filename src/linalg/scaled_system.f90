@@ -6,7 +6,7 @@ module dd3_linalg_scaled_system
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_base_threads, only : least_nodes, threads_for
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : own_rows
   implicit none
@@ -109,7 +109,7 @@ contains
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
     verdict%node = bad_row
-    verdict%cause = cause_solver
+    verdict%cause = cause_singular
     verdict%detail = "row of zeros or value that is not finite"
   end subroutine scaled_system_fill
 

@@ -14,8 +14,8 @@ module dd3_linalg_umfpack_solver
 
   !> Relative residual accepted where the tolerance asks for less.
   real(wp), parameter :: residual_limit = 1.0e-6_wp
-  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is taken
-  !> for that of a slender sheet and not of a singular matrix.
+  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is
+  !> taken for that of a slender sheet and not of a singular matrix.
   real(wp), parameter :: largest_round_off = 1.0e-3_wp
 
   !> Direct solver of the library UMFPACK.

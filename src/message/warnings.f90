@@ -111,8 +111,8 @@ contains
           "A logarithmic strain of 2 is a stretch of more than seven; 0.1 is about 10 %.", &
           "Check `target`; strains are no percentages."), &
       row("W114", "perturbed pivot", &
-          "A pivot of the linear system vanished and was perturbed: hardly anything resists this "// &
-          "displacement. `perturbed` in status.csv counts such pivots; a solution that "// &
+          "A pivot of the linear system vanished and was perturbed: hardly anything resists "// &
+          "this displacement. `perturbed` in status.csv counts such pivots; a solution that "// &
           "does not satisfy the system is refused.", &
           "Supports or contact that hold the part of the sheet, or the tool, that is named.")]
   end function run_warnings

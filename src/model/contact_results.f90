@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Contact between the candidates and the tools: closest points and, in a committed state, gap to the
-!> nearest tool and pressure, which is normal force over area.
+!> Contact between the candidates and the tools: closest points and, in a committed state, gap to
+!> the nearest tool and pressure, which is normal force over area.
 module dd3_model_contact_results
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t, hit_t

@@ -68,7 +68,8 @@ contains
   end subroutine add_forming_values
 
   !> Return work and energies, mJ. The error is the work on the sheet less internal work, friction
-  !> work, that of draw-beads and the energy of the contact layers; it vanishes with the increments and the tolerance of equilibrium.
+  !> work, that of draw-beads and the energy of the contact layers; it vanishes with the increments
+  !> and the tolerance of equilibrium.
   pure function energies(model, state) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

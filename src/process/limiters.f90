@@ -38,8 +38,8 @@ module dd3_process_limiters
 contains
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the
-  !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase and
-  !> the other limiters.
+  !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase
+  !> and the other limiters.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.

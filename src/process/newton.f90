@@ -93,9 +93,9 @@ module dd3_process_newton
   !> Ratio |g(s)/g(0)| up to which a step is not shortened. Smaller: more evaluations for hardly
   !> fewer iterations; larger: more iterations where sheets bend and unbend over radii.
   real(wp), parameter :: largest_ratio = 0.3_wp
-  !> Scaled norm below which steps are not shortened. Near the solution residual and step may be
-  !> nearly orthogonal, and the ratio says nothing; with friction and exact contact the iterations
-  !> would crawl there.
+  !> Scaled norm below which steps are not shortened, the default tolerance. Near the solution
+  !> residual and step may be nearly orthogonal, and the ratio says nothing; with friction and exact
+  !> contact the iterations would crawl there.
   real(wp), parameter :: near = 1.0e-2_wp
   !> Distance of the next fraction from the ends of its interval, over the interval, and the largest
   !> number of times that a step is shortened.

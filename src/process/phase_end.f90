@@ -69,8 +69,8 @@ contains
     if (phase%until%kind == until_displacement) until_tolerance = displacement_tolerance
   end function until_tolerance
 
-  !> Return the fraction of an increment, by linear interpolation, after which a phase ends early, if
-  !> the increment has gone beyond that end by more than the tolerance; 1 otherwise.
+  !> Return the fraction of an increment, by linear interpolation, after which a phase ends early,
+  !> if the increment has gone beyond that end by more than the tolerance; 1 otherwise.
   pure real(wp) function until_fraction(phase, before, after) result(fraction)
     type(phase_t), intent(in) :: phase
     !> States at the start and at the end of the increment.

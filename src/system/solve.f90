@@ -59,10 +59,10 @@ contains
       if (report%cause == cause_singular) verdict%node = system%solver%perturbed%row
     end if
     if (verdict%node <= model%n_node) return
-    ! Nothing resists a tool whose block row is empty or singular.
     verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
     verdict%node = 0
-    verdict%cause = cause_lost_tool
+    ! Nothing resists a tool whose block row is empty or singular.
+    if (verdict%cause == cause_singular) verdict%cause = cause_lost_tool
   end subroutine solve_reduced
 
   !> Add the perturbed pivots of a factorisation.
