@@ -48,9 +48,6 @@ def copy_pages(pages):
         text = re.sub(r"\]\(\s*(?:\.\./)+CONTRIBUTING\.md", f"]({up}CONTRIBUTING.md", text)
         for link in re.findall(r"\]\(\s*((?:\.\./)*input_files/[^)#]+)\)", text):
             target = link[link.index("input_files/"):]
-            if (ROOT / target).is_dir():
-                text = text.replace(f"]({link})", f"](<{link}>)").replace(f"[{target}](<{link}>)", f"`{target}`")
-                continue
             (pages / target).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / target, pages / target)
             text = text.replace(f"({link})", f"({up}{target})")
