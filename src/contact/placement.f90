@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Placement of a tool: the rigid transformation x = R X + t from the frame of its surface to the
-!> global one. Tools do not turn yet: R is the identity.
+!> global one.
 module dd3_contact_placement
   use dd3_base_kinds, only : wp
   implicit none

@@ -16,7 +16,7 @@ module dd3_input_case
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
   public :: limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t
+  public :: tool_gap_t, tool_name_t, tool_turn_t, tool_vector_t, displace_spec_t, free_spec_t
   public :: load_spec_t, until_spec_t
   public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
@@ -269,6 +269,16 @@ module dd3_input_case
     type(location_t) :: at
   end type tool_vector_t
 
+  !> A turn of a tool about an axis that moves with it.
+  type :: tool_turn_t
+    !> Position in `case%tool`.
+    integer :: tool = 0
+    !> Point and direction of the axis where the tool stands at the start of the job, mm, and the
+    !> angle over the phase, degrees.
+    real(wp) :: value(7) = 0.0_wp
+    type(location_t) :: at
+  end type tool_turn_t
+
   !> A gap between two tools at the end of a phase.
   type :: tool_gap_t
     !> Positions in `case%tool` of the tool that moves and of the other one.
@@ -354,13 +364,15 @@ module dd3_input_case
     !> Tools moved, and tools pressed.
     type(tool_vector_t), allocatable :: move(:), press(:)
     type(tool_gap_t), allocatable :: gap(:)
+    type(tool_turn_t), allocatable :: turn(:)
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
     type(motion_spec_t), allocatable :: motion(:)
     type(pressure_spec_t), allocatable :: pressure(:)
-    !> Progress and factor on displacements and loads, in pairs; size 0 if not given.
-    real(wp), allocatable :: table(:)
+    !> Progress and factor on displacements and loads, on the motions and on the turns of tools, in
+    !> pairs; size 0 if not given.
+    real(wp), allocatable :: table(:), move_table(:), turn_table(:)
     !> Progress and factor on the forces of `press`, in pairs; size 0 if not given.
     real(wp), allocatable :: press_table(:)
     type(until_spec_t) :: until

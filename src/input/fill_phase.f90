@@ -6,8 +6,8 @@ module dd3_input_fill_phase
   use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
-      newton_spec_t, tool_gap_t, tool_name_t, tool_vector_t, displace_spec_t, free_spec_t, &
-      load_spec_t, motion_spec_t, pressure_spec_t, until_spec_t, until_displacement, until_force
+      newton_spec_t, tool_gap_t, tool_name_t, tool_turn_t, tool_vector_t, displace_spec_t, &
+      free_spec_t, load_spec_t, motion_spec_t, pressure_spec_t, until_spec_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -45,12 +45,15 @@ contains
     call fill_tool_vectors(phase%move, case, block, "move")
     call fill_tool_vectors(phase%press, case, block, "press")
     call fill_gaps(phase%gap, case, block)
+    call fill_turns(phase%turn, case, block)
     call fill_displacements(phase%displace, block)
     call fill_freed(phase%free, block)
     call fill_loads(phase%load, block)
     call fill_motions(phase%motion, block)
     call fill_pressures(phase%pressure, block)
     phase%table = block%numbers("table")
+    phase%move_table = block%numbers("move_table")
+    phase%turn_table = block%numbers("turn_table")
     phase%press_table = block%numbers("press_table")
     call fill_until(phase%until, case, block)
     case%phase(i) = phase
@@ -216,6 +219,26 @@ contains
       end associate
     end do
   end subroutine fill_gaps
+
+  subroutine fill_turns(list, case, block)
+    type(tool_turn_t), allocatable, intent(out) :: list(:)
+    !> Its tools must be filled.
+    type(case_t), intent(in) :: case
+    type(block_t), intent(in) :: block
+
+    integer, allocatable :: position(:)
+    integer :: i
+
+    position = entries(block, "turn")
+    allocate (list(size(position)))
+    do i = 1, size(position)
+      associate (entry => block%entry(position(i)))
+        list(i)%tool = tool_position(case, entry%value(1)%text)
+        list(i)%value = entry%number(:7)
+        list(i)%at = entry%value(1)%at
+      end associate
+    end do
+  end subroutine fill_turns
 
   subroutine fill_pressures(list, block)
     type(pressure_spec_t), allocatable, intent(out) :: list(:)

@@ -238,6 +238,9 @@ contains
           form="tool"), &
       row("move", kind_other, "mm", "-", "displacement of a tool over the phase", &
           repeatable=.true., form="tool number number number"), &
+      row("turn", kind_other, "mm, degrees", "-", "turn of a tool over the phase: point and "// &
+          "direction of the axis where the tool stands at the start of the job, angle", &
+          repeatable=.true., form="tool number number number number number number number"), &
       row("gap", kind_other, "mm", "-", "tool that moves along z over the phase to a gap from "// &
           "another tool, in mm or thicknesses of the sheet", repeatable=.true., &
           form="tool tool number [thicknesses]"), &
@@ -267,6 +270,10 @@ contains
           form="set number number number number number number number"), &
       row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
           "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("move_table", kind_reals, "", "-", "progress and factor on move and gap, in pairs "// &
+          "from 0 0 on; default: 0 0 1 1", count=0), &
+      row("turn_table", kind_reals, "", "-", "progress and factor on the angles of turn, in "// &
+          "pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
           "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &

@@ -28,8 +28,10 @@ contains
 
     real(wp), allocatable :: force(:, :)
     integer, allocatable :: motion(:)
+    logical :: turned(size(case%tool))
     integer :: i
 
+    turned = .false.
     allocate (force(3, size(case%tool)), source=0.0_wp)
     allocate (motion(size(case%tool)), source=held)
     do i = 1, size(case%phase)
@@ -39,9 +41,10 @@ contains
       call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
+      call check_turns(case, case%phase(i), turned, errors)
       call check_bends(case, i, errors)
       call check_loads(case%phase(i), errors)
-      call check_table(case%phase(i), errors)
+      call check_tables(case%phase(i), errors)
       call check_press_table(case%phase(i), errors)
     end do
   end subroutine check_phases
@@ -193,12 +196,12 @@ contains
     n_actions = size(phase%gap) + size(phase%move) + size(phase%press) + size(phase%displace)
     n_actions = n_actions + size(phase%load)
     n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
-    n_actions = n_actions + size(phase%motion) + size(phase%pressure)
+    n_actions = n_actions + size(phase%motion) + size(phase%pressure) + size(phase%turn)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, gap, press, displace, free, load, release, unload, rotate, "// &
-            "bend, pressure", code="E144")
+            "at least one of move, turn, gap, press, displace, free, load, release, unload, "// &
+            "rotate, bend, pressure", code="E144")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &
@@ -207,6 +210,8 @@ contains
       end if
       return
     end if
+    if (size(phase%move_table) > 0) call errors%push_input(phase%source%at("move_table"), &
+        "a tool with a table of its motion cannot control the phase", "control = load", code="E144")
     do i = 1, size(phase%move)
       if (phase%move(i)%tool /= phase%control) cycle
       if (.not. norm2(phase%move(i)%vector) > 0.0_wp) then
@@ -268,6 +273,41 @@ contains
     end do
   end subroutine check_motions
 
+  !> Check the axes of the turns, that a tool turns about one axis, that no gap is measured from or
+  !> to a tool that has turned, and that none carries a draw-bead.
+  subroutine check_turns(case, phase, turned, errors)
+    type(case_t), intent(in) :: case
+    type(phase_spec_t), intent(in) :: phase
+    !> Tools that have turned so far.
+    logical, intent(inout) :: turned(:)
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: named(size(case%tool))
+    integer :: i
+
+    named = .false.
+    do i = 1, size(phase%turn)
+      associate (turn => phase%turn(i))
+        if (.not. norm2(turn%value(4:6)) > 0.0_wp) call errors%push_input(turn%at, &
+            "the axis has no direction", &
+            "tool, x y z of a point, three components of a direction, angle", code="E135")
+        if (named(turn%tool)) call errors%push_input(turn%at, "tool '"// &
+            case%tool(turn%tool)%source%called()//"' is given two turns in this phase", &
+            "one turn for each tool", code="E122")
+        if (any(case%drawbead%tool == turn%tool)) call errors%push_input(turn%at, "tool '"// &
+            case%tool(turn%tool)%source%called()//"' carries a draw-bead, which cannot turn", &
+            "a draw-bead without this tool", code="E144")
+        named(turn%tool) = .true.
+      end associate
+    end do
+    turned = turned .or. named
+    do i = 1, size(phase%gap)
+      if (any(turned([phase%gap(i)%tool, phase%gap(i)%other]))) call errors%push_input( &
+          phase%gap(i)%at, "the gap is not known beforehand, as one of the tools turns", &
+          "a move of a tool that turns", code="E144")
+    end do
+  end subroutine check_turns
+
   !> Report a bend of a set that an earlier phase bends to an angle that is not known.
   subroutine check_bends(case, i, errors)
     type(case_t), intent(in) :: case
@@ -312,20 +352,38 @@ contains
     end do
   end subroutine check_loads
 
-  !> Check that the table begins at 0 0, that its progress increases to 1, and that it acts on
-  !> something.
-  subroutine check_table(phase, errors)
+  !> Check the tables that begin at 0 0.
+  subroutine check_tables(phase, errors)
     type(phase_spec_t), intent(in) :: phase
     type(error_list_t), intent(inout) :: errors
 
-    character(len=*), parameter :: form = "table = 0 0  s1 f1 ... 1 fn, with the progress s "// &
-        "increasing from 0 to 1"
+    call check_table(phase, "table", phase%table, size(phase%displace) + size(phase%motion) &
+        + size(phase%load) + size(phase%pressure), "displace, rotate, bend, load or pressure", &
+        errors)
+    call check_table(phase, "move_table", phase%move_table, size(phase%move) + size(phase%gap), &
+        "move or gap", errors)
+    call check_table(phase, "turn_table", phase%turn_table, size(phase%turn), "turn", errors)
+  end subroutine check_tables
+
+  !> Check that a table begins at 0 0, that its progress increases to 1, and that it acts on
+  !> something.
+  subroutine check_table(phase, key, x, n_actions, actions, errors)
+    type(phase_spec_t), intent(in) :: phase
+    character(len=*), intent(in) :: key
+    !> Progress and factor, in pairs; size 0 if not given.
+    real(wp), intent(in) :: x(:)
+    !> Number and names of the actions with this factor.
+    integer, intent(in) :: n_actions
+    character(len=*), intent(in) :: actions
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: form
     integer :: n
 
-    n = size(phase%table)
+    n = size(x)
     if (n == 0) return
-    associate (x => phase%table, &
-        value => phase%source%entry(phase%source%find("table"))%value)
+    form = key//" = 0 0  s1 f1 ... 1 fn, with the progress s increasing from 0 to 1"
+    associate (value => phase%source%entry(phase%source%find(key))%value)
       if (mod(n, 2) == 1 .or. n < 4) then
         call errors%push_input(value(1)%at, "expected pairs of progress and factor, at least "// &
             "two, got "//to_text(n)//" numbers", form, code="E132")
@@ -333,9 +391,8 @@ contains
       end if
       if (any(abs(x(:2)) > 0.0_wp)) call errors%push_input(value(1)%at, &
           "the table does not begin with 0 0", form, code="E134")
-      if (size(phase%displace) + size(phase%motion) + size(phase%load) + size(phase%pressure) &
-          == 0) call errors%push_input(value(1)%at, "the table has no effect in this phase", &
-          "a phase with displace, rotate, bend, load or pressure; tools move linearly", code="E125")
+      if (n_actions == 0) call errors%push_input(value(1)%at, &
+          "the table has no effect in this phase", "a phase with "//actions, code="E125")
       call check_progress(x(3:), value(3:), form, errors)
     end associate
   end subroutine check_table

@@ -186,12 +186,21 @@ contains
           call digest%add(motion%node)
         end associate
       end do
-      if (allocated(phase%table)) call digest%add(reshape(phase%table, [size(phase%table)]))
-      if (allocated(phase%press_table)) &
-          call digest%add(reshape(phase%press_table, [size(phase%press_table)]))
+      call add_table(digest, phase%table)
+      call add_table(digest, phase%move_table)
+      call add_table(digest, phase%turn_table)
+      call add_table(digest, phase%press_table)
     end associate
     phase_digest = digest%value()
   end function phase_digest
+
+  !> Add a table, if there is one.
+  subroutine add_table(digest, table)
+    type(digest_t), intent(inout) :: digest
+    real(wp), allocatable, intent(in) :: table(:, :)
+
+    if (allocated(table)) call digest%add(reshape(table, [size(table)]))
+  end subroutine add_table
 
   !> Add what a phase does with a tool, unless the tool is only held.
   subroutine add_tool(digest, phase, tool, name)
@@ -203,8 +212,11 @@ contains
     logical :: held
 
     held = phase%active(tool) .and. .not. phase%pressed(tool)
-    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0) return
+    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0 .and. &
+        .not. phase%turns(tool)) return
     call digest%add(name)
+    if (phase%turns(tool)) &
+        call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
     call digest%add([phase%pressed(tool), phase%active(tool), phase%keeps_tool_load(tool)])
     call digest%add([phase%move(:, tool), phase%direction(:, tool)])
     if (phase%gap_other(tool) > 0) call digest%add([phase%gap_offset(tool)])

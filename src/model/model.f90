@@ -107,6 +107,7 @@ module dd3_model_model
   contains
     procedure :: thickness_at
     procedure :: nodal_contact_forces
+    procedure :: turns
     procedure :: largest_thickness
     procedure :: least_shear
     procedure :: element_threads
@@ -141,6 +142,16 @@ contains
       call self%contact_point(c)%add_nodal_forces(x, point_force(:, c), force)
     end do
   end function nodal_contact_forces
+
+  !> Whether a tool turns in some phase.
+  pure logical function turns(self, tool)
+    class(model_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    integer :: i
+
+    turns = any([(self%phase(i)%turns(tool), i=1, size(self%phase))])
+  end function turns
 
   !> Return the largest thickness of the sheet at the start, mm.
   pure real(wp) function largest_thickness(self)

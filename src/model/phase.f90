@@ -6,6 +6,7 @@ module dd3_model_phase
   use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
   use dd3_model_motions, only : motion_t
   use dd3_model_tolerances, only : tangential
+  use dd3_model_turn, only : turn_t
   implicit none
   private
   public :: phase_t, is_normal_held
@@ -13,8 +14,8 @@ module dd3_model_phase
   !> Progress by which two places in a phase differ.
   real(wp), parameter :: step = 1.0e-9_wp
 
-  !> Phase in which all displacements and loads are linear in the progress, 0 to 1, but for those of
-  !> nodes if it has a table.
+  !> Phase in which all displacements and loads are linear in the progress, 0 to 1, but for those
+  !> with a table.
   type :: phase_t
     character(len=:), allocatable :: name
     !> Controlling tool; 0 if loads control.
@@ -25,6 +26,8 @@ module dd3_model_phase
     real(wp) :: length = 0.0_wp
     !> Displacement of the tools over the phase, `(3, n_tool)`, mm.
     real(wp), allocatable :: move(:, :)
+    !> Turns of the tools, `(n_tool)`.
+    type(turn_t), allocatable :: turn(:)
     !> Other tool, from which a tool has a gap at the end of the phase, 0 for none, and z of their
     !> relative displacement there, mm, `(n_tool)`.
     integer, allocatable :: gap_other(:)
@@ -63,6 +66,8 @@ module dd3_model_phase
     !> Progress and the factor on displacements, motions, loads and pressures there, `(2, n)`; not
     !> allocated if the factor is the progress.
     real(wp), allocatable :: table(:, :)
+    !> The same for the factors on the displacements and on the angles of the tools.
+    real(wp), allocatable :: move_table(:, :), turn_table(:, :)
     !> Progress, and the factors on the forces of the start and of `press` there, for the tools that
     !> this phase presses, `(3, n)`; not allocated if the forces vary linearly.
     real(wp), allocatable :: press_table(:, :)
@@ -81,6 +86,10 @@ module dd3_model_phase
   contains
     procedure :: factor
     procedure :: slope
+    procedure :: move_slope
+    procedure :: turns
+    procedure :: turn_factor
+    procedure :: turn_slope
     procedure :: tool_motion
     procedure :: tool_load
     procedure :: tool_load_rate
@@ -103,14 +112,7 @@ contains
     class(phase_t), intent(in) :: self
     real(wp), intent(in) :: progress
 
-    integer :: i
-
-    factor = progress
-    if (.not. allocated(self%table)) return
-    i = interval(self%table(1, :), progress)
-    associate (x => self%table(1, i:i + 1), y => self%table(2, i:i + 1))
-      factor = y(1) + (y(2) - y(1))*((progress - x(1))/(x(2) - x(1)))
-    end associate
+    factor = table_value(self%table, progress)
   end function factor
 
   !> Return the derivative of the factor behind a progress.
@@ -118,13 +120,70 @@ contains
     class(phase_t), intent(in) :: self
     real(wp), intent(in) :: progress
 
+    slope = table_slope(self%table, progress)
+  end function slope
+
+  !> Return the derivative of the factor on the displacements of the tools behind a progress.
+  pure real(wp) function move_slope(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    move_slope = table_slope(self%move_table, progress)
+  end function move_slope
+
+  !> Whether a tool turns.
+  pure logical function turns(self, tool)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    turns = abs(self%turn(tool)%angle) > 0.0_wp
+  end function turns
+
+  !> Return the factor on the angles of the tools at a progress.
+  pure real(wp) function turn_factor(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    turn_factor = table_value(self%turn_table, progress)
+  end function turn_factor
+
+  !> Return the derivative of the factor on the angles of the tools behind a progress.
+  pure real(wp) function turn_slope(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    turn_slope = table_slope(self%turn_table, progress)
+  end function turn_slope
+
+  !> Return the factor of a table at a progress; the progress if there is no table.
+  pure real(wp) function table_value(table, progress) result(factor)
+    !> Progress and factor, `(2, n)`.
+    real(wp), allocatable, intent(in) :: table(:, :)
+    real(wp), intent(in) :: progress
+
+    integer :: i
+
+    factor = progress
+    if (.not. allocated(table)) return
+    i = interval(table(1, :), progress)
+    associate (x => table(1, i:i + 1), y => table(2, i:i + 1))
+      factor = y(1) + (y(2) - y(1))*((progress - x(1))/(x(2) - x(1)))
+    end associate
+  end function table_value
+
+  !> Return the derivative of the factor of a table behind a progress; 1 if there is no table.
+  pure real(wp) function table_slope(table, progress) result(slope)
+    !> Progress and factor, `(2, n)`.
+    real(wp), allocatable, intent(in) :: table(:, :)
+    real(wp), intent(in) :: progress
+
     integer :: i
 
     slope = 1.0_wp
-    if (.not. allocated(self%table)) return
-    i = interval(self%table(1, :), progress + step)
-    slope = (self%table(2, i + 1) - self%table(2, i))/(self%table(1, i + 1) - self%table(1, i))
-  end function slope
+    if (.not. allocated(table)) return
+    i = interval(table(1, :), progress + step)
+    slope = (table(2, i + 1) - table(2, i))/(table(1, i + 1) - table(1, i))
+  end function table_slope
 
   !> Return the displacement of a tool that is not pressed over the phase, mm.
   pure function tool_motion(self, tool, start) result(motion)
@@ -188,12 +247,19 @@ contains
     class(phase_t), intent(in) :: self
     real(wp), intent(in) :: progress
 
-    next_kink = 1.0_wp
-    if (allocated(self%table)) next_kink = self%table(1, &
-        interval(self%table(1, :), progress + step) + 1)
-    if (allocated(self%press_table)) next_kink = min(next_kink, self%press_table(1, &
-        interval(self%press_table(1, :), progress + step) + 1))
+    next_kink = min(next_place(self%table, progress), next_place(self%move_table, progress), &
+        next_place(self%turn_table, progress), next_place(self%press_table, progress))
   end function next_kink
+
+  !> Return the next place of a table behind a progress; 1 without a table.
+  pure real(wp) function next_place(table, progress)
+    !> Progress in the first row.
+    real(wp), allocatable, intent(in) :: table(:, :)
+    real(wp), intent(in) :: progress
+
+    next_place = 1.0_wp
+    if (allocated(table)) next_place = table(1, interval(table(1, :), progress + step) + 1)
+  end function next_place
 
   !> Return the number of the interval that holds a value.
   pure integer function interval(x, value) result(i)

@@ -12,6 +12,7 @@ module dd3_model_phases
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
+  use dd3_model_turn, only : new_turn, turn_t
   implicit none
   private
   public :: new_phases
@@ -44,6 +45,7 @@ contains
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
       call set_tools(case%phase(i), model%phase(i))
+      call set_turns(model, case%phase(i), model%phase(i))
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
       call set_supports(model, unloaded, led, model%phase(i))
@@ -67,6 +69,7 @@ contains
     phase%name = ""
     allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%tool_load_end(3, n_tool), phase%load_end(3, n_load), source=0.0_wp)
+    allocate (phase%turn(n_tool))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), source=.false.)
@@ -88,6 +91,7 @@ contains
 
     phase = before
     phase%move = 0.0_wp
+    phase%turn = turn_t()
     phase%gap_other = 0
     phase%displacement = 0.0_wp
     phase%keeps_tool_load = .true.
@@ -95,6 +99,8 @@ contains
     phase%keeps_pressure = .true.
     phase%motion = phase%motion(:0)
     if (allocated(phase%table)) deallocate (phase%table)
+    if (allocated(phase%move_table)) deallocate (phase%move_table)
+    if (allocated(phase%turn_table)) deallocate (phase%turn_table)
     if (allocated(phase%press_table)) deallocate (phase%press_table)
   end subroutine new_phase_after
 
@@ -109,7 +115,9 @@ contains
     phase%limits = spec%limits
     phase%newton = spec%newton
     phase%until = spec%until
-    if (size(spec%table) > 0) phase%table = reshape(spec%table, [2, size(spec%table)/2])
+    call set_table(spec%table, phase%table)
+    call set_table(spec%move_table, phase%move_table)
+    call set_table(spec%turn_table, phase%turn_table)
     if (size(spec%press_table) > 0) then
       ! The force of the start is the first point.
       allocate (phase%press_table(3, size(spec%press_table)/2 + 1), source=0.0_wp)
@@ -126,6 +134,29 @@ contains
     phase%search_distance = spec%contact%search_distance
     if (phase%search_distance <= 0.0_wp) phase%search_distance = model%largest_thickness()
   end subroutine set_settings
+
+  !> Set a table from its pairs, if there are any.
+  pure subroutine set_table(pairs, table)
+    real(wp), intent(in) :: pairs(:)
+    real(wp), allocatable, intent(inout) :: table(:, :)
+
+    if (size(pairs) > 0) table = reshape(pairs, [2, size(pairs)/2])
+  end subroutine set_table
+
+  !> Set the turns of the tools.
+  pure subroutine set_turns(model, spec, phase)
+    type(model_t), intent(in) :: model
+    type(phase_spec_t), intent(in) :: spec
+    type(phase_t), intent(inout) :: phase
+
+    integer :: i
+
+    do i = 1, size(spec%turn)
+      associate (t => spec%turn(i)%tool)
+        phase%turn(t) = new_turn(spec%turn(i)%value, model%tool(t)%position)
+      end associate
+    end do
+  end subroutine set_turns
 
   !> Set the motion and load of the tools, and the trial increment as a fraction of the phase. A
   !> tool that is named after its release has contact again.

@@ -8,6 +8,7 @@ module dd3_model_state
   use dd3_contact_closest, only : hint_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
+  use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   implicit none
   private
@@ -15,8 +16,9 @@ module dd3_model_state
 
   !> Values set at the start of a phase: initial values, and final values of the loads.
   type :: phase_start_t
-    !> Displacement of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_displacement(:, :)
+    !> Displacement of the tools, `(3, n_tool)`, mm, their rotation, `(3, 3, n_tool)`, and angle,
+    !> `(n_tool)`, rad.
+    real(wp), allocatable :: tool_displacement(:, :), tool_rotation(:, :, :), tool_angle(:)
     !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
     !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm, and
@@ -87,8 +89,12 @@ module dd3_model_state
     real(wp), allocatable :: fading(:, :)
     !> Tool that released each node, while the force fades, `(n_node)`; 0 for none.
     integer, allocatable :: fading_tool(:)
-    !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_displacement(:, :)
+    !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm; of those
+    !> that turn, of the point `tool_centre` on the axis, `(3, n_tool)`, mm.
+    real(wp), allocatable :: tool_displacement(:, :), tool_centre(:, :)
+    !> Rotation of the tools, `(3, 3, n_tool)`, and their angle since the start of the job,
+    !> `(n_tool)`, rad.
+    real(wp), allocatable :: tool_rotation(:, :, :), tool_angle(:)
     !> Force pressed on the tools, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :)
     !> Force of the sheet on the tools, fading forces included, `(3, n_tool)`, N.
@@ -140,7 +146,11 @@ contains
     class(state_t), intent(in) :: self
     integer, intent(in) :: tool
 
-    placement%translation = self%tool_displacement(:, tool)
+    placement%rotation = self%tool_rotation(:, :, tool)
+    associate (centre => self%tool_centre(:, tool))
+      placement%translation = self%tool_displacement(:, tool) &
+          + (centre - placement%vector_to_global(centre))
+    end associate
   end function placement
 
   !> Whether a tool is in contact.
@@ -166,6 +176,8 @@ contains
       allocate (self%hint(n_tool, n_contact))
       allocate (self%slip_path(n_contact), source=0.0_wp)
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
+      allocate (self%tool_centre(3, n_tool), self%tool_angle(n_tool), source=0.0_wp)
+      self%tool_rotation = spread(identity, 3, n_tool)
       allocate (self%tool_force(3, n_tool), self%layer_offset(n_tool), source=0.0_wp)
       allocate (self%touched(n_tool), source=.false.)
       allocate (self%tool_depth(n_tool), self%largest_depth(n_tool), source=0.0_wp)
@@ -234,6 +246,8 @@ contains
     end associate
     allocate (self%held_offset(size(state%status)), source=-1.0_wp)
     allocate (self%plastic_strain(size(state%stress, 2), size(state%stress, 3)), source=0.0_wp)
+    self%tool_rotation = state%tool_rotation
+    self%tool_angle = state%tool_angle
     self%x = state%x
   end subroutine new_phase_start
 

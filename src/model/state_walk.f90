@@ -76,6 +76,9 @@ contains
     call visitor%reals("fading", size(state%fading), state%fading)
     call visitor%integers("fading_tool", size(state%fading_tool), state%fading_tool)
     call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
+    call visitor%reals("tool_centre", size(state%tool_centre), state%tool_centre)
+    call visitor%reals("tool_rotation", size(state%tool_rotation), state%tool_rotation)
+    call visitor%reals("tool_angle", size(state%tool_angle), state%tool_angle)
     call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
     call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
     call visitor%reals("layer_offset", size(state%layer_offset), state%layer_offset)
@@ -111,6 +114,8 @@ contains
 
     call visitor%reals("start_tool_displacement", size(start%tool_displacement), &
         start%tool_displacement)
+    call visitor%reals("start_tool_rotation", size(start%tool_rotation), start%tool_rotation)
+    call visitor%reals("start_tool_angle", size(start%tool_angle), start%tool_angle)
     call visitor%reals("start_tool_load", size(start%tool_load), start%tool_load)
     call visitor%reals("start_tool_load_end", size(start%tool_load_end), start%tool_load_end)
     call visitor%reals("start_layer_offset", size(start%layer_offset), start%layer_offset)

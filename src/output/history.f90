@@ -11,6 +11,7 @@ module dd3_output_history
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
+  use dd3_model_turning, only : torque, turned_angle
   use dd3_output_csv, only : table_t
   use dd3_output_forming_columns, only : add_forming_heading, add_forming_values
   implicit none
@@ -93,6 +94,9 @@ contains
       call add_vector(names, units, trim(model%tool(i)%name)//"_f", "N")
       names = names//","//trim(model%tool(i)%name)//"_contacts,"//trim(model%tool(i)%name)//"_depth"
       units = units//",-,mm"
+      if (.not. model%turns(i)) cycle
+      names = names//","//trim(model%tool(i)%name)//"_angle,"//trim(model%tool(i)%name)//"_torque"
+      units = units//",degrees,N.mm"
     end do
     if (allocated(model%history)) then
       do i = 1, size(model%history)
@@ -171,6 +175,9 @@ contains
       call table%add_reals(state%tool_force(:, i))
       call table%add_integer(count(state%contact_tool == i .and. state%status /= status_gap))
       call table%add_real(state%tool_depth(i))
+      if (.not. model%turns(i)) cycle
+      call table%add_real(turned_angle(state, i))
+      call table%add_real(torque(model, state, i))
     end do
     if (allocated(model%history)) call add_set_values(table, model, state)
     call add_forming_values(table, model, state)

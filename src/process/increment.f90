@@ -7,6 +7,7 @@ module dd3_process_increment
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_state, only : state_t
+  use dd3_model_turning, only : set_rotations
   use dd3_process_equilibrium, only : equilibrium_t
   use dd3_process_forces, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
@@ -64,6 +65,7 @@ contains
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*phase%length
       trial%hint%due = .true.
+      call set_rotations(phase, trial)
       call equilibrium%begin(prediction%step%scaled(r))
       call set_loads(model, trial)
       call evaluate_external(model, trial)

@@ -316,8 +316,8 @@ contains
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
         approach = dot_product(step%tool(:, tool) &
-            - model%contact_point(c)%change(state%x, step%x), &
-            contact%normal(:, c))
+            + stepper%prediction%progress*contact%turning(:, c) &
+            - model%contact_point(c)%change(state%x, step%x), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
         if (touching(tool) .and. .not. allowed%active) cycle
         depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))

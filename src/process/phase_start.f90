@@ -15,6 +15,7 @@ module dd3_process_phase_start
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_model_turning, only : begin_turns
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
   use dd3_process_forces, only : evaluate_external
   use dd3_process_phase_end, only : until_value
@@ -69,6 +70,7 @@ contains
       start%pressure_end = phase%pressure_end
       where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
+      call begin_turns(phase, state)
       call set_tool_loads(phase, state)
       start%until_from_below = .true.
       if (phase%until%kind == until_force) start%until_from_below = &

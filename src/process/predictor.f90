@@ -125,11 +125,11 @@ contains
       problem%residual = applied_forces(model, -factor*(start%load_end - start%load), &
           -factor*(start%pressure_end - start%pressure), committed%x, &
           faded*unfaded_forces(model, committed))
-      call advance_layers(self, committed, system)
+      call move_contacts(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
       do tool = 1, model%n_tool
-        problem%tool_prescribed(:, tool) = self%progress &
+        problem%tool_prescribed(:, tool) = self%progress*phase%move_slope(committed%progress) &
             *phase%tool_motion(tool, start%tool_displacement)
         problem%tool_residual(tool) = self%progress &
             *dot_product(phase%tool_load_rate(tool, committed%progress, &
@@ -138,8 +138,8 @@ contains
     end associate
   end subroutine impose_trial
 
-  !> Set the change of the contact forces by the layers that advance.
-  subroutine advance_layers(self, committed, system)
+  !> Set the change of the contact forces by the layers that advance and the tools that turn.
+  subroutine move_contacts(self, committed, system)
     type(prediction_t), intent(in) :: self
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
@@ -148,16 +148,16 @@ contains
     integer :: c
 
     system%problem%contact_residual = 0.0_wp
-    if (all(committed%start%layer_offset <= 0.0_wp)) return
-    rate = self%progress*offset_rate(committed%progress)
+    rate = offset_rate(committed%progress)
     associate (contact => system%contact)
       do c = 1, size(contact%tool)
         if (contact%tool(c) == 0) cycle
-        system%problem%contact_residual(:, c) = rate*committed%start%layer_offset( &
-            contact%tool(c))*matmul(contact%d(:, :, c), contact%normal(:, c))
+        system%problem%contact_residual(:, c) = self%progress*matmul(contact%d(:, :, c), &
+            rate*committed%start%layer_offset(contact%tool(c))*contact%normal(:, c) &
+            - contact%turning(:, c))
       end do
     end associate
-  end subroutine advance_layers
+  end subroutine move_contacts
 
   !> Add the curved motions to the prescribed displacements of the trial increment, along their
   !> tangents.

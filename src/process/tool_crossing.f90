@@ -31,7 +31,7 @@ module dd3_process_tool_crossing
 
 contains
 
-  !> Find where two tools have crossed in the running phase.
+  !> Find where two tools that have not turned have crossed in the running phase.
   pure function find_crossing(model, state, a, b) result(crossing)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -41,6 +41,7 @@ contains
 
     real(wp) :: moved(3), offset(3)
 
+    if (any(abs(state%tool_angle([a, b])) > 0.0_wp)) return
     associate (now => state%tool_displacement, start => state%start%tool_displacement)
       offset = now(:, a) - now(:, b)
       moved = offset - (start(:, a) - start(:, b))

@@ -5,7 +5,7 @@ module dd3_run_file_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t, limit_spec_t, limits_spec_t, newton_spec_t, phase_spec_t, &
-      tool_gap_t, until_force
+      tool_gap_t, tool_turn_t, until_force
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_output_run_summary, only : phase_summary_t
@@ -85,6 +85,7 @@ contains
       call json%add("motion", trim(motion))
       call json%add("active", phase%active(t))
       call add_vector(json, "displacement", phase%move(:, t), .not. phase%pressed(t))
+      call add_turn(json, pack(spec%turn, spec%turn%tool == t))
       call add_gap(json, model, pack(spec%gap, spec%gap%tool == t))
       call add_vector(json, "force", phase%tool_load_end(:, t), phase%pressed(t) .and. &
           .not. phase%keeps_tool_load(t))
@@ -107,6 +108,23 @@ contains
       call json%add_null(name)
     end if
   end subroutine add_vector
+
+  !> Add the turn of a tool; null without one.
+  subroutine add_turn(json, turn)
+    type(json_t), intent(inout) :: json
+    !> At most one.
+    type(tool_turn_t), intent(in) :: turn(:)
+
+    if (size(turn) == 0) then
+      call json%add_null("turn")
+      return
+    end if
+    call json%begin_object("turn")
+    call json%add("point", turn(1)%value(:3))
+    call json%add("axis", turn(1)%value(4:6))
+    call json%add("angle", turn(1)%value(7))
+    call json%end_object()
+  end subroutine add_turn
 
   !> Add the gap of a tool at the end of the phase; null without one.
   subroutine add_gap(json, model, gap)
@@ -194,6 +212,8 @@ contains
     type(phase_spec_t), intent(in) :: spec
 
     call add_table("table", spec%table)
+    call add_table("move_table", spec%move_table)
+    call add_table("turn_table", spec%turn_table)
     call add_table("press_table", spec%press_table)
 
   contains

@@ -15,6 +15,7 @@ module dd3_system_contact
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
+  use dd3_model_turning, only : turning_rate
   use dd3_system_contact_work, only : contact_work_t, open_candidate
   implicit none
   private
@@ -198,6 +199,8 @@ contains
       return
     end if
     self%normal(:, c) = hit%normal
+    self%turning(:, c) = turning_rate(model%phase(committed%phase), committed, tool, &
+        self%committed_x(:, c))
     self%committed_tool(c) = committed%contact_tool(c)
     self%committed_normal(:, c) = hit%normal
     self%committed_force(:, c) = committed%lambda(:, c)
@@ -210,7 +213,8 @@ contains
       self%onset(c) = 0.0_wp
       self%distance(c) = hit%distance
       friction = model%tool(tool)%friction
-      leaving = dot_product(phase%tool_motion(tool, committed%start%tool_displacement), &
+      leaving = dot_product(phase%move_slope(committed%progress) &
+          *phase%tool_motion(tool, committed%start%tool_displacement) + self%turning(:, c), &
           hit%normal) < 0.0_wp
       if (.not. touching(tool)) then
         self%status(c) = status_gap

@@ -28,8 +28,9 @@ module dd3_system_contact_work
     !> `(3, n_contact)`.
     integer, allocatable :: committed_tool(:)
     real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
-    !> Positions of the points in the committed state, `(3, n_contact)`, mm.
-    real(wp), allocatable :: committed_x(:, :)
+    !> Positions of the points in the committed state, and the part of its turn in the displacement
+    !> of the tool's point there per progress of the phase, `(3, n_contact)`, mm.
+    real(wp), allocatable :: committed_x(:, :), turning(:, :)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
     !> Distance up to which the tools are looked for, mm.
@@ -50,7 +51,8 @@ contains
     allocate (self%distance(n_contact), self%onset(n_contact), source=0.0_wp)
     allocate (self%normal(3, n_contact), self%force(3, n_contact), source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), source=0.0_wp)
+    allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), &
+        self%turning(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
   !> Set a candidate without a tool near it.

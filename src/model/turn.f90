@@ -1,0 +1,52 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Turn of a rigid tool in a phase about an axis that is fixed in the tool and moves with it. In a
+!> phase the place of a point X of the tool's surface is
+!>     x = c + u + R (X - c),    R = exp(theta [R_0 a]) R_0,
+!> with the point c and the direction a of the axis in the frame of the surface, the displacement u
+!> of that point, the angle theta since the start of the phase and the rotation R_0 there.
+!> Source: Rodrigues, J. Math. Pures Appl. 5 (1840) 380-440 (rotation about an axis).
+module dd3_model_turn
+  use dd3_base_kinds, only : pi, wp
+  use dd3_linalg_tensor, only : cross, identity
+  implicit none
+  private
+  public :: turn_t, new_turn, rotation_about
+
+  !> Turn of a tool over a phase.
+  type :: turn_t
+    !> Point c on the axis, mm, and its direction a, a unit vector.
+    real(wp) :: centre(3) = 0.0_wp, axis(3) = 0.0_wp
+    !> Angle over the phase, rad; 0 for a tool that does not turn.
+    real(wp) :: angle = 0.0_wp
+  end type turn_t
+
+contains
+
+  !> Make a turn from the values of the input.
+  pure type(turn_t) function new_turn(values, position) result(self)
+    !> Point and direction of the axis where the tool stands at the start of the job, mm, and the
+    !> angle, degrees.
+    real(wp), intent(in) :: values(7)
+    !> Displacement of the tool there from the coordinates of its file, mm.
+    real(wp), intent(in) :: position(3)
+
+    self%centre = values(1:3) - position
+    self%axis = values(4:6)/norm2(values(4:6))
+    self%angle = pi/180.0_wp*values(7)
+  end function new_turn
+
+  !> Return the matrix of a rotation about an axis.
+  pure function rotation_about(axis, angle) result(rotation)
+    !> Unit vector, and the angle, rad.
+    real(wp), intent(in) :: axis(3), angle
+    real(wp) :: rotation(3, 3)
+
+    integer :: j
+
+    do j = 1, 3
+      rotation(:, j) = cos(angle)*identity(:, j) + sin(angle)*cross(axis, identity(:, j)) &
+          + (1.0_wp - cos(angle))*axis(j)*axis
+    end do
+  end function rotation_about
+
+end module dd3_model_turn

@@ -1,0 +1,109 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Rotation of the tools in a state.
+module dd3_model_turning
+  use dd3_base_kinds, only : pi, wp
+  use dd3_contact_operator, only : status_gap
+  use dd3_contact_placement, only : placement_t
+  use dd3_linalg_tensor, only : cross
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_model_turn, only : rotation_about
+  implicit none
+  private
+  public :: begin_turns, set_rotations, turning_rate, turned_angle, torque
+
+contains
+
+  !> Refer the displacements of the tools that a phase turns to the points on its axes.
+  pure subroutine begin_turns(phase, state)
+    type(phase_t), intent(in) :: phase
+    !> At the start of the phase; gets centres and displacements.
+    type(state_t), intent(inout) :: state
+
+    type(placement_t) :: placement
+    integer :: t
+
+    do t = 1, size(phase%turn)
+      if (.not. phase%turns(t)) cycle
+      placement = state%placement(t)
+      associate (centre => phase%turn(t)%centre)
+        state%tool_displacement(:, t) = placement%translation &
+            + placement%vector_to_global(centre) - centre
+        state%tool_centre(:, t) = centre
+      end associate
+    end do
+    state%start%tool_rotation = state%tool_rotation
+    state%start%tool_angle = state%tool_angle
+  end subroutine begin_turns
+
+  !> Set the rotations of the tools at the progress of a state.
+  pure subroutine set_rotations(phase, state)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(inout) :: state
+
+    real(wp) :: angle
+    integer :: t
+
+    do t = 1, size(phase%turn)
+      if (.not. phase%turns(t)) cycle
+      angle = phase%turn_factor(state%progress)*phase%turn(t)%angle
+      associate (start => state%start%tool_rotation(:, :, t))
+        state%tool_rotation(:, :, t) = matmul(rotation_about(matmul(start, phase%turn(t)%axis), &
+            angle), start)
+      end associate
+      state%tool_angle(t) = state%start%tool_angle(t) + angle
+    end do
+  end subroutine set_rotations
+
+  !> Return the part of its turn in the displacement of a tool's point per progress of the phase,
+  !> mm.
+  pure function turning_rate(phase, state, tool, x) result(rate)
+    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    !> Place of the point, mm.
+    real(wp), intent(in) :: x(3)
+    real(wp) :: rate(3)
+
+    rate = 0.0_wp
+    if (.not. phase%turns(tool)) return
+    rate = phase%turn_slope(state%progress)*phase%turn(tool)%angle &
+        *cross(matmul(state%tool_rotation(:, :, tool), phase%turn(tool)%axis), &
+        x - state%tool_centre(:, tool) - state%tool_displacement(:, tool))
+  end function turning_rate
+
+  !> Return the angle by which a tool has turned since the start of the job, degrees.
+  pure real(wp) function turned_angle(state, tool) result(angle)
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+
+    angle = 180.0_wp/pi*state%tool_angle(tool)
+  end function turned_angle
+
+  !> Return the moment of the contact forces on a tool about the axis of its turn in the running
+  !> phase or the last one before, N.mm; 0 if it has not turned.
+  pure real(wp) function torque(model, state, tool)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+
+    real(wp) :: centre(3), axis(3)
+    integer :: i, c
+
+    axis = 0.0_wp
+    do i = state%phase, 1, -1
+      if (.not. model%phase(i)%turns(tool)) cycle
+      axis = matmul(state%tool_rotation(:, :, tool), model%phase(i)%turn(tool)%axis)
+      exit
+    end do
+    centre = state%tool_centre(:, tool) + state%tool_displacement(:, tool)
+    torque = 0.0_wp
+    do c = 1, model%n_contact
+      if (state%contact_tool(c) /= tool .or. state%status(c) == status_gap) cycle
+      torque = torque + dot_product(axis, cross(model%contact_point(c)%position(state%x) - centre, &
+          state%lambda(:, c)))
+    end do
+  end function torque
+
+end module dd3_model_turning
