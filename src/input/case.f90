@@ -273,8 +273,8 @@ module dd3_input_case
   type :: tool_turn_t
     !> Position in `case%tool`.
     integer :: tool = 0
-    !> Point and direction of the axis where the tool stands at the start of the job, mm, and the
-    !> angle over the phase, degrees.
+    !> Point and direction of the axis in the coordinates of the tool's file, mm, and the angle over
+    !> the phase, degrees.
     real(wp) :: value(7) = 0.0_wp
     type(location_t) :: at
   end type tool_turn_t

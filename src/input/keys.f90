@@ -239,7 +239,7 @@ contains
       row("move", kind_other, "mm", "-", "displacement of a tool over the phase", &
           repeatable=.true., form="tool number number number"), &
       row("turn", kind_other, "mm, degrees", "-", "turn of a tool over the phase: point and "// &
-          "direction of the axis where the tool stands at the start of the job, angle", &
+          "direction of the axis in the coordinates of the tool's file, angle", &
           repeatable=.true., form="tool number number number number number number number"), &
       row("gap", kind_other, "mm", "-", "tool that moves along z over the phase to a gap from "// &
           "another tool, in mm or thicknesses of the sheet", repeatable=.true., &

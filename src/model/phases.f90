@@ -45,7 +45,7 @@ contains
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
       call set_tools(case%phase(i), model%phase(i))
-      call set_turns(model, case%phase(i), model%phase(i))
+      call set_turns(case%phase(i), model%phase(i))
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
       call set_supports(model, unloaded, led, model%phase(i))
@@ -144,17 +144,14 @@ contains
   end subroutine set_table
 
   !> Set the turns of the tools.
-  pure subroutine set_turns(model, spec, phase)
-    type(model_t), intent(in) :: model
+  pure subroutine set_turns(spec, phase)
     type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
 
     integer :: i
 
     do i = 1, size(spec%turn)
-      associate (t => spec%turn(i)%tool)
-        phase%turn(t) = new_turn(spec%turn(i)%value, model%tool(t)%position)
-      end associate
+      phase%turn(spec%turn(i)%tool) = new_turn(spec%turn(i)%value)
     end do
   end subroutine set_turns
 

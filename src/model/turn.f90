@@ -23,14 +23,12 @@ module dd3_model_turn
 contains
 
   !> Make a turn from the values of the input.
-  pure type(turn_t) function new_turn(values, position) result(self)
-    !> Point and direction of the axis where the tool stands at the start of the job, mm, and the
-    !> angle, degrees.
+  pure type(turn_t) function new_turn(values) result(self)
+    !> Point and direction of the axis in the coordinates of the tool's file, mm, and the angle,
+    !> degrees.
     real(wp), intent(in) :: values(7)
-    !> Displacement of the tool there from the coordinates of its file, mm.
-    real(wp), intent(in) :: position(3)
 
-    self%centre = values(1:3) - position
+    self%centre = values(1:3)
     self%axis = values(4:6)/norm2(values(4:6))
     self%angle = pi/180.0_wp*values(7)
   end function new_turn

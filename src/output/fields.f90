@@ -8,6 +8,7 @@ module dd3_output_fields
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : keep_file, part_of, replace_file
+  use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : suffix_kept
@@ -40,7 +41,7 @@ module dd3_output_fields
     !> What VTKHDF asks of each step.
     type(series_t), private :: time, first_part, parts, first_cell, first_connectivity
     !> Place of each step in the run, and the displacement of the tools.
-    type(series_t), private :: increment, phase, progress, travel, tool
+    type(series_t), private :: increment, phase, progress, travel, tool, tool_rotation
     !> The file, and the attribute with the number of steps.
     integer(hid_t), private :: file = -1, step_count = -1
     !> Number of steps; increment and time of the last one.
@@ -235,7 +236,12 @@ contains
     if (model%n_tool > 0) then
       call self%tool%create(job, "tool_displacement", kind_real, 3*model%n_tool, .true., &
           step_chunk, ok)
-      call self%tool%describe("mm", "x y z of each tool, from the coordinates of its file", ok)
+      call self%tool%describe("mm", "x y z of each tool: displacement of the origin of the "// &
+          "coordinates of its file", ok)
+      call self%tool_rotation%create(job, "tool_rotation", kind_real, 9*model%n_tool, .true., &
+          step_chunk, ok)
+      call self%tool_rotation%describe("-", "axes of each tool's file, one after the other, in "// &
+          "global coordinates", ok)
     end if
     call close_group(job)
   end subroutine make_job
@@ -268,7 +274,10 @@ contains
     call copy_series(self%phase, old, int(n, hsize_t), ok)
     call copy_series(self%progress, old, int(n, hsize_t), ok)
     call copy_series(self%travel, old, int(n, hsize_t), ok)
-    if (self%tool%id >= 0) call copy_series(self%tool, old, int(n, hsize_t), ok)
+    if (self%tool%id >= 0) then
+      call copy_series(self%tool, old, int(n, hsize_t), ok)
+      call copy_series(self%tool_rotation, old, int(n, hsize_t), ok)
+    end if
     call copy_series(self%time, old, int(n, hsize_t), ok)
     call read_rows(old, self%time%path(), int(n - 1, hsize_t), 1_hsize_t, time, ok)
     call rewrite_attribute(self%step_count, [n], ok)
@@ -355,12 +364,29 @@ contains
     call self%phase%append_integers([state%phase], ok)
     call self%progress%append_reals([state%progress], ok)
     call self%travel%append_reals([state%travel], ok)
-    if (size(state%tool_displacement) > 0) then
-      call self%tool%append_reals(reshape(state%tool_displacement, &
-          [size(state%tool_displacement)]), ok)
-    end if
+    if (size(state%tool_displacement) > 0) call append_placements(self, state, ok)
     self%last_increment = state%increment
   end subroutine append_step
+
+  !> Add the placements of the tools.
+  subroutine append_placements(self, state, ok)
+    type(field_record_t), intent(inout) :: self
+    type(state_t), intent(in) :: state
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    type(placement_t) :: placement
+    real(wp) :: displacement(3, size(state%tool_displacement, 2))
+    integer :: t
+
+    do t = 1, size(displacement, 2)
+      placement = state%placement(t)
+      displacement(:, t) = placement%translation
+    end do
+    call self%tool%append_reals(reshape(displacement, [size(displacement)]), ok)
+    call self%tool_rotation%append_reals(reshape(state%tool_rotation, &
+        [size(state%tool_rotation)]), ok)
+  end subroutine append_placements
 
   !> Add the time of the step. It comes last: VTK 9 reads all times there are into room for the
   !> number of steps.
@@ -431,6 +457,7 @@ contains
     call self%progress%close()
     call self%travel%close()
     call self%tool%close()
+    call self%tool_rotation%close()
     call close_attribute(self%step_count)
     status = 0
     if (self%file >= 0) call h5fclose_f(self%file, status)

@@ -3,8 +3,8 @@
 !> with a line search: at the fraction s of the step the residual R does the work
 !>     g(s) = du . R(u + s du),
 !> the derivative of the potential along the step, if there is one. The full step is taken if it
-!> ends short of the minimum or g there is small against g(0); otherwise it is shortened to where g
-!> is small, or where it is in the domain of the problem. Full steps are too long where points
+!> ends short of the minimum or g there is small against g(0), or if g(0) says nothing; otherwise it
+!> is shortened to where g is small, or where it is in the domain of the problem. Full steps are too long where points
 !> return from plastic to elastic behaviour: the tangent is that of plastic flow.
 !> Source: H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626 (line search);
 !> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction).
@@ -97,6 +97,10 @@ module dd3_process_newton
   !> residual and step may be nearly orthogonal, and the ratio says nothing; with friction and exact
   !> contact the iterations would crawl there.
   real(wp), parameter :: near = 1.0e-2_wp
+  !> Ratio |g(1)/g(0)| above which the residual was nearly orthogonal to the step, so that g says
+  !> nothing. The full step is taken then if it reduces the norm. Where points stick to a tool that
+  !> leads them, searches on g shorten every step to a twentieth.
+  real(wp), parameter :: orthogonal = 10.0_wp
   !> Distance of the next fraction from the ends of its interval, over the interval, and the largest
   !> number of times that a step is shortened.
   real(wp), parameter :: margin = 0.1_wp
@@ -178,7 +182,9 @@ contains
         if (k == 0 .and. problem%scaled_norm < near) return
         slope = problem%slope()
         too_far = slope*start < 0.0_wp
-        if (is_small(slope, start) .or. (k == 0 .and. .not. too_far)) return
+        if (is_small(slope, start)) return
+        if (k == 0 .and. (.not. too_far .or. (abs(slope) > orthogonal*abs(start) .and. &
+            problem%scaled_norm < course%norm(course%iterations - 1)))) return
       end if
       if (too_far) then
         beyond = fraction

@@ -167,6 +167,37 @@ def strip_on_cylinder(bench):
     return Outcome(values)
 
 
+def turning_tools(bench):
+    load, radius = 0.2, 10.01
+    values = []
+    for angle, tension in ((5, load * exact.belt()), (-5, load / exact.belt())):
+        found = run(bench, "driven_cylinder", angle=str(angle))
+        values += [Value(f"strip on a cylinder turned by {angle} degrees: tension, N", tension, -found.last("left_rx"),
+                         4e-3),
+                   Value("torque on the cylinder, N.mm", (load - tension) * radius, found.last("cylinder_torque"),
+                         1.2e-2)]
+    radius, path = 20.0, 10.0
+    for angle, name in ((-20, "turned back by 20 degrees"), (0, "dragged")):
+        found = run(bench, "rolling_cylinder", angle=str(angle))
+        friction = 0.2 * found.last("cylinder_fz")
+        slip = path - radius * math.radians(angle)
+        values.append(Value(f"cylinder {name}: friction work, mJ", friction * slip, found.last("friction_work"), 2e-2))
+        if angle:
+            values.append(Value("its torque, N.mm", friction * radius, found.last("cylinder_torque"), 1e-3))
+    found = run(bench, "rolling_cylinder", angle=str(math.degrees(path / radius)))
+    values.append(Value("it rolls: friction work over that of the dragged one", 0.0,
+                        found.last("friction_work") / (friction * path), 1e-3, absolute=True))
+    for back in (2.0, 0.2):
+        found = run(bench, "driven_rolls", back=str(back))
+        torques = zip(found.column("lower_torque", "drive"), found.column("upper_torque", "drive"))
+        mean = [upper - lower for lower, upper in torques][13:]
+        values += [Value(f"strip drawn in against {back} N: torque of the rolls, mean, N.mm", back * radius,
+                         sum(mean) / len(mean), 5e-3),
+                   Value("path of the strip, mm", radius * math.radians(30),
+                         found.last("front_ux") - found.last("front_ux", "tension"), 1.2e-2)]
+    return Outcome(values)
+
+
 def blank_holder(bench):
     found = run(bench, "bending_5mm")
     drawn = [-die - punch for die, punch in zip(found.column("die_fz", "draw"), found.column("punch_fz", "draw"))]
@@ -236,6 +267,15 @@ A thin elastic strip slides over a quarter of a fixed cylinder, µ = 0.144, in t
 one. Euler, Eytelwein: T1/T2 = exp(µ π/2), whatever the height of the layer. Case `tests/cases/capstan`; other
 thicknesses and penalties in [capstan.md](reports/capstan.md).
 """, strip_on_cylinder),
+    Section("V22 Tools that turn", """
+A strip under a weight of 0.2 N slips on a quarter of a cylinder that turns, as in V20: the tension at the fixed end is
+the weight times exp(± µ π/2), the torque their difference times the radius of the middle line. A rigid cylinder of
+radius 20 mm is pressed on an elastic strip and moved by 10 mm: dragged, turned back, and rolling (turned by the path
+over the radius). Coulomb: torque µ N R, friction work µ N times the slip, none where it rolls. Two such cylinders draw
+an elastic strip in by 30 degrees against a tension F: without slip their torques sum up to F R, and the strip moves by
+R times the angle, less 0.35 %, by which the pressed strip is longer under the rolls, and less the creep in the contact
+layer, which grows with F. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
+""", turning_tools),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (b), the first 5 mm of the draw. No support holds the sheet
 along z: the die carries the 22600 N that press the blank-holder, and the force of the punch, within the criterion of

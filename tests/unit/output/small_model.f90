@@ -94,6 +94,7 @@ contains
     allocate (model%candidate(2, 2), source=.false.)
     do i = 1, 2
       allocate (model%phase(i)%active(2), source=.true.)
+      allocate (model%phase(i)%turn(2))
       model%phase(i)%mixed = .true.
     end do
     model%output%history = 1

@@ -18,7 +18,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
@@ -55,6 +55,17 @@ Patches = list[tuple[np.ndarray, np.ndarray]]  # points (v, u, 3) and weights (v
 Box = tuple[np.ndarray, np.ndarray]
 
 
+class Placement(NamedTuple):
+    """Place of a tool: the directions of the axes of its file, one after the other, and the displacement."""
+
+    axes: np.ndarray
+    displacement: np.ndarray
+
+    def of(self, points: np.ndarray) -> np.ndarray:
+        """Return points of the tool's file at their place."""
+        return points @ self.axes + self.displacement
+
+
 class Run(Fields):
     """A run: the sheet at its steps, the tools' displacements, and the lines of the draw-beads to draw."""
 
@@ -70,13 +81,18 @@ class Run(Fields):
         data["shown"], label = self.component(step, field, at_cells)
         return mesh, label
 
-    def tool_displacement(self, step: int) -> dict[str, np.ndarray]:
-        """Return the displacement of each tool at a step."""
+    def tool_placements(self, step: int) -> dict[str, Placement]:
+        """Return the placement of each tool at a step."""
         job = self.file["job"]
         if "tool_displacement" not in job:
             return {}
         names = text_of(job.attrs["tools"]).split()
-        return dict(zip(names, job["tool_displacement"][step].reshape(-1, 3), strict=True))
+        displacements = job["tool_displacement"][step].reshape(-1, 3)
+        if "tool_rotation" in job:
+            axes = job["tool_rotation"][step].reshape(-1, 3, 3)
+        else:
+            axes = np.broadcast_to(np.eye(3), (len(names), 3, 3))
+        return {name: Placement(*of_tool) for name, *of_tool in zip(names, axes, displacements, strict=True)}
 
 
 def read_patches(path: Path) -> Patches:
@@ -92,8 +108,8 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
 
 
-def tool_surface(patches: Patches, shift: np.ndarray) -> tuple[pv.PolyData, pv.PolyData]:
-    """Return the surface of a tool moved by `shift`, and the edges of its patches; of many patches its outer edges."""
+def tool_surface(patches: Patches, placement: Placement) -> tuple[pv.PolyData, pv.PolyData]:
+    """Return the surface of a tool at its place, and the edges of its patches; of many patches its outer edges."""
     finest = max(2, min(24, round(math.sqrt(POINTS / len(patches)))))
     points, faces, lines, first = [], [], [], 0
     for shape in {weights.shape for _, weights in patches}:
@@ -103,7 +119,7 @@ def tool_surface(patches: Patches, shift: np.ndarray) -> tuple[pv.PolyData, pv.P
         bv, bu = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size, count in zip(shape, counts))
         total = np.einsum("pji,jb,ia->pba", weights, bv, bu)
         xyz = np.einsum("pji,pjid,jb,ia->pbad", weights, np.array([p for p, _ in alike]), bv, bu) / total[..., None]
-        points.append(xyz.reshape(-1, 3) + shift)
+        points.append(placement.of(xyz.reshape(-1, 3)))
         number = first + np.arange(total.size).reshape(total.shape)
         corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
         faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
@@ -139,11 +155,11 @@ def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: 
                          lighting=True, ambient=0.25)
     # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
     behind = -0.006 * diagonal(box) * eye(options)[0]
-    displacement = run.tool_displacement(step)
+    placements = run.tool_placements(step)
     for number, (name, patches) in enumerate(tools.items()):
-        if name not in displacement:
+        if name not in placements:
             continue
-        skin, edges = tool_surface(patches, displacement[name])
+        skin, edges = tool_surface(patches, placements[name])
         for part in reflected(skin, options.mirror):
             plotter.add_mesh(part.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
                              opacity=options.tool_opacity, smooth_shading=False, ambient=0.2)
@@ -175,9 +191,9 @@ def box_of(run: Run, steps: Sequence[int], options: argparse.Namespace, tools: d
     """Return the corners of the box that holds the sheet at all steps drawn; before a run, the tools as well."""
     points = np.concatenate([run.points(step) for step in steps])
     if is_deck(options.run):
-        places = run.tool_displacement(0)
-        points = np.concatenate([points] + [patch.reshape(-1, 3) + places[name] for name in tools if name in places
-                                            for patch, _ in tools[name]])
+        placements = run.tool_placements(0)
+        points = np.concatenate([points] + [placements[name].of(patch.reshape(-1, 3))
+                                            for name in tools if name in placements for patch, _ in tools[name]])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in options.mirror:
         i = AXES.index(axis)
