@@ -174,7 +174,7 @@ def turning_tools(bench):
         found = run(bench, "driven_cylinder", angle=str(angle))
         values += [Value(f"strip on a cylinder turned by {angle} degrees: tension, N", tension, -found.last("left_rx"),
                          4e-3),
-                   Value("torque on the cylinder, N.mm", (load - tension) * radius, found.last("cylinder_torque"),
+                   Value(f"its torque, turned by {angle} degrees, N.mm", (load - tension) * radius, found.last("cylinder_torque"),
                          1.2e-2)]
     radius, path = 20.0, 10.0
     for angle, name in ((-20, "turned back by 20 degrees"), (0, "dragged")):
@@ -183,7 +183,7 @@ def turning_tools(bench):
         slip = path - radius * math.radians(angle)
         values.append(Value(f"cylinder {name}: friction work, mJ", friction * slip, found.last("friction_work"), 2e-2))
         if angle:
-            values.append(Value("its torque, N.mm", friction * radius, found.last("cylinder_torque"), 1e-3))
+            values.append(Value(f"cylinder {name}: torque, N.mm", friction * radius, found.last("cylinder_torque"), 1e-3))
     found = run(bench, "rolling_cylinder", angle=str(math.degrees(path / radius)))
     values.append(Value("it rolls: friction work over that of the dragged one", 0.0,
                         found.last("friction_work") / (friction * path), 1e-3, absolute=True))
@@ -193,7 +193,7 @@ def turning_tools(bench):
         mean = [upper - lower for lower, upper in torques][13:]
         values += [Value(f"strip drawn in against {back} N: torque of the rolls, mean, N.mm", back * radius,
                          sum(mean) / len(mean), 5e-3),
-                   Value("path of the strip, mm", radius * math.radians(30),
+                   Value(f"path of the strip against {back} N, mm", radius * math.radians(30),
                          found.last("front_ux") - found.last("front_ux", "tension"), 1.2e-2)]
     return Outcome(values)
 
