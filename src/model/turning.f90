@@ -11,7 +11,7 @@ module dd3_model_turning
   use dd3_model_turn, only : rotation_about
   implicit none
   private
-  public :: begin_turns, set_rotations, turning_rate, turned_angle, torque
+  public :: begin_turns, set_rotations, turning_rate, tool_origins, turned_angle, torque
 
 contains
 
@@ -72,6 +72,21 @@ contains
         *cross(matmul(state%tool_rotation(:, :, tool), phase%turn(tool)%axis), &
         x - state%tool_centre(:, tool) - state%tool_displacement(:, tool))
   end function turning_rate
+
+  !> Return the displacements of the origins of the tools' files, `(3, n_tool)`, mm.
+  pure function tool_origins(state) result(displacement)
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: displacement(:, :)
+
+    type(placement_t) :: placement
+    integer :: t
+
+    displacement = state%tool_displacement
+    do t = 1, size(displacement, 2)
+      placement = state%placement(t)
+      displacement(:, t) = placement%translation
+    end do
+  end function tool_origins
 
   !> Return the angle by which a tool has turned since the start of the job, degrees.
   pure real(wp) function turned_angle(state, tool) result(angle)

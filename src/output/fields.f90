@@ -8,9 +8,9 @@ module dd3_output_fields
   use dd3_base_error, only : error_t
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : keep_file, part_of, replace_file
-  use dd3_contact_placement, only : placement_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_turning, only : tool_origins
   use dd3_output_csv, only : suffix_kept
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, field_table
   use dd3_output_field_values, only : cell_offsets, field_values
@@ -236,12 +236,10 @@ contains
     if (model%n_tool > 0) then
       call self%tool%create(job, "tool_displacement", kind_real, 3*model%n_tool, .true., &
           step_chunk, ok)
-      call self%tool%describe("mm", "x y z of each tool: displacement of the origin of the "// &
-          "coordinates of its file", ok)
+      call self%tool%describe("mm", "x y z of the origin of each tool's file", ok)
       call self%tool_rotation%create(job, "tool_rotation", kind_real, 9*model%n_tool, .true., &
           step_chunk, ok)
-      call self%tool_rotation%describe("-", "axes of each tool's file, one after the other, in "// &
-          "global coordinates", ok)
+      call self%tool_rotation%describe("-", "x y z of the three axes of each tool's file", ok)
     end if
     call close_group(job)
   end subroutine make_job
@@ -364,29 +362,13 @@ contains
     call self%phase%append_integers([state%phase], ok)
     call self%progress%append_reals([state%progress], ok)
     call self%travel%append_reals([state%travel], ok)
-    if (size(state%tool_displacement) > 0) call append_placements(self, state, ok)
+    if (self%tool%id >= 0) then
+      call self%tool%append_reals(reshape(tool_origins(state), [size(state%tool_displacement)]), ok)
+      call self%tool_rotation%append_reals(reshape(state%tool_rotation, &
+          [size(state%tool_rotation)]), ok)
+    end if
     self%last_increment = state%increment
   end subroutine append_step
-
-  !> Add the placements of the tools.
-  subroutine append_placements(self, state, ok)
-    type(field_record_t), intent(inout) :: self
-    type(state_t), intent(in) :: state
-    !> Success flag; no-op if false.
-    logical, intent(inout) :: ok
-
-    type(placement_t) :: placement
-    real(wp) :: displacement(3, size(state%tool_displacement, 2))
-    integer :: t
-
-    do t = 1, size(displacement, 2)
-      placement = state%placement(t)
-      displacement(:, t) = placement%translation
-    end do
-    call self%tool%append_reals(reshape(displacement, [size(displacement)]), ok)
-    call self%tool_rotation%append_reals(reshape(state%tool_rotation, &
-        [size(state%tool_rotation)]), ok)
-  end subroutine append_placements
 
   !> Add the time of the step. It comes last: VTK 9 reads all times there are into room for the
   !> number of steps.
