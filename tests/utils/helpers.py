@@ -44,7 +44,7 @@ def write_run(run, start, now, cells, history, status, fields=(), at_cells=(), *
         "format": "dd3imp run", "format_version": 1, "program": {"name": "dd3imp", "version": "0.1.0"},
         "command": {"file": "job.dat", "working_directory": str(run.parent)}, "started": "2026-01-01T00:00:00+00:00",
         "title": "", "outcome": {"state": "reached", "message": None}, "input": {"blocks": []}, "materials": [],
-        "tools": [], "drawbeads": [], "warnings": [], "seconds": 1.5, "sections": {"material": 1.0}, **job}))
+        "tools": [], "drawbeads": [], "phases": [], "warnings": [], "seconds": 1.5, "sections": {"material": 1.0}, **job}))
     with h5py.File(run / "fields.vtkhdf", "w") as file:
         grid = file.create_group("VTKHDF")
         counts = {"NumberOfPoints": len(start), "NumberOfCells": len(cells), "NumberOfConnectivityIds": 8 * len(cells)}
@@ -61,6 +61,11 @@ def write_run(run, start, now, cells, history, status, fields=(), at_cells=(), *
         rows = read_table(run / "history.csv")
         tools, of_steps = tools_in(rows[0]), file.create_group("job")
         of_steps.attrs["tools"] = " ".join(tools)
+        names = [phase["name"] for phase in job.get("phases", [])]
+        if names:
+            of_steps["phase"] = [names.index(rows[i]["phase"]) + 1 for i in (0, -1)]
+            for name in ("travel", "progress"):
+                of_steps[name] = [float(rows[i][name]) for i in (0, -1)]
         if tools:
             of_steps["tool_displacement"] = [[float(rows[i][f"{tool}_u{axis}"]) for tool in tools for axis in "xyz"]
                                              for i in (0, -1)]

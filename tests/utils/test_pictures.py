@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 from helpers import ROOT, call, write_run
 
+from dd3.plot import force
 from dd3.plot.beads import draped
 from dd3.plot.increments import Increments
+from dd3.run import read_frame
 
 HISTORY = """# units: -,-,mm,-,mm,mm,mm,N,N,N,-
 increment,phase,travel,progress,punch_ux,punch_uy,punch_uz,punch_fx,punch_fy,punch_fz,punch_contacts
@@ -62,6 +64,35 @@ def test_force(run, tmp_path):
     assert "no tool 'die'" in call("plot", "force", run, "--tool", "die", expect=2)
     assert "no phase 'none'" in call("plot", "force", run, "--phase", "none", expect=2)
     assert "No such file" in call("plot", "force", tmp_path / "none.out", expect=2)
+
+
+HEAD = "increment,phase,travel,progress," + ",".join(f"{tool}_{name}{axis}" for tool in ("punch", "roll")
+                                                     for name in "uf" for axis in "xyz") + ",roll_angle,punch_contacts,roll_contacts\n"
+
+
+def test_curves(tmp_path):
+    """Check force, and what it is drawn over, in phases that a tool controls, and that none does."""
+    rows = (
+        "0,press,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n1,press,0,0.5,0,0,0,0,0,0,0,0,-0.1,0,0,50,0\n"
+        "2,press,0,1,0,0,0,0,0,0,0,0,-0.3,0,0,100,0\n3,draw,2,0.5,0,0,-2,0,0,70,0,0,-0.4,0,0,100,0\n"
+        "4,draw,4,1,0,0,-4,0,0,90,0,0,-0.4,0,0,100,0\n5,lift,4,0.4,0,0,0,0,0,9,0,0,-0.4,0,0,1,0\n"
+        "6,lift,4,1,0,0,6,0,0,0,0,0,-0.4,0,0,1,0\n7,turn,4,0.5,0,0,6,0,0,0,0,0,-0.4,0,0,30,-20\n"
+        "8,turn,4,1,0,0,6,0,0,0,0,0,-0.4,0,0,40,-40\n")
+    (tmp_path / "history.csv").write_text(HEAD + rows.replace("\n", ",1,1\n"))
+    history = read_frame(tmp_path, "history.csv")
+    assert force.main_phase(history) == "draw"
+    found = force.curve(history)
+    assert found.tool == "punch" and found.quantity == "punch displacement (mm)" and not found.stopped
+    assert list(found.along) == [0, 2, 4] and list(found.force) == [0, 70, 90]
+    found = force.curve(history, tool="roll")
+    assert list(found.along) == [0, 2, 4] and list(found.force) == [100, 100, 100]
+    found = force.curve(history, phases=["press"])
+    assert found.quantity == "progress of the phase (%)" and list(found.along) == [0, 50, 100]
+    assert list(found.force) == [0, 50, 100]
+    found = force.curve(history, phases=["lift"])
+    assert found.quantity == "punch displacement (mm)" and np.allclose(found.along, [0, 4, 10])
+    found = force.curve(history, phases=["turn"])
+    assert found.quantity == "roll angle (degrees)" and list(found.along) == [0, 20, 40]
 
 
 def test_sheet(run, tmp_path):

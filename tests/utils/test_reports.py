@@ -10,6 +10,9 @@ import pytest
 from helpers import call, write_run
 
 from dd3.forming_limit import ZONES, keeler_brazier, read_curve
+from dd3.report import action
+from dd3.sheet import Sheet
+from dd3.springback import find, opening, rotation, twist
 
 # Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
 PARTS = [(20.0, 0.0), (5 * math.radians(80), math.radians(80)), (40.0, 0.4), (5 * math.radians(75), -math.radians(75)),
@@ -25,6 +28,12 @@ STATUS = "phase,travel,outcome,iterations,solver_iterations,limiter\ndraw,2,acce
 MATERIALS = [{"name": "steel", "hardening": {"name": "swift", "parameters": [{"name": "n", "value": 0.2}]}}]
 BLOCKS = [{"keyword": "material", "name": "steel", "entries": [
     {"key": "young", "text": "2.1e5", "unit": "MPa", "default": False}]}]
+PUNCH = {"name": "punch", "motion": "moved", "active": True, "displacement": [0, 0, -2], "turn": None, "gap": None,
+         "force": None}
+DRAW = {"number": 1, "name": "draw", "control": "punch", "tools": [PUNCH]}
+RELEASED = {"number": 2, "name": "free", "control": None, "tools": [{**PUNCH, "active": False}]}
+ROLL = {**PUNCH, "motion": "pressed", "displacement": None, "force": [0, 0, -100], "gap": None,
+        "turn": {"point": [0, 0, 0], "axis": [0, 1, 0], "angle": 90}}
 
 
 def profile(count=10):
@@ -61,9 +70,9 @@ def run(tmp_path):
         "thickness": (1, 1 - x / 1000), "thinning": (0, x / 1000), "draw_in": (0, 0.5),
         "equivalent_plastic_strain": (0, 0.1), "major_strain_middle": (0, x / 200), "minor_strain_middle": (0, -0.02),
     }.items()}
-    warnings = [{"text": "the mesh is coarse", "at": {"file": "job.dat", "line": 3}}]
+    warnings = [{"code": "W109", "text": "the mesh is coarse", "at": {"file": "job.dat", "line": 3}, "phase": "draw"}]
     return write_run(tmp_path / "job.out", start, now, cells, HISTORY, STATUS, fields, title="A profile & its <report>",
-                     materials=MATERIALS, input={"blocks": BLOCKS}, warnings=warnings)
+                     materials=MATERIALS, input={"blocks": BLOCKS}, phases=[DRAW], warnings=warnings)
 
 
 def test_section(run, tmp_path):
@@ -119,17 +128,65 @@ def test_report(run, tmp_path):
     call("report", run, "--mirror", "x", "y", "--output", tmp_path / "report")
     text = (tmp_path / "report" / "report.html").read_text()
     for title in ("Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
-                  "Outline and draw-in", "Forces in phase draw", "Draw-beads", "Warnings", "Run", "Set-up"):
+                  "Outline and draw-in", "Phase 1: draw", "Draw-beads", "Warnings", "Run", "Set-up"):
         assert f"<h2>{title}</h2>" in text, title
     assert "A profile &amp; its &lt;report&gt;" in text and "the mesh is coarse" in text
     assert "Keeler-Brazier" not in text and "10 kN, 250 MPa" in text and "0.1 %" in text
     assert all(source.startswith("data:image/png") for source in re.findall(r'src="([^"]{20})', text))
     assert "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most" in text
     assert not re.search(r"(href|url)\b", text)
-    for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force", "beads"):
+    for row in ("moved by 0 0 -2 mm", "at a travel of 2 mm, 100 %", "1, 0 cut back; 5 iterations", "rotation 1",
+                "W109: the mesh is coarse", "State: draw, travel 2.00 mm"):
+        assert row in text, row
+    assert "Springback" not in text
+    for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force_draw", "beads"):
         assert (tmp_path / "report" / f"{name}.png").read_bytes()[:4] == b"\x89PNG", name
     (tmp_path / "bad.csv").write_text("0 0.3\n0.1 a\n")
     assert "bad.csv:2: error: expected minor" in call("report", run, "--curve", tmp_path / "bad.csv", "--output",
                                                       tmp_path / "report", expect=2)
     assert "No such file" in call("report", tmp_path / "none.out", "--output", tmp_path / "other", expect=2)
     assert not (tmp_path / "other").exists()
+
+
+def test_actions():
+    """Check what a page says of the tools."""
+    assert action(RELEASED["tools"][0]) == "released"
+    assert action(ROLL) == "pressed by 0 0 -100 N, turned by 90 degrees about 0 1 0"
+    gap = {**PUNCH, "gap": {"from": "die", "value": 1.1, "unit": "thicknesses"}}
+    assert action(gap) == "moved to a gap of 1.1 thicknesses from die"
+
+
+def bar(shape):
+    """Return the nodes of a sheet of 40 x 4 x 1 mm, and of the sheet in another shape."""
+    x, y, z = np.meshgrid(np.linspace(-20, 20, 41), np.linspace(-2, 2, 5), [-0.5, 0.5], indexing="ij")
+    start = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    return start, np.array([shape(*point) for point in start])
+
+
+def twisted(x, y, z, rate=math.radians(0.05)):
+    """Return the place of a point of a bar that is twisted about x, and then moved."""
+    turn, place = rate * x, np.array([x, 0.0, 0.0])
+    place += [0, y * math.cos(turn) - z * math.sin(turn), y * math.sin(turn) + z * math.cos(turn)]
+    return place @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]]) + [3, -1, 7]
+
+
+def test_springback(tmp_path):
+    """Check the distance, the rotations and the twist of a bar that is twisted in its release."""
+    start, free = bar(twisted)
+    nodes = np.arange(len(start)).reshape(41, 5, 2)
+    cells = [[nodes[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(40) for j in range(4)]
+    history = HISTORY.splitlines()[:3] + [HISTORY.splitlines()[3].replace("1,draw,2,1", "1,free,0,1")]
+    folder = write_run(tmp_path / "bar.out", start, free, cells, "\n".join(history) + "\n", STATUS,
+                       phases=[DRAW, RELEASED])
+    sheet = Sheet(folder)
+    found = find(sheet, [DRAW, RELEASED])
+    assert found and found.step == 0
+    radius, angle = np.hypot(start[:, 1], start[:, 2]), np.radians(0.05) * np.abs(start[:, 0])
+    assert np.abs(found.distance() - 2 * radius * np.sin(angle / 2)).max() < 2e-3
+    axis, degrees = twist(sheet, found)
+    assert axis == "x" and abs(degrees - 32 * 0.05) < 2e-3, degrees
+    line = sheet.cut(np.eye(3)[0], 10.0)[0]
+    assert abs(rotation(line, found, np.eye(3)[0]) - 0.5) < 2e-3
+    assert max(map(abs, opening(line, found, np.eye(3)[0]))) < 1e-6
+    assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found, ["x"]) is None

@@ -4,9 +4,10 @@
     dd3 report cup.out --mirror x y
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
 
-The page has the set-up, statistics of the run, the tool's force, the thinning, the forming limit diagram, thickness
-along sections, the outline before and after, the deformed sheet between its tools, and the warnings. --mirror completes
-a model at its planes of symmetry; forces are multiplied accordingly. The forming limit is the curve of Keeler and
+The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections, the
+outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
+angles, twist), for each phase the tools' motions and forces, what limited its increments and what warned, the statistics
+of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied accordingly. The forming limit is the curve of Keeler and
 Brazier (for low-carbon steel) from the thickness and the exponent n of the hardening law or --n, or a measured one:
 --curve with minor and major logarithmic strain in each line. The strains are those at the middle of the sheet.
 """
@@ -19,10 +20,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from dd3 import forming_limit
+from dd3 import forming_limit, springback
 from dd3.command import new_parser
 from dd3.plot import force as forces
 from dd3.plot import sheet as pictures
@@ -143,13 +145,11 @@ def add_statistics(report: Report) -> None:
     """Add what the run cost: increments, iterations, time by section."""
     status = read_frame(report.folder, "status.csv", "outcome", "limiter", "phase")
     accepted, seconds = status[status["outcome"] == "accepted"], report.job["sections"]
-    limiters = accepted["limiter"].value_counts()
     rows: list[tuple[str, Any]] = [
         ("end of the run", end_of(report)), ("increments", len(accepted)),
         ("cut-backs", int((status["outcome"] == "retry").sum())), ("iterations", int(status["iterations"].sum()))]
     if report.job["seconds"]:
         rows.append(("wall-clock time", f"{report.job['seconds']:.4g} s"))
-    rows.append(("limited by", ", ".join(f"{name} {count}" for name, count in limiters.items())))
     most = max(sum(seconds.values()), 1e-9)
     bars = "<table>" + "".join(
         f'<tr><th>{name}</th><td class="n">{value:.3g} s</td>'
@@ -164,26 +164,122 @@ def end_of(report: Report) -> str:
     return str(outcome["message"] or outcome["state"])
 
 
-def add_force(report: Report) -> None:
-    """Add the force of the controlling tool, and of the others in the same phases."""
-    if not report.tools:
-        return
-    history, phase = report.history, forces.last_phase(report.history)
-    leader, rows = forces.controlling_tool(history), forces.rows_of(history, [phase])
-    place = forces.vector(history, leader, "u")[rows]
-    path = np.linalg.norm(place - place[0], axis=1)
+def add_phases(report: Report) -> None:
+    """Add the phases: what the tools do, their forces, what limited the increments and what warned."""
+    status = read_frame(report.folder, "status.csv", "outcome", "limiter", "phase")
+    for phase in report.job["phases"]:
+        name = phase["name"]
+        attempts = status[status["phase"] == name]
+        if attempts.empty:
+            continue
+        content = table(phase_rows(report, phase, attempts))
+        if report.tools and any(tool["active"] for tool in phase["tools"]):
+            content = force_figure(report, name) + content
+        report.add(f"Phase {phase['number']}: {name}", content)
+
+
+def phase_rows(report: Report, phase: dict[str, Any], attempts: pd.DataFrame) -> list[tuple[str, Any]]:
+    """Return the rows of the table of a phase."""
+    name, accepted = phase["name"], attempts[attempts["outcome"] == "accepted"]
+    limiters = accepted["limiter"].value_counts()
+    warnings = [f"{warning['code']}: {warning['text']}" for warning in report.job["warnings"]
+                if warning["phase"] == name]
+    rows: list[tuple[str, Any]] = [(tool["name"], action(tool)) for tool in phase["tools"]]
+    rows += [("driven by", phase["control"] or "the fraction of the phase"), ("ends", end_of_phase(report, name)),
+             ("increments", f"{len(accepted)}, {int((attempts['outcome'] == 'retry').sum())} cut back; "
+                            f"{int(attempts['iterations'].sum())} iterations"),
+             ("limited by", ", ".join(f"{limiter} {count}" for limiter, count in limiters.items()))]
+    return [*rows, *(("warning", warning) for warning in warnings)]
+
+
+def end_of_phase(report: Report, name: str) -> str:
+    """Return where a phase ends: its travel and progress."""
+    rows = forces.rows_of(report.history, [name])
+    travel = report.column("travel")[rows]
+    part = f"{100 * report.column('progress')[rows[-1]]:.4g} %"
+    return f"at a travel of {travel[-1] - travel[0]:.4g} mm, {part}" if np.ptp(travel) > 0 else f"at {part}"
+
+
+def action(tool: dict[str, Any]) -> str:
+    """Return what a phase does with a tool."""
+    if not tool["active"]:
+        return "released"
+    said = {"held": "held", "moved": "moved"}.get(tool["motion"], "pressed")
+    if tool["gap"]:
+        said += f" to a gap of {tool['gap']['value']:g} {tool['gap']['unit']} from {tool['gap']['from']}"
+    elif tool["motion"] == "moved":
+        said += f" by {numbers(tool['displacement'])} mm"
+    elif tool["force"]:
+        said += f" by {numbers(tool['force'])} N"
+    if tool["turn"]:
+        said += f", turned by {tool['turn']['angle']:g} degrees about {numbers(tool['turn']['axis'])}"
+    return said
+
+
+def numbers(values: Sequence[float]) -> str:
+    """Return numbers as text."""
+    return " ".join(f"{value:g}" for value in values)
+
+
+def force_figure(report: Report, phase: str) -> str:
+    """Draw the forces of the tools in a phase and return the element."""
+    history = report.history
+    leader, rows = forces.controlling_tool(history, [phase]), forces.rows_of(history, [phase])
+    along, quantity = forces.abscissa(history, leader, rows)
     left = [axis not in report.options.mirror for axis in AXES]  # the others are zero on the whole part
     found = {tool: report.whole * np.linalg.norm(forces.vector(history, tool, "f")[rows][:, left], axis=1)
              for tool in report.tools}
     unit, scale = ("kN", 1000) if max(force.max() for force in found.values()) >= 1000 else ("N", 1)
     figure, axes = new_figure((8, 4))
     for tool, force in found.items():
-        axes.plot(path, force / scale, linewidth=2 if tool == leader else 1, label=tool.replace("_", " "))
-    axes.set_xlabel(f"displacement of {leader.replace('_', ' ')} (mm)")
+        axes.plot(along, force / scale, linewidth=2 if tool == leader else 1, label=tool.replace("_", " "))
+    axes.set_xlabel(quantity)
     axes.set_ylabel(f"force ({unit})" + (f", whole part, {report.whole} times the model" if report.whole > 1 else ""))
     axes.grid(True, color="0.9")
     axes.legend(frameon=False)
-    report.add(f"Forces in phase {phase}", report.figure("force", figure, "tool forces over displacement"))
+    return report.figure(f"force_{phase}", figure, f"tool forces over {quantity}")
+
+
+def add_springback(report: Report) -> None:
+    """Add the free shape against the drawn one: map of the distances, sections over one another, angles and twist."""
+    found = springback.find(report.sheet, report.job["phases"], report.options.mirror)
+    if found is None:
+        return
+    figure, axes = new_figure((8, 4))
+    rows = []
+    for text in section_planes(report):
+        normal, distance = plane(text)
+        line = report.sheet.cut(normal, distance)[0]
+        name = text if "=" in text else f"{text} degrees"
+        for points, style in ((found.drawn, "--"), (found.free, "-")):
+            axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
+                      label=f"{name}, {'drawn' if style == '--' else 'free'}")
+        ends = springback.opening(line, found, normal)
+        rows.append((f"section {name}", f"turned by {springback.rotation(line, found, normal):+.3g} degrees; its ends "
+                                        f"against that by {ends[0]:+.3g} and {ends[1]:+.3g} degrees"))
+    axes.set(xlabel="in the plane of the section (mm)", ylabel="z (mm)")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.grid(True, color="0.9")
+    axes.legend(frameon=False)
+    twisted = springback.twist(report.sheet, found, report.options.mirror)
+    if twisted:
+        rows.append((f"twist about {twisted[0]} from 10 to 90 % of the length", f"{twisted[1]:+.3g} degrees"))
+    distance = found.distance()
+    rows.insert(0, ("largest distance from the drawn shape", f"{distance.max():.4g} mm"))
+    rows.insert(1, ("mean distance", f"{distance.mean():.4g} mm"))
+    report.add("Springback", "<p>The free shape, moved to the best fit with the drawn one.</p>"
+               + distance_map(report, found) + report.figure("springback", figure, "sections, drawn and free")
+               + table(rows))
+
+
+def distance_map(report: Report, found: springback.Springback) -> str:
+    """Draw the distances from the drawn shape on the free one and return the element."""
+    options = report.sheet_options("distance", "--hide", "all")
+    mesh = report.run.shape(report.last)
+    mesh.points = found.free
+    mesh.point_data["shown"] = found.distance()
+    pictures.make_map(mesh, "distance from the drawn shape (mm)", options)
+    return report.image("distance", "distance from the drawn shape")
 
 
 def add_beads(report: Report) -> None:
@@ -275,22 +371,13 @@ def add_sections(report: Report) -> None:
     report.add("Thickness along sections", report.figure("sections", figure, "thickness and shape along sections"))
 
 
-def images(points: np.ndarray, mirror: Sequence[str]) -> list[np.ndarray]:
-    """Return points and their mirror images."""
-    parts = [points]
-    for axis in mirror:
-        factor = np.where(np.arange(3) == AXES.index(axis), -1.0, 1.0)
-        parts += [part * factor for part in parts]
-    return parts
-
-
 def add_outline(report: Report) -> None:
     """Add the outline before and after, and the draw-in along it."""
     figure, (axes, along) = new_figure((11, 5), 1, 2)
     start, now, value = report.sheet.points(0), report.sheet.points(report.last), report.field("draw_in")
     for line in report.sheet.outline(True, report.options.mirror):
         for points, colour, width in ((start, "0.5", 1), (now, "#d64541", 1.6)):
-            for part in images(points[line], report.options.mirror):
+            for part in springback.images(points[line], report.options.mirror):
                 axes.plot(part[:, 0], part[:, 1], color=colour, linewidth=width)
         middle = (start.min(axis=0) + start.max(axis=0)) / 2
         middle = [0.0 if axis in report.options.mirror else middle[i] for i, axis in enumerate(AXES)]
@@ -330,13 +417,13 @@ def page(report: Report) -> str:
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title><style>{STYLE}</style></head><body><main>
-<h1>{title}</h1><p>State at a travel of {report.sheet.travel[report.last]:.4g} mm{images_of}.</p>
+<h1>{title}</h1><p>State: {report.run.state(report.last)}{images_of}.</p>
 {chr(10).join(report.parts)}
 </main></body></html>
 """
 
 
-STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_force, add_beads, add_warnings, add_statistics,
+STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_phases, add_beads, add_warnings, add_statistics,
          add_setup)
 
 

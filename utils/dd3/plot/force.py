@@ -4,10 +4,12 @@
     dd3 plot force bending.out
     dd3 plot force p1000.out p10000.out --label "p = 1000" --label "p = 10000" --output force.svg
 
-A run is a folder of results or its history.csv. By default the tool is the one that controls the last phase. Its
-displacement and force are taken in the direction of its motion, from the start of the phases drawn; the force is
-positive where the sheet resists. For another tool, such as a pressed one, the magnitude of its force is drawn over
-the displacement of the controlling tool. A cross marks a run that stopped before the end of its last phase.
+A run is a folder of results or its history.csv. By default the phase is the last one that a tool controls, the tool
+the one that controls it. Its displacement and force are taken in the direction of its motion, from the start of the
+phases drawn; the force is positive where the sheet resists. For another tool, such as a pressed one, the magnitude of
+its force is drawn over the displacement of the controlling tool. Where no tool is moved by a prescribed distance, the
+force is drawn over the angle of the tool, if it turns, or the progress of the phases. A cross marks a run that stopped
+before the end of its last phase.
 """
 
 from collections.abc import Sequence
@@ -26,11 +28,11 @@ from dd3.tables import tools_in
 
 @dataclass
 class Curve:
-    """Force of a tool (N) over its displacement or that of the leading tool (mm); whether the run stopped."""
+    """Force of a tool (N) over a quantity that grows; whether the run stopped."""
 
     tool: str
-    leader: str
-    displacement: np.ndarray
+    quantity: str  # with its unit
+    along: np.ndarray
     force: np.ndarray
     stopped: bool
 
@@ -50,40 +52,77 @@ def rows_of(history: pd.DataFrame, phases: Sequence[str]) -> np.ndarray:
     return np.concatenate(([rows[0] - 1], rows)) if rows[0] > 0 else rows
 
 
-def last_phase(history: pd.DataFrame) -> str:
-    """Return the name of the last phase."""
-    return str(history["phase"].iloc[-1])
+def main_phase(history: pd.DataFrame) -> str:
+    """Return the name of the last phase that a tool controls; if there is none, of the last one."""
+    phases = history["phase"].to_numpy(str)
+    moving = np.flatnonzero(np.diff(history["travel"].to_numpy(float)) > 0) + 1
+    return str(phases[moving[-1] if moving.size else -1])
 
 
-def controlling_tool(history: pd.DataFrame) -> str:
-    """Return the tool whose path in the last phase is the travel; if none moves, the one with the largest force."""
-    rows = rows_of(history, [last_phase(history)])
+def controlling_tool(history: pd.DataFrame, phases: Sequence[str]) -> str:
+    """Return the tool whose path in some phases is the travel; if none controls them, the one that is moved furthest, or
+    that with the largest force."""
+    rows = rows_of(history, phases)
     travel = np.ptp(history["travel"].to_numpy(float)[rows])
     paths = {tool: np.linalg.norm(np.ptp(vector(history, tool, "u")[rows], axis=0)) for tool in tools_in(history)}
     if not paths:
         raise Problem(f"{history.attrs['path']}: there is no tool")
     if travel > 0:
         return min(paths, key=lambda tool: abs(paths[tool] - travel))
+    progress = progress_of(history, rows)
+    led = [tool for tool in paths if is_led(progress, vector(history, tool, "u")[rows])]
+    if led:
+        return max(led, key=lambda tool: paths[tool])
     return max(paths, key=lambda tool: np.linalg.norm(vector(history, tool, "f")[rows], axis=1).max())
+
+
+def progress_of(history: pd.DataFrame, rows: np.ndarray) -> np.ndarray:
+    """Return the progress from the first row on, each phase from 0 to 1."""
+    progress = history["progress"].to_numpy(float)[rows]
+    begins = np.concatenate(([0], np.cumsum(np.diff(progress) < 0)))
+    found: np.ndarray = progress + begins
+    return found - found[0] if found[0] < 1 else np.concatenate(([0.0], found[1:] - 1))
+
+
+def is_led(progress: np.ndarray, place: np.ndarray) -> bool:
+    """Whether a path is proportional to the progress: that of a tool which is moved, not pressed."""
+    path = place[-1] - place[0]
+    return bool(np.any(path) and np.abs(place - place[0] - np.outer(progress / progress[-1], path)).max()
+                <= 1e-6 * np.linalg.norm(path))
+
+
+def abscissa(history: pd.DataFrame, tool: str, rows: np.ndarray) -> tuple[np.ndarray, str]:
+    """Return what a tool's force is drawn over, and its name: displacement, angle, or the progress of the phases."""
+    place, progress = vector(history, tool, "u")[rows], progress_of(history, rows)
+    name = tool.replace("_", " ")
+    if np.ptp(history["travel"].to_numpy(float)[rows]) > 0 or is_led(progress, place):
+        return length(place), f"{name} displacement (mm)"
+    if f"{tool}_angle" in history:
+        angle = history[f"{tool}_angle"].to_numpy(float)[rows]
+        if np.ptp(angle) > 0:
+            return np.abs(angle - angle[0]), f"{name} angle (degrees)"
+    return 100 * progress, "progress of the phase (%)"
 
 
 def curve(history: pd.DataFrame, tool: str | None = None, phases: Sequence[str] = (), component: str = "motion"
           ) -> Curve:
-    """Return the curve of a tool, by default the one that controls the last phase."""
-    tool = tool or controlling_tool(history)
+    """Return the curve of a tool, by default the one that controls the phases, by default the last controlled one."""
+    phases = phases or [main_phase(history)]
+    leader = controlling_tool(history, phases)
+    tool = tool or leader
     if tool not in tools_in(history):
         raise Problem(f"{history.attrs['path']}: no tool '{tool}'; there are: {', '.join(tools_in(history))}")
-    rows = rows_of(history, phases or [last_phase(history)])
-    leader = controlling_tool(history) if component == "motion" else tool
+    rows = rows_of(history, phases)
+    leader = leader if component == "motion" else tool
+    along, quantity = abscissa(history, leader, rows)
     displacement, force = vector(history, leader, "u")[rows], vector(history, tool, "f")[rows]
     displacement = displacement - displacement[0]
-    path = length(displacement)
     shown = force[:, AXES.index(component)] if component in AXES else np.linalg.norm(force, axis=1)
-    if component == "motion" and displacement[-1].any():
+    if component == "motion" and quantity.endswith("(mm)") and displacement[-1].any():
         direction = displacement[-1] / np.linalg.norm(displacement[-1])
-        path = displacement @ direction
+        along = displacement @ direction
         shown = shown if leader != tool else -force @ direction
-    return Curve(tool, leader, path, shown, float(history["progress"].iloc[-1]) < 1.0)
+    return Curve(tool, quantity, along, shown, float(history["progress"].iloc[-1]) < 1.0)
 
 
 def common(tools: Sequence[str]) -> str:
@@ -98,12 +137,14 @@ def draw(axes: Axes, curves: Sequence[Curve], labels: Sequence[str], component: 
     largest = max(np.abs(force).max() for force in forces)
     unit, scale = ("kN", 1000.0) if largest >= 1000.0 else ("N", 1.0)
     for one, force, label in zip(curves, forces, labels, strict=True):
-        line, = axes.plot(one.displacement, force / scale, linewidth=1.4, label=label)
+        line, = axes.plot(one.along, force / scale, linewidth=1.4, label=label)
         if one.stopped:
-            axes.plot(one.displacement[-1], force[-1] / scale, "x", color=line.get_color(), markersize=8,
+            axes.plot(one.along[-1], force[-1] / scale, "x", color=line.get_color(), markersize=8,
                       markeredgewidth=2, clip_on=False, zorder=5)
     part = {"motion": "", "magnitude": ", magnitude"}.get(component, f", along {component}")
-    axes.set_xlabel(f"{common([one.leader for one in curves])} displacement (mm)")
+    quantities = {one.quantity for one in curves}
+    name = quantities.pop() if len(quantities) == 1 else "tool displacement (mm)"
+    axes.set_xlabel(name[0].upper() + name[1:])
     axes.set_ylabel(f"{common([one.tool for one in curves])} force{part} ({unit})")
     axes.ticklabel_format(useOffset=False)
     tidy(axes, "0.88")

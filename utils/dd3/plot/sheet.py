@@ -81,6 +81,17 @@ class Run(Fields):
         data["shown"], label = self.component(step, field, at_cells)
         return mesh, label
 
+    def state(self, step: int) -> str:
+        """Return what a step is: its phase, and travel or, where no tool controls the phase, progress."""
+        job, phases = self.file["job"], self.job.get("phases", [])
+        number = int(job["phase"][step]) if "phase" in job else 0
+        if not 0 < number <= len(phases):
+            return f"travel {self.travel[step]:.2f} mm"
+        phase = phases[number - 1]
+        if phase["control"]:
+            return f"{phase['name']}, travel {job['travel'][step]:.2f} mm"
+        return f"{phase['name']}, {100 * job['progress'][step]:.3g} %"
+
     def tool_placements(self, step: int) -> dict[str, Placement]:
         """Return the placement of each tool at a step."""
         job = self.file["job"]
@@ -144,15 +155,19 @@ def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
     return parts
 
 
-def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
-         limits: Sequence[float], box: Box) -> None:
-    """Draw one picture."""
-    mesh = run.mesh(step, options.field, options.cells)[0]
+def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, options: argparse.Namespace, limits: Sequence[float]) -> None:
+    """Add a sheet with the field `shown`, completed at the planes of symmetry."""
     for part in reflected(mesh, options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
                          edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
                          lighting=True, ambient=0.25)
+
+
+def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
+         limits: Sequence[float], box: Box) -> None:
+    """Draw one picture."""
+    add_sheet(plotter, run.mesh(step, options.field, options.cells)[0], options, limits)
     # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
     behind = -0.006 * diagonal(box) * eye(options)[0]
     placements = run.tool_placements(step)
@@ -168,7 +183,7 @@ def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: 
     towards = 0.006 * diagonal(box) * eye(options)[0]
     draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, options.mirror))
     aim(plotter, box, options)
-    text = plotter.add_text(f"travel {run.travel[step]:.2f} mm", font_size=11, color="black", position="upper_left")
+    text = plotter.add_text(run.state(step), font_size=11, color="black", position="upper_left")
     text.prop.SetBackgroundColor(1, 1, 1)
     text.prop.SetBackgroundOpacity(1)
 
@@ -359,8 +374,24 @@ def make_picture(run: Run, options: argparse.Namespace) -> None:
     for row, step in enumerate(each(steps, "pictures")):
         plotter.subplot(row, 0)
         draw(plotter, run, step, options, tools, limits, box)
-    plotter.subplot(len(steps), 0)
-    draw_bar(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits)
+    finish(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits)
+
+
+def make_map(mesh: pv.UnstructuredGrid, label: str, options: argparse.Namespace) -> None:
+    """Draw a sheet alone with its field `shown` and write the picture."""
+    points = np.concatenate([part.points for part in reflected(mesh, options.mirror)])
+    limits = options.limits or (0.0, float(mesh.point_data["shown"].max()) or 1.0)
+    plotter = new_plotter(options, 1)
+    plotter.subplot(0, 0)
+    add_sheet(plotter, mesh, options, limits)
+    aim(plotter, (points.min(axis=0), points.max(axis=0)), options)
+    finish(plotter, label, options, limits)
+
+
+def finish(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
+    """Draw the colour bar below the pictures and write them."""
+    plotter.subplot(plotter.shape[0] - 1, 0)
+    draw_bar(plotter, label, options, limits)
     try:
         plotter.screenshot(options.output)
     except (OSError, ValueError) as error:

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Springback: the free sheet against the drawn one."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dd3.section import in_plane
+from dd3.sheet import AXES, Line, Sheet
+
+ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length
+
+
+class Springback(NamedTuple):
+    """The drawn and the free shape, the latter moved to the best fit.
+
+    drawn, free: positions of the nodes, mm. step: number of the step of the drawn shape.
+    """
+
+    drawn: np.ndarray
+    free: np.ndarray
+    step: int
+
+    def distance(self) -> np.ndarray:
+        """Return the distance of each node from its place in the drawn shape, mm."""
+        return np.asarray(np.linalg.norm(self.free - self.drawn, axis=1))
+
+
+def images(points: np.ndarray, mirror: Sequence[str]) -> list[np.ndarray]:
+    """Return points and their mirror images."""
+    parts = [points]
+    for axis in mirror:
+        factor = np.where(np.arange(3) == AXES.index(axis), -1.0, 1.0)
+        parts += [part * factor for part in parts]
+    return parts
+
+
+def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = ()) -> np.ndarray:
+    """Return points moved as a rigid body, with their mirror images, to the least squares of the distances.
+
+    Source: Kabsch, Acta Cryst. A 32 (1976) 922-923.
+    """
+    whole, goal = np.concatenate(images(points, mirror)), np.concatenate(images(target, mirror))
+    centre, middle = whole.mean(axis=0), goal.mean(axis=0)
+    left, _, right = np.linalg.svd((whole - centre).T @ (goal - middle))
+    turn = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
+    moved: np.ndarray = (points - centre) @ left @ turn @ right + middle
+    return moved
+
+
+def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Springback | None:
+    """Return the springback of a run whose last phase releases all tools; None for another one.
+
+    phases: those of run.json.
+    """
+    of_step = sheet.file["job"].get("phase")
+    if of_step is None or not phases:
+        return None
+    held = [phase["number"] for phase in phases if any(tool["active"] for tool in phase["tools"])]
+    number = np.array(of_step[: sheet.count])
+    drawn = np.flatnonzero(np.isin(number, held))
+    if not drawn.size or number[-1] in held:
+        return None
+    points = sheet.points(int(drawn[-1]))
+    return Springback(points, best_fit(sheet.points(sheet.last), points, mirror), int(drawn[-1]))
+
+
+def rotation(line: Line, found: Springback, normal: np.ndarray) -> float:
+    """Return the mean rotation of a section in its plane, counter-clockwise, degrees."""
+    drawn, free = (in_plane(line.at(points), normal) for points in (found.drawn, found.free))
+    a, b = drawn - drawn.mean(axis=0), free - free.mean(axis=0)
+    return float(np.degrees(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())))
+
+
+def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, float]:
+    """Return the change of the direction of a section at its two ends against that of the whole section, degrees."""
+    mean = rotation(line, found, normal)
+    drawn, free = (in_plane(line.at(points), normal) for points in (found.drawn, found.free))
+    changes = []
+    for i, j in ((0, 1), (-2, -1)):
+        before, after = drawn[j] - drawn[i], free[j] - free[i]
+        angle = np.degrees(np.arctan2(before[0] * after[1] - before[1] * after[0], before @ after))
+        changes.append(float(angle) - mean)
+    return changes[0], changes[1]
+
+
+def twist(sheet: Sheet, found: Springback, mirror: Sequence[str] = ()) -> tuple[str, float] | None:
+    """Return the axis along the sheet and the rotation of one end about it against the other, degrees; None where
+    symmetry prevents it."""
+    start = sheet.points(0)
+    sizes = np.ptp(start, axis=0)
+    axis = int(sizes.argmax())
+    if mirror:
+        return None
+    turned = []
+    for part in ENDS:
+        normal = np.eye(3)[axis]
+        line = sheet.cut(normal, start[:, axis].min() + part * sizes[axis])[0]
+        turned.append(rotation(line, found, normal))
+    return AXES[axis], turned[1] - turned[0]
