@@ -16,7 +16,7 @@ module dd3_output_field_table
 
   !> Locations: a value at each node;
   integer, parameter :: at_nodes = 1
-  !> a value at each node, and the mean of its nodes at each cell;
+  !> a value at each node and at each cell, for a strain the mean of its nodes;
   integer, parameter :: at_nodes_and_cells = 2
   !> a value at each integration point.
   integer, parameter :: at_points = 3
@@ -32,8 +32,10 @@ module dd3_output_field_table
     logical :: whole = .false., positive = .false.
     character(len=8) :: unit = ""
     character(len=120) :: description = ""
-    !> Not associated for a strain in the surface and for an internal variable.
+    !> Not associated for a strain in the surface and for an internal variable; the second for
+    !> fields at nodes and cells.
     procedure(fill_interface), nopass, pointer :: fill => null()
+    procedure(fill_both_interface), nopass, pointer :: fill_both => null()
     !> Position of a strain in the surface among those of `evaluate_strains`: component and height;
     !> 0 for another field.
     integer :: strain = 0, height = 0
@@ -50,6 +52,15 @@ module dd3_output_field_table
       !> `(components, n_node)`, or `(components, n_point*n_element)`, points first.
       real(wp), intent(out) :: value(:, :)
     end subroutine fill_interface
+
+    !> Evaluate a field at nodes and cells.
+    subroutine fill_both_interface(model, state, nodal, cell)
+      import :: model_t, state_t, wp
+        type(model_t), intent(in) :: model
+        type(state_t), intent(in) :: state
+      !> `(components, n_node)` and `(components, n_element)`.
+      real(wp), intent(out) :: nodal(:, :), cell(:, :)
+    end subroutine fill_both_interface
   end interface
 
 contains
@@ -88,8 +99,7 @@ contains
       row("equivalent_stress", at_points, 1, "MPa", &
           "equivalent stress of the material's yield criterion", fill_equivalent_stress, &
           positive=.true.), &
-      row("thickness", at_nodes_and_cells, 1, "mm", &
-          "distance between the bottom and the top node through the thickness", fill_thickness), &
+      sheet_row("thickness", "mm", "thickness of the sheet along its normal", fill_thickness), &
       forming_rows()]
   end function common_fields
 
@@ -98,8 +108,8 @@ contains
     type(field_t), allocatable :: table(:)
 
     table = [ &
-      row("thinning", at_nodes_and_cells, 1, "", &
-          "decrease of the thickness over the initial thickness", fill_thinning), &
+      sheet_row("thinning", "", "decrease of the thickness over the initial thickness", &
+          fill_thinning), &
       strain_rows(), &
       row("draw_in", at_nodes, 1, "mm", &
           "displacement of the rim along its initial inward normal; 0 elsewhere", fill_draw_in), &
@@ -176,6 +186,19 @@ contains
     if (present(whole)) row%whole = whole
     if (present(positive)) row%positive = positive
   end function row
+
+  !> Make the row of a field at nodes and cells.
+  function sheet_row(name, unit, description, fill_both) result(row)
+    character(len=*), intent(in) :: name, unit, description
+    procedure(fill_both_interface) :: fill_both
+    type(field_t) :: row
+
+    row%name = name
+    row%location = at_nodes_and_cells
+    row%unit = unit
+    row%description = description
+    row%fill_both => fill_both
+  end function sheet_row
 
   !> Evaluate the displacements.
   subroutine fill_displacement(model, state, value)

@@ -34,16 +34,17 @@ contains
       call point_values(field, model, state, nodal, cell)
       return
     end if
-    if (field%strain > 0) then
-      nodal(1, :) = strain(field%strain, :, field%height)
-    else
-      call field%fill(model, state, nodal)
-    end if
     if (field%location /= at_nodes_and_cells) then
       allocate (cell(field%components, 0))
+      call field%fill(model, state, nodal)
       return
     end if
     allocate (cell(field%components, model%n_element))
+    if (field%strain == 0) then
+      call field%fill_both(model, state, nodal, cell)
+      return
+    end if
+    nodal(1, :) = strain(field%strain, :, field%height)
     do e = 1, model%n_element
       cell(:, e) = sum(nodal(:, model%connectivity(:, e)), dim=2)/real(model%element%n_node, wp)
     end do

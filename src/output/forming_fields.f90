@@ -7,6 +7,7 @@ module dd3_output_forming_fields
   use dd3_model_contact_results, only : contact_gaps, contact_pressures
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : draw_in
+  use dd3_model_sheet_thickness, only : sheet_thickness
   use dd3_model_state, only : state_t
   use dd3_model_surface_strain, only : surface_strains
   implicit none
@@ -21,41 +22,27 @@ module dd3_output_forming_fields
 contains
 
   !> Evaluate the thickness.
-  subroutine fill_thickness(model, state, value)
+  subroutine fill_thickness(model, state, nodal, cell)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
+    real(wp), intent(out) :: nodal(:, :), cell(:, :)
 
-    value(1, :) = thicknesses(model, state%x)
+    call sheet_thickness(model, state%x, nodal(1, :), cell(1, :))
   end subroutine fill_thickness
 
-  !> Evaluate the thinning; zero at a node that is in no column.
-  subroutine fill_thinning(model, state, value)
+  !> Evaluate the thinning; zero where there is no column of nodes.
+  subroutine fill_thinning(model, state, nodal, cell)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value(:, :)
+    real(wp), intent(out) :: nodal(:, :), cell(:, :)
 
-    real(wp) :: initial(model%n_node)
+    real(wp) :: nodal0(model%n_node), cell0(model%n_element)
 
-    initial = thicknesses(model, model%x0)
-    value = 0.0_wp
-    where (initial > 0.0_wp) value(1, :) = 1.0_wp - thicknesses(model, state%x) &
-        /max(initial, tiny(1.0_wp))
+    call sheet_thickness(model, model%x0, nodal0, cell0)
+    call sheet_thickness(model, state%x, nodal(1, :), cell(1, :))
+    nodal(1, :) = merge(1.0_wp - nodal(1, :)/max(nodal0, tiny(1.0_wp)), 0.0_wp, nodal0 > 0.0_wp)
+    cell(1, :) = merge(1.0_wp - cell(1, :)/max(cell0, tiny(1.0_wp)), 0.0_wp, cell0 > 0.0_wp)
   end subroutine fill_thinning
-
-  !> Return the lengths of the columns at the nodes, mm.
-  pure function thicknesses(model, x) result(length)
-    type(model_t), intent(in) :: model
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    real(wp) :: length(model%n_node)
-
-    integer :: i
-
-    do i = 1, model%n_node
-      length(i) = norm2(x(:, model%column(2, i)) - x(:, model%column(1, i)))
-    end do
-  end function thicknesses
 
   !> Evaluate the draw-in.
   subroutine fill_draw_in(model, state, value)
