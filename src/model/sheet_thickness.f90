@@ -3,8 +3,8 @@
 !> bottom to the top of the columns of nodes, splay where the sheet is bent: in an element whose ends
 !> are turned by theta against each other they are longer than the thickness by the factor
 !> 1/cos(theta/2). The thickness of a cell is therefore the length of the mean director along the
-!> normal of the middle surface at the centre, which pure bending and stretching give exactly. At a
-!> node it is the length of the director, without the splay of the elements that share it.
+!> normal of the middle surface at the centre, which pure bending and stretching give exactly; that
+!> at a node is the mean of the cells that share it.
 module dd3_model_sheet_thickness
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
@@ -27,26 +27,19 @@ contains
     real(wp), intent(out) :: nodal(:), cell(:)
 
     integer, allocatable :: local(:)
-    real(wp) :: length(model%n_node), factor(model%n_node), splay
     integer :: sharing(model%n_node), e, i
 
     local = pack([(i, i=1, model%element%n_node)], model%element%node(3, :) < -0.5_wp)
-    length = [(norm2(director(model, x, i)), i=1, model%n_node)]
-    factor = 0.0_wp
+    nodal = 0.0_wp
     sharing = 0
     do e = 1, model%n_element
-      call at_centre(model, x, model%connectivity(local, e), local, cell(e), splay)
+      cell(e) = at_centre(model, x, model%connectivity(local, e), local)
       associate (bottom => model%column(1, model%connectivity(local, e)))
-        factor(bottom) = factor(bottom) + splay
+        nodal(bottom) = nodal(bottom) + cell(e)
         sharing(bottom) = sharing(bottom) + 1
       end associate
     end do
-    do i = 1, model%n_node
-      associate (bottom => model%column(1, i))
-        nodal(i) = length(bottom)
-        if (sharing(bottom) > 0) nodal(i) = length(bottom)*factor(bottom)/real(sharing(bottom), wp)
-      end associate
-    end do
+    nodal = nodal(model%column(1, :))/real(max(1, sharing(model%column(1, :))), wp)
   end subroutine sheet_thickness
 
   !> Return the vector from the bottom to the top of the column of a node, mm.
@@ -59,22 +52,16 @@ contains
     director = x(:, model%column(2, node)) - x(:, model%column(1, node))
   end function director
 
-  !> Evaluate the thickness at the centre of the face of an element.
-  pure subroutine at_centre(model, x, node, local, thickness, splay)
+  !> Return the thickness at the centre of an element, mm.
+  pure real(wp) function at_centre(model, x, node, local) result(thickness)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: x(:, :)
     !> Nodes of the lower face, and their numbers in the element.
     integer, intent(in) :: node(:), local(:)
-    !> mm.
-    real(wp), intent(out) :: thickness
-    !> Thickness over the length of the directors interpolated there; 1 without a column.
-    real(wp), intent(out) :: splay
 
-    real(wp) :: weight(size(node)), middle(3, size(node)), d(3, size(node)), tangent(3, 2), normal(3)
-    real(wp) :: length
+    real(wp) :: middle(3, size(node)), d(3, size(node)), tangent(3, 2), normal(3)
     integer :: a
 
-    weight = weights_at_centre(size(node))
     do a = 1, size(node)
       d(:, a) = director(model, x, node(a))
       middle(:, a) = x(:, model%column(1, node(a))) + 0.5_wp*d(:, a)
@@ -84,11 +71,8 @@ contains
       tangent = tangent + matmul(middle, transpose(model%element%node_slope(:2, local, local(a))))
     end do
     normal = cross(tangent(:, 1), tangent(:, 2))
-    thickness = abs(dot_product(matmul(d, weight), normal))/norm2(normal)
-    length = dot_product(norm2(d, dim=1), weight)
-    splay = 1.0_wp
-    if (length > 0.0_wp) splay = thickness/length
-  end subroutine at_centre
+    thickness = abs(dot_product(matmul(d, weights_at_centre(size(node))), normal))/norm2(normal)
+  end function at_centre
 
   !> Return the shape functions of a face at its centre: bilinear, serendipity or biquadratic.
   pure function weights_at_centre(n) result(weight)
