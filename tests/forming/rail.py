@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: []
-"""The S-shaped rail: springback of its inner flanges and twist, by mesh.
+"""The S-shaped rail: springback, twist and thinning by mesh and material.
 
     rail.py --program build/release/dd3imp --work build/rail            make the runs that are missing
     rail.py --program build/release/dd3imp --work build/rail --write    and put them into docs/reports
 
-The finest run takes 20 minutes; `--only` selects some. An interrupted run is continued.
+The finest runs take half an hour each; `--only` selects some. An interrupted run is continued.
 """
 import sys
 
@@ -14,27 +14,42 @@ import numpy as np
 import studies
 
 from dd3.errors import run
-from dd3.fields import Fields
 from dd3.pages import put_table
 from dd3.run import read_job
+from dd3.sheet import Sheet
+from dd3.springback import find, twist
 
 DECK, REPORT, PICTURE = studies.paths("rail")
-DEPTH, BOTTOM, FLANGE = 20.0, 10.0, 21.0  # stroke; half width of the bottom, start of the flange beside the middle, mm
+BOTTOM, FLANGE = 10.0, 21.0  # half width of the bottom, start of the flange beside the middle, mm
 OFFSET = 10.0480947162  # of the straight ends from the middle, mm
 STATION, REACH = 60.0, 8.0  # middle and half length of the piece of a straight end that is measured, mm
-RUNS = [("20 x 12", "20 12 1"), ("30 x 18", "30 18 1"), ("40 x 24", "40 24 1"), ("60 x 36", "60 36 1"),
-        ("90 x 54", "90 54 1")]
+THICKNESS = 0.8
+MESHES = ["28 16", "40 24", "54 32", "108 64"]
+HEAD = ["material", "mesh", "elements", "flange", "bottom", "twist at 60 mm", "twist, 10 to 90 %", "largest distance, mm",
+        "thinning, %", "from the finest, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
 
 
 class Rail:
     """Positions of the middle surface at the end of the draw and after springback."""
 
     def __init__(self, folder):
-        fields = Fields(folder)
-        drawn = int(np.flatnonzero(np.abs(fields.travel - DEPTH) < 1e-7)[0])
-        self.drawn, self.free = (middle(fields, step) for step in (drawn, fields.count - 1))
-        start = middle(fields, 0)
+        self.sheet = Sheet(folder)
+        self.phases = read_job(folder)["phases"]
+        self.found = find(self.sheet, self.phases)
+        self.drawn, self.free = (middle(points) for points in (self.found.drawn, self.sheet.points(self.sheet.last)))
+        start = middle(self.sheet.points(0))
         self.shape = tuple(len(np.unique(start[:, axis].round(6))) for axis in (0, 1))
+
+    def thinning(self):
+        """Return the thinning at the cells along x and y, per cent."""
+        values = 100 * self.sheet.values(self.sheet.last, "thinning", True)[0]
+        centres = self.sheet.points(0)[self.sheet.corners].mean(axis=1)
+        return values[np.lexsort((centres[:, 1].round(6), centres[:, 0].round(6)))].reshape(np.array(self.shape) - 1)
+
+    def thinning_by_nodes(self):
+        """Return the thinning by the distance of opposite nodes, per cent."""
+        points = self.sheet.points(self.sheet.last).reshape(-1, 2, 3)
+        return 100 * (1 - np.linalg.norm(points[:, 1] - points[:, 0], axis=1) / THICKNESS)
 
     def slopes(self, points, side):
         """Return the slopes dz/dy of an end's bottom and of its flange on the inside of the nearer arc, degrees."""
@@ -56,9 +71,22 @@ class Rail:
         return line[:, 1], line[:, 2]
 
 
-def middle(fields, step):
+def middle(points):
     """Return the positions of the middle surface, the mean of the lower and the upper face."""
-    return fields.points(step).reshape(-1, 2, 3).mean(axis=1)
+    return points.reshape(-1, 2, 3).mean(axis=1)
+
+
+def at_cells(values, shape):
+    """Return values at the cells of one mesh at those of another, linear in between."""
+    for axis, n in enumerate(shape):
+        old, new = ((np.arange(m) + 0.5) / m for m in (values.shape[axis], n))
+        values = np.apply_along_axis(lambda line, old=old, new=new: np.interp(new, old, line), axis, values)
+    return values
+
+
+def extremes(values):
+    """Return the smallest and the largest value as text."""
+    return f"{values.min():.2f} to {values.max():.2f}"
 
 
 def slope(points):
@@ -80,26 +108,49 @@ def draw(rails):
     figure.savefig(PICTURE, dpi=110)
 
 
+def deck_of(options, material):
+    """Return the deck with another material."""
+    text = DECK.read_text(encoding="utf-8").replace("dp600", material).replace("DP600", material.upper())
+    text = text.replace("../materials", str(DECK.parents[1] / "materials"))
+    text = text.replace("tools = . ", f"tools = {DECK.parent} ")
+    path = options.work / f"{material}.dat"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def row_of(material, mesh, rail, finest, folder):
+    """Return the row of a run."""
+    bottom, flange = rail.springback(1)
+    difference = rail.thinning() - at_cells(finest.thinning(), np.array(rail.shape) - 1)
+    values = flange, bottom, bottom - rail.springback(-1)[0], twist(rail.sheet, rail.found)[1]
+    return [material.upper(), " x ".join(mesh.split()), str(len(rail.sheet.corners)), *(f"{v:.2f}" for v in values),
+            f"{rail.found.distance().max():.2f}", extremes(rail.thinning()),
+            f"{np.sqrt((difference**2).mean()):.2f}, {np.abs(difference).max():.2f}" if rail is not finest else "",
+            extremes(rail.thinning_by_nodes()), *studies.effort(folder)]
+
+
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
-    rails, rows, jobs = {}, [], []
-    for name, divisions in RUNS:
-        folder = studies.make(options, name.replace(" ", "_"), DECK, {"divisions": divisions})
-        if not folder:
-            continue
-        rails[name] = Rail(folder)
-        jobs.append(read_job(folder))
-        right, left = (rails[name].springback(side) for side in (1, -1))
-        values = right[1], left[1], right[0], left[0], right[0] - left[0]
-        rows.append([name, *(f"{value:.2f}" for value in values), *studies.effort(folder)])
-    text = studies.table(["mesh", "flange, x = 60", "flange, x = -60", "bottom, x = 60", "bottom, x = -60", "twist",
-                          "increments", "iterations", "seconds"], rows)
+    rows, jobs, pictures = [], [], {}
+    for material in ("dp600", "dc06"):
+        found = {}
+        for mesh in MESHES:
+            folder = studies.make(options, f"{material}_{mesh.replace(' ', 'x')}", deck_of(options, material),
+                                  {"divisions": f"{mesh} 1"})
+            if folder:
+                found[mesh] = Rail(folder), folder
+                jobs.append(read_job(folder))
+        for mesh, (rail, folder) in found.items():
+            rows.append(row_of(material, mesh, rail, list(found.values())[-1][0], folder))
+            if material == "dp600":
+                pictures[" x ".join(mesh.split())] = rail
+    text = studies.table(HEAD, rows)
     print(text)
     if options.write:
         put_table(REPORT, "springback", text, jobs)
-        draw(rails)
-    sys.exit(0 if len(rails) == len(RUNS) else 1)
+        draw(pictures)
+    sys.exit(0 if len(rows) == 2 * len(MESHES) else 1)
 
 
 if __name__ == "__main__":
