@@ -14,6 +14,7 @@ module dd3_process_attempt_report
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_output_status, only : status_row_t
+  use dd3_process_node_report, only : place_of_node
   use dd3_process_open_edges, only : edge_name
   use dd3_process_step_control, only : attempt_t, stepper_t
   implicit none
@@ -164,10 +165,7 @@ contains
       if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
           //" point "//to_text(verdict%point)
       if (verdict%node == 0) return
-      associate (x => committed%x(:, verdict%node))
-        message = message//", node "//to_text(verdict%node)//" at "//to_text(x(1), 5)//" " &
-            //to_text(x(2), 5)//" "//to_text(x(3), 5)
-      end associate
+      message = message//", "//place_of_node(model, committed, verdict%node)
       c = model%candidate_of(verdict%node)
       if (c == 0) return
       if (stepper%system%contact%tool(c) > 0) message = message//", tool " &

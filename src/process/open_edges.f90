@@ -13,7 +13,7 @@ module dd3_process_open_edges
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: passage_t, find_passage, observe_passages, edge_name
+  public :: passage_t, find_passage, observe_passages, edge_name, open_edge_at
 
   !> Contact force that counts, relative to the mean of those on the tool.
   real(wp), parameter :: notable_force = 0.1_wp
@@ -99,7 +99,7 @@ contains
     end associate
   end function passage_over
 
-  !> Return the number of the open edge at a closest point.
+  !> Return the number of the open edge at a closest point on a border.
   pure integer function open_edge_at(surface, hit) result(edge)
     type(surface_t), intent(in) :: surface
     type(hit_t), intent(in) :: hit
