@@ -4,12 +4,13 @@
     dd3 report cup.out --mirror x y
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
 
-The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections, the
-outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
-angles, twist), for each phase the tools' motions and forces, what limited its increments and what warned, the statistics
-of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied accordingly. The forming limit is the curve of Keeler and
-Brazier (for low-carbon steel) from the thickness and the exponent n of the hardening law or --n, or a measured one:
---curve with minor and major logarithmic strain in each line. The strains are those at the middle of the sheet.
+The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections,
+the outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
+angles, twist), for each phase the tools' motions and forces, what limited its increments and what warned, the
+statistics of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied
+accordingly. The forming limit is the curve of Keeler and Brazier (for low-carbon steel) from the thickness and the
+exponent n of the hardening law or --n, or a measured one: --curve with minor and major logarithmic strain in each
+line. The strains are those at the middle of the sheet.
 """
 
 import argparse
@@ -246,10 +247,10 @@ def add_springback(report: Report) -> None:
     if found is None:
         return
     figure, axes = new_figure((8, 4))
-    rows = []
+    rows: list[tuple[str, Any]] = []
     for text in section_planes(report):
-        normal, distance = plane(text)
-        line = report.sheet.cut(normal, distance)[0]
+        normal, place = plane(text)
+        line = report.sheet.cut(normal, place)[0]
         name = text if "=" in text else f"{text} degrees"
         for points, style in ((found.drawn, "--"), (found.free, "-")):
             axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
@@ -423,8 +424,8 @@ def page(report: Report) -> str:
 """
 
 
-STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_phases, add_beads, add_warnings, add_statistics,
-         add_setup)
+STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_phases, add_beads,
+         add_warnings, add_statistics, add_setup)
 
 
 def write(options: argparse.Namespace) -> Path:

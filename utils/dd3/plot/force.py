@@ -60,8 +60,8 @@ def main_phase(history: pd.DataFrame) -> str:
 
 
 def controlling_tool(history: pd.DataFrame, phases: Sequence[str]) -> str:
-    """Return the tool whose path in some phases is the travel; if none controls them, the one that is moved furthest, or
-    that with the largest force."""
+    """Return the tool whose path in some phases is the travel; if none controls them, the one that is moved furthest,
+    or that with the largest force."""
     rows = rows_of(history, phases)
     travel = np.ptp(history["travel"].to_numpy(float)[rows])
     paths = {tool: np.linalg.norm(np.ptp(vector(history, tool, "u")[rows], axis=0)) for tool in tools_in(history)}

@@ -55,13 +55,13 @@ class Model:
     """What was meshed: patches' nodes (patch, v, u, 3), their parameters on the CAD's face (patch, v, u, 2; NaN where
     unknown), node numbers and faces; per face its tag, its name and its largest distance from the CAD, mm."""
 
-    nodes: np.ndarray = None
-    uv: np.ndarray = None
-    labels: np.ndarray = None
-    face: np.ndarray = None
+    nodes: np.ndarray = field(default_factory=lambda: np.empty(0))
+    uv: np.ndarray = field(default_factory=lambda: np.empty(0))
+    labels: np.ndarray = field(default_factory=lambda: np.empty(0))
+    face: np.ndarray = field(default_factory=lambda: np.empty(0))
     tags: list = field(default_factory=list)
     names: list = field(default_factory=list)
-    distance: np.ndarray = None
+    distance: np.ndarray = field(default_factory=lambda: np.empty(0))
     parts: list = field(default_factory=list)
     notes: list = field(default_factory=list)
 
@@ -132,7 +132,7 @@ def refuse_gaps(gmsh: Any, path: Path, sewn: float | None) -> None:
     for tag in single:
         low, high = gmsh.model.getParametrizationBounds(1, tag)
         fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
-    worst, where, count = 0.0, None, 0
+    worst, where, count = 0.0, (0, 0), 0
     for i, (tag, points) in enumerate(zip(single, fine)):
         limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
         for j, other in enumerate(fine):
@@ -213,7 +213,7 @@ def choose(path: Path, parts: list[tuple[str, set[int]]], wanted: list[str] | No
     """Return the tags of the faces of the parts wanted, by name or number; all by default."""
     if not wanted:
         return sorted(set().union(*(faces for _, faces in parts)))
-    chosen = set()
+    chosen: set[Any] = set()
     for word in wanted:
         found = [faces for number, (name, faces) in enumerate(parts, 1)
                  if word.lower() == name.lower() or word == str(number)]

@@ -52,7 +52,7 @@ def planes_through(boxes: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray
 
 def different(planes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return planes without those that nearly coincide with an earlier one."""
-    kept = []
+    kept: list[Any] = []
     for point, normal in planes:
         if not any(abs(normal @ other) > 1 - SAME_PLANE**2 and abs((point - place) @ normal) < SAME_PLANE * size
                    for place, other in kept):

@@ -31,8 +31,8 @@ class Division:
     def __init__(self, gmsh: Any, tags: list[int]) -> None:
         self.tags = tags
         self.factor = dict.fromkeys(tags, 1.0)
-        self.last = {}  # the distance of a face when it was divided further
-        self.stagnant = defaultdict(int)
+        self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
+        self.stagnant: defaultdict[Any, int] = defaultdict(int)
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}
         for tag, loop in self.loops.items():
@@ -92,7 +92,7 @@ class Division:
 
     def counts(self) -> dict[int, int]:
         """Return the divisions of each edge; opposite edges of regular faces have the same."""
-        need = defaultdict(lambda: 1)
+        need: defaultdict[Any, int] = defaultdict(lambda: 1)
         for (edge, tag), turn in self.turn.items():
             if self.length[edge] <= 1e-9 * self.size:
                 continue
@@ -117,7 +117,7 @@ class Division:
             # At a pole the edge without length and the one opposite are not alike.
             group[leader(a)] = leader(c)
             group[leader(b)] = leader(d)
-        largest = defaultdict(int)
+        largest: defaultdict[Any, int] = defaultdict(int)
         for edge in group:
             largest[leader(edge)] = max(largest[leader(edge)], need[edge])
         return {edge: largest[leader(edge)] for edge in group}

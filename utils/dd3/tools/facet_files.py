@@ -15,10 +15,11 @@ from dd3.mesh import inp_blocks, inp_elements
 
 SUFFIXES = (".stl", ".msh", ".inp", ".k", ".key", ".dyn", ".vtk", ".vtu", ".vtp", ".ply", ".obj")
 # Faces of solids by their number of corners: of a tetrahedron, a pyramid, a wedge, a hexahedron.
-SOLIDS = {4: [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
-          5: [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
-          6: [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
-          8: [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]}
+SOLIDS: dict[int, list[tuple[int, ...]]] = {
+    4: [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
+    5: [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    6: [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+    8: [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]}
 INP_FACETS = re.compile(r"(?:R3D|S|M3D|SFM3D|STRI|DS)(3|4|6|8|9)", re.IGNORECASE)
 INP_SOLIDS = re.compile(r"(?:C3D|SC|CSS)(4|5|6|8|10|15|20|27)", re.IGNORECASE)
 CORNERS = {10: 4, 15: 6, 20: 8, 27: 8}
@@ -72,7 +73,9 @@ def stl_text(path: Path, data: bytes) -> tuple[np.ndarray, np.ndarray, list[str]
     text = data.decode("utf-8-sig", errors="replace")
     if not text.lstrip().lower().startswith("solid") or "facet" not in text.lower():
         raise Problem(f"{path}: neither a text nor a complete binary STL file")
-    points, part, names = [], [], []
+    points: list[Any] = []
+    part: list[int] = []
+    names: list[str] = []
     for number, line in enumerate(text.splitlines(), 1):
         words = line.split()
         key = words[0].lower() if words else ""
@@ -99,7 +102,10 @@ def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
                cells: list[tuple[Any, int, tuple[int, ...]]]) -> Facets:
     """Return facets from cells, tuples of part, dimension and node labels; solids give the faces that they do not
     share. `nodes` are the coordinates by label."""
-    facets, part, names, outer = [], [], {}, {}
+    facets: list[list[int]] = []
+    part: list[int] = []
+    names: dict[Any, Any] = {}
+    outer: dict[frozenset, Any] = {}
     for name, dimension, members in cells:
         number = names.setdefault(name, len(names))
         if len(members) < 3:  # a shell whose nodes are one point or one line
@@ -118,11 +124,11 @@ def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
     if not facets:
         raise Problem(f"{path}: no shell facets and no solids")
     labels = np.array(sorted(nodes))
-    facets = np.array(facets)
-    missing = set(np.unique(facets[facets >= 0]).tolist()) - nodes.keys()
+    rows = np.array(facets)
+    missing = set(np.unique(rows[rows >= 0]).tolist()) - nodes.keys()
     if missing:
         raise Problem(f"{path}: node {min(missing)} of an element has no coordinates")
-    place = np.where(facets < 0, -1, np.searchsorted(labels, facets))
+    place = np.where(rows < 0, -1, np.searchsorted(labels, rows))
     notes = [f"{len(skin)} facets are the outer faces of solids"] if skin else []
     points = np.array([nodes[label] for label in labels.tolist()], float)
     return Facets(points, place, np.array(part), list(names), notes)
@@ -130,7 +136,8 @@ def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
 
 def read_inp(path: Path) -> Facets:
     """Read the shells and solids of a model of Abaqus or CalculiX; parts are its *PARTs or element sets."""
-    nodes, cells, base = {}, [], {}
+    nodes, cells = {}, []
+    base: dict[str, int] = {}
     for keyword, options, place, rows in inp_blocks(path):
         # Labels are unique within a *PART only.
         first = base.setdefault(options["part"], len(base) * 10**9)
@@ -140,10 +147,11 @@ def read_inp(path: Path) -> Facets:
                     nodes[first + int(words[0])] = tuple(float(word) for word in (words[1:] + ["0"] * 3)[:3])
             elif keyword == "ELEMENT":
                 kind = options.get("TYPE", "")
-                shell, solid = INP_FACETS.match(kind), INP_SOLIDS.match(kind)
-                if not shell and not solid:
+                shell = INP_FACETS.match(kind)
+                kind_of = shell or INP_SOLIDS.match(kind)
+                if not kind_of:
                     continue
-                count = int((shell or solid)[1])
+                count = int(kind_of[1])
                 corners = (3 if count in (3, 6) else 4) if shell else CORNERS.get(count, count)
                 name = options["part"] or options.get("ELSET", "part").lower()
                 cells += [(name, 2 if shell else 3, tuple(first + label for label in members[:corners]))
@@ -201,18 +209,18 @@ def read_dyna(path: Path) -> Facets:
                 # Options such as THICKNESS or BETA give each element further lines.
                 lines = 1 + sum(name in options for name in ("THICKNESS", "BETA", "MCID", "OFFSET", "DOF"))
                 if (row - 1) % max(1, min(lines, 2)) == 0:
-                    words = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
-                    if len(words) < 5:
+                    labels = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
+                    if len(labels) < 5:
                         raise ValueError
-                    cells.append((words[1], 2, corners_of(words[2:6])))
+                    cells.append((labels[1], 2, corners_of(labels[2:6])))
             elif keyword.startswith(("*ELEMENT_SOLID", "*ELEMENT_TSHELL")):
-                words = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
-                if len(words) == 2:  # the nodes are on the next line
-                    part, row = words[1], 0
+                labels = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
+                if len(labels) == 2:  # the nodes are on the next line
+                    part, row = labels[1], 0
                 elif row == 1 and part is not None:
-                    cells.append((part, 3, solid_of(words)))
+                    cells.append((part, 3, solid_of(labels)))
                 else:
-                    cells.append((words[1], 3, solid_of(words[2:])))
+                    cells.append((labels[1], 3, solid_of(labels[2:])))
             elif keyword == "*PART":
                 if row % 2 == 1:
                     title = line.strip()

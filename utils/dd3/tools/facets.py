@@ -51,7 +51,7 @@ def diagonal(path: Path, mesh: Facets) -> float:
     size = np.linalg.norm(np.ptp(used, axis=0))
     if size == 0.0 or np.linalg.svd(used - used.mean(axis=0), compute_uv=False)[1] <= mend.SAME_NODE * size:
         raise Problem(f"{path}: all nodes are on one line or at one point")
-    return size
+    return float(size)
 
 
 def refuse_gaps(path: Path, mesh: Facets, inside: list[Any]) -> None:

@@ -5,6 +5,7 @@ Edges are joined as the program joins them: their points at 0, 1/4, 1/2, 3/4 and
 of the surface's box.
 """
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -139,7 +140,7 @@ def near_misses(net: np.ndarray, joints: Joints, reach: float) -> tuple[np.ndarr
     length = np.linalg.norm(np.diff(fine, axis=1), axis=2).sum(axis=1)
     owner = np.repeat(np.arange(len(free)), 17)
     tree = cKDTree(fine.reshape(-1, 3))
-    found = {}
+    found: dict[Any, Any] = {}
     for i, edge in enumerate(free):
         limit = min(reach, length[i] / 4)
         step = length[i] / 16

@@ -77,8 +77,9 @@ def without_slivers(mesh: Facets) -> int:
         slivers = find_slivers(mesh)
         if not len(slivers):
             break
-        facets, part = [list(row) for row in mesh.facets], list(mesh.part)
-        owner = {}
+        facets: list[Any] = [list(row) for row in mesh.facets]
+        part = list(mesh.part)
+        owner: dict[frozenset, list[int]] = {}
         for index, row in enumerate(facets):
             for a, b in ring_edges(row):
                 owner.setdefault(frozenset((a, b)), []).append(index)
@@ -227,7 +228,7 @@ def nodes_inside_edges(mesh: Facets, reach: float) -> dict[int, tuple[int, int, 
     tree = cKDTree(mesh.nodes[nodes])
     middle, along = (mesh.nodes[a] + mesh.nodes[b]) / 2, mesh.nodes[b] - mesh.nodes[a]
     length = np.linalg.norm(along, axis=1)
-    found = {}
+    found: dict[Any, Any] = {}
     for i, near in enumerate(tree.query_ball_point(middle, 0.5 * length)):
         limit = max(1e-4 * length[i], reach)
         near = nodes[near]

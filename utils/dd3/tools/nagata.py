@@ -8,7 +8,8 @@ normals, Journal of Graphics Tools 4 (1999)), which are exact on a sphere. A fac
 as large as its own does not count: on the line between a plane and a fillet, or between a straight and a curved part
 of a fillet, the normal is that of the larger one.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -40,8 +41,9 @@ class Net:
     region: np.ndarray
     angle: np.ndarray  # of the smooth edges, degrees
     straight: int = 0  # edges without a quadratic
-    plain: np.ndarray = None  # facets whose edges are kept straight, None for none
-    estimate: np.ndarray = None  # of the distance of the facets' edges from a smooth surface, mm
+    plain: np.ndarray | None = None  # facets whose edges are kept straight, None for none
+    # Distance of the facets' edges from a smooth surface, mm.
+    estimate: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 def groups(count: int, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -118,7 +120,7 @@ def estimate_normals(mesh: Facets) -> Net:
 
 def neighbours(count: int, first: np.ndarray, second: np.ndarray) -> list[list[int]]:
     """Return the facets joined with each one."""
-    result = [[] for _ in range(count)]
+    result: list[list[Any]] = [[] for _ in range(count)]
     for a, b in zip(first.tolist(), second.tolist()):
         result[a].append(b)
         result[b].append(a)
@@ -132,7 +134,7 @@ def reaches(nodes: np.ndarray, facets: np.ndarray, near: list[list[int]], facet:
     A ring around an axis does not, however large its area is.
     """
     middle, along = (ends[0] + ends[1]) / 2, ends[1] - ends[0]
-    length = max(np.linalg.norm(along), 1e-300)
+    length = max(float(np.linalg.norm(along)), 1e-300)
     seen, waiting = {facet}, [facet]
     while waiting:
         item = waiting.pop()

@@ -53,19 +53,19 @@ def draw(surface: Surface, joints: Joints, path: Path) -> None:
     from vtkmodules.vtkCommonCore import vtkLogger
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     pv.OFF_SCREEN = True
-    plotter = pv.Plotter(off_screen=True, window_size=[1500, 1100])
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[1500, 1100])
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
     faces = np.unique(surface.face)
     for colour in range(min(len(COLOURS), len(faces))):
         points, cells = quads(surface.net[np.isin(surface.face, faces[colour::len(COLOURS)])])
         plotter.add_mesh(pv.PolyData(points, cells), color=COLOURS[colour], ambient=0.25)
-    for edges, colour, width in ((joints.first, JOINED, 1.5), (joints.free, FREE, 3),
+    for edges, paint, width in ((joints.first, JOINED, 1.5), (joints.free, FREE, 3),
                                  (joints.multiple, MULTIPLE, 6)):
         if len(edges):
-            plotter.add_mesh(lines(pv, surface.net, edges), color=colour, line_width=width)
+            plotter.add_mesh(lines(pv, surface.net, edges), color=paint, line_width=width)
     low, high = box_of(surface.net)
-    plotter.add_mesh(arrows(pv, surface.net, np.linalg.norm(high - low)), color="#e07b00")
+    plotter.add_mesh(arrows(pv, surface.net, float(np.linalg.norm(high - low))), color="#e07b00")
     # The camera looks at the side of the normals.
     half = np.array([0.5])
     above = areas_at(surface.net, half, half)[:, 0, 2].sum() >= 0

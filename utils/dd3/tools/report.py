@@ -83,8 +83,9 @@ def extent(net: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     points = points_at(net, *places).reshape(-1, 3)
     count = places.shape[1]
     low, high = points.argmin(axis=0), points.argmax(axis=0)
-    return tuple(np.array([extreme(net[[k // count]], axis, sign, places[:, k % count]) for axis, k in enumerate(ends)])
-                 for sign, ends in ((-1, low), (1, high)))
+    lower, upper = (np.array([extreme(net[[k // count]], axis, sign, places[:, k % count])
+                              for axis, k in enumerate(ends)]) for sign, ends in ((-1, low), (1, high)))
+    return lower, upper
 
 
 def extreme(net: np.ndarray, axis: int, sign: int, place: np.ndarray) -> float:

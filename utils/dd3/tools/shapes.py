@@ -28,6 +28,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,7 @@ class Segment:
 
     start: np.ndarray
     end: np.ndarray
-    centre: np.ndarray = None
+    centre: np.ndarray | None = None
     angle: float = 0.0
 
     def direction(self, at_end: bool) -> np.ndarray:
@@ -75,7 +76,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> float:
 def arc(start: np.ndarray, end: np.ndarray, centre: np.ndarray, place: str) -> Segment:
     """Return the arc between two points about a centre, the shorter way."""
     a, b = start - centre, end - centre
-    radius = np.linalg.norm(a)
+    radius = float(np.linalg.norm(a))
     if abs(np.linalg.norm(b) - radius) > 1e-6 * max(radius, 1e-300):
         raise Problem(f"{place}: the ends of the arc are {radius:g} and {np.linalg.norm(b):g} mm from its centre")
     angle = np.arctan2(cross(a, b), a @ b)
@@ -137,7 +138,7 @@ def segments(steps: Sequence[tuple[str, Sequence[float], str]]) -> list[Segment]
 
 def offset(profile: list[Segment], distance: float, place: str) -> list[Segment]:
     """Return the profile at a distance to its left; a gap at a convex corner is closed by an arc."""
-    result = []
+    result: list[Any] = []
     for piece in profile:
         shift = [distance * perpendicular(piece.direction(at_end)) for at_end in (False, True)]
         moved = Segment(piece.start + shift[0], piece.end + shift[1], piece.centre, piece.angle)
@@ -353,7 +354,8 @@ def read_shapes(path: Path, distances: Sequence[float] | None = None) -> Surface
     Normals point to the left of a profile, and to the sheet for a box. With `distances`, a number for each face, the
     profiles are moved along these normals.
     """
-    surfaces, makers = [], {"profile": make_profile, "rounded_box": make_box}
+    surfaces: list[Any] = []
+    makers = {"profile": make_profile, "rounded_box": make_box}
     for block in read_blocks(path):
         if block.keyword == "parameter":
             continue
