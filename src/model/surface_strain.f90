@@ -2,7 +2,9 @@
 !> Logarithmic strains in the surface of the sheet at its lower face, middle and upper face, for any
 !> element: principal values of the right stretch of the surface, whose positions are interpolated
 !> between the columns' bottom and top nodes with the shape functions of the elements' lower faces.
-!> At a node the strain tensors of the faces that share it are averaged.
+!> Straight edges stand for circular arcs, which turn by the angle theta between the directors (from
+!> the bottom to the top of the columns) at their ends: a chord is shorter than its arc by the factor
+!> 2 sin(theta/2)/theta. At a node the strain tensors of the faces that share it are averaged.
 module dd3_model_surface_strain
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
@@ -13,6 +15,12 @@ module dd3_model_surface_strain
 
   !> Relative difference of squared stretches below which they count as equal.
   real(wp), parameter :: equal_stretch = 1.0e-9_wp
+
+  !> Corners of a face.
+  integer, parameter :: n_corner = 4
+
+  !> Sine of half the angle of an edge below which arc and chord are equal within round-off.
+  real(wp), parameter :: straight = 1.0e-8_wp
 
 contains
 
@@ -41,7 +49,9 @@ contains
         if (any(column(1, node) /= node)) cycle
         call strain_of_face(model%element%node_slope(:2, local, local), &
             between(model%x0(:, node), model%x0(:, column(2, node))), &
-            between(x(:, node), x(:, column(2, node))), face_tensor, face_normal)
+            between(x(:, node), x(:, column(2, node))), &
+            directors(model%x0(:, node), model%x0(:, column(2, node))), &
+            directors(x(:, node), x(:, column(2, node))), face_tensor, face_normal)
         tensor(:, :, node) = tensor(:, :, node) + face_tensor
         normal(:, node) = normal(:, node) + face_normal
         sharing(node) = sharing(node) + 1
@@ -68,12 +78,27 @@ contains
 
   end subroutine surface_strains
 
+  !> Return the unit vectors from bottom nodes to top nodes.
+  pure function directors(bottom, top) result(d)
+    !> Positions, `(3, n)`, mm.
+    real(wp), intent(in) :: bottom(:, :), top(:, :)
+    real(wp) :: d(3, size(bottom, 2))
+
+    integer :: a
+
+    do a = 1, size(d, 2)
+      d(:, a) = (top(:, a) - bottom(:, a))/norm2(top(:, a) - bottom(:, a))
+    end do
+  end function directors
+
   !> Evaluate the strain tensors and the initial unit normals of a face at its nodes.
-  pure subroutine strain_of_face(slope, x0, x, tensor, normal)
+  pure subroutine strain_of_face(slope, x0, x, d0, d, tensor, normal)
     !> Derivatives of the shape functions in the face, `(2, n, n)`: direction, function, place.
     real(wp), intent(in) :: slope(:, :, :)
     !> Initial and present positions, `(3, n)`, mm.
     real(wp), intent(in) :: x0(:, :), x(:, :)
+    !> Initial and present directors, `(3, n)`.
+    real(wp), intent(in) :: d0(:, :), d(:, :)
     !> `(3, 3, n)` and `(3, n)`.
     real(wp), intent(out) :: tensor(:, :, :), normal(:, :)
 
@@ -81,13 +106,35 @@ contains
     integer :: a
 
     do a = 1, size(x, 2)
-      call orthonormal(matmul(x0, transpose(slope(:, :, a))), base, inverse)
-      image = matmul(matmul(x, transpose(slope(:, :, a))), inverse)
+      call orthonormal(tangents(slope(:, :, a), x0, d0), base, inverse)
+      image = matmul(tangents(slope(:, :, a), x, d), inverse)
       log_stretch = half_log(matmul(transpose(image), image))
       tensor(:, :, a) = matmul(base, matmul(log_stretch, transpose(base)))
       normal(:, a) = cross(base(:, 1), base(:, 2))
     end do
   end subroutine strain_of_face
+
+  !> Return the derivatives of the positions in a face at one of its nodes; those of straight edges
+  !> are scaled to the length of the arc: with the chord c and the directors d at its ends, the sine
+  !> of half the angle is s = c.(d2 - d1)/(2 |c|), and arc over chord asin(s)/s.
+  pure function tangents(slope, x, d) result(tangent)
+    !> Derivatives of the shape functions, `(2, n)`.
+    real(wp), intent(in) :: slope(:, :)
+    !> Positions, mm, and directors, `(3, n)`.
+    real(wp), intent(in) :: x(:, :), d(:, :)
+    real(wp) :: tangent(3, 2)
+
+    real(wp) :: turn(3, 2), sine
+    integer :: k
+
+    tangent = matmul(x, transpose(slope))
+    if (size(x, 2) > n_corner) return
+    turn = matmul(d, transpose(slope))
+    do k = 1, 2
+      sine = abs(dot_product(tangent(:, k), turn(:, k)))/norm2(tangent(:, k))
+      if (sine > straight) tangent(:, k) = tangent(:, k)*asin(min(1.0_wp, sine))/sine
+    end do
+  end function tangents
 
   !> Make an orthonormal base of a plane: tangent = base inverse^-1.
   pure subroutine orthonormal(tangent, base, inverse)
