@@ -123,6 +123,17 @@ def test_diagram(run):
     assert "--n takes a positive number" in call("fld", run, "--n", -1, expect=2)
 
 
+def rows_of(page):
+    """Return the rows of the tables of each section of a page, by their first cells."""
+    sections = {}
+    for section in re.findall(r"<section>(.*?)</section>", page.read_text(), re.DOTALL):
+        rows = {row[0]: row[1:] for row in (re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", text) for text in
+                                            re.findall(r"<tr>(.*?)</tr>", section, re.DOTALL))}
+        sections[re.search("<h2>(.*?)</h2>", section)[1]] = {
+            name: " ".join(re.sub("<[^>]*>", "", cell).strip() for cell in cells) for name, cells in rows.items()}
+    return sections
+
+
 def test_report(run, tmp_path):
     """Check that the page is complete and needs no other file."""
     call("report", run, "--mirror", "x", "y", "--output", tmp_path / "report")
@@ -130,14 +141,11 @@ def test_report(run, tmp_path):
     for title in ("Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
                   "Outline and draw-in", "Phase 1: draw", "Draw-beads", "Warnings", "Run", "Set-up"):
         assert f"<h2>{title}</h2>" in text, title
-    assert "A profile &amp; its &lt;report&gt;" in text and "the mesh is coarse" in text
-    assert "Keeler-Brazier" not in text and "10 kN, 250 MPa" in text and "0.1 %" in text
+    assert "A profile &amp; its &lt;report&gt;" in text and "job.dat:3: the mesh is coarse" in text
+    assert "Keeler-Brazier" not in text and "State: draw, travel 2.00 mm; completed at the planes x, y = 0." in text
+    assert "dd3imp 0.1.0: job.dat<br>started 2026-01-01T00:00:00+00:00" in text
     assert all(source.startswith("data:image/png") for source in re.findall(r'src="([^"]{20})', text))
-    assert "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most" in text
     assert not re.search(r"(href|url)\b", text)
-    for row in ("moved by 0 0 -2 mm", "at a travel of 2 mm, 100 %", "1, 0 cut back; 5 iterations", "rotation 1",
-                "W109: the mesh is coarse", "State: draw, travel 2.00 mm"):
-        assert row in text, row
     assert "Springback" not in text
     for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force_draw", "beads"):
         assert (tmp_path / "report" / f"{name}.png").read_bytes()[:4] == b"\x89PNG", name
@@ -145,7 +153,45 @@ def test_report(run, tmp_path):
     assert "bad.csv:2: error: expected minor" in call("report", run, "--curve", tmp_path / "bad.csv", "--output",
                                                       tmp_path / "report", expect=2)
     assert "No such file" in call("report", tmp_path / "none.out", "--output", tmp_path / "other", expect=2)
+    (tmp_path / "points.out").mkdir()
+    (tmp_path / "points.out" / "run.json").write_text('{"format": "dd3imp run", "format_version": 1, "points": ["a"]}')
+    assert "a run of material points, without a sheet; see dd3 plot point" in call("report", tmp_path / "points.out",
+                                                                                    expect=2)
     assert not (tmp_path / "other").exists()
+
+
+def test_numbers_of_the_report(run, tmp_path):
+    """Check every number of the page's tables against the fields, the history and the statuses of the run."""
+    call("report", run, "--mirror", "x", "y", "--output", tmp_path / "report")
+    sections = rows_of(tmp_path / "report" / "report.html")
+    _, points, angles = profile()
+    end = points[-1] + [math.sin(angles[-1]), -math.cos(angles[-1])]  # at the lower face, the first in the order of nodes
+    limit = keeler_brazier(1.0, 0.2).limit(-0.02)
+    critical = 6 * int((profile()[0] / 200 > limit).sum())
+    assert sections["Result"] == {
+        "thickness": f"{1 - ENDS[-1] / 1000:.4g} to 1 mm",
+        "largest thinning": f"{ENDS[-1] / 10:.3g} % at ({end[0]:.1f}, 0.0, {end[1]:.1f}) mm",
+        "largest thickening": "0 %", "equivalent plastic strain": "0.1",
+        "forming limit": f"{critical} of {6 * len(points)} nodes critical",
+        "punch: largest force along z, largest pressure": "10 kN, 250 MPa",  # four times the model's force
+        "error of the energy balance": "0.1 %"}  # 5 of 5000 mJ
+    assert sections["Phase 1: draw"] == {
+        "punch": "moved by 0 0 -2 mm", "driven by": "punch", "ends": "at a travel of 2 mm, 100 %",
+        "increments": "1, 0 cut back; 5 iterations", "limited by": "rotation 1", "warning": "W109: the mesh is coarse"}
+    assert sections["Draw-beads"] == {"rib": "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most, "
+                                             "40 mm at the end"}
+    assert sections["Run"] == {"end of the run": "reached", "increments": "1", "cut-backs": "0", "iterations": "5",
+                               "wall-clock time": "1.5 s", "material": "1 s 100 %"}
+
+
+def test_places(run):
+    """Check the steps that travels and phases name, and those that are not there."""
+    sheet = Sheet(run)
+    assert [sheet.step_at(place) for place in (0.0, 2, "2", "draw", "draw:90", "draw:0")] == [0, 1, 1, 1, 1, 0]
+    assert sheet.state(1) == "draw, travel 2.00 mm"
+    for place, said in (("3", "no travel 3 mm; there is 0 to 2; the phases are draw"), ("free", "no place free"),
+                        ("draw:x", "expected a travel in mm, PHASE or PHASE:PERCENT")):
+        assert said in call("fld", run, "--at", place, expect=2), place
 
 
 def test_actions():
@@ -177,7 +223,10 @@ def test_springback(tmp_path):
     cells = [[nodes[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
              for i in range(40) for j in range(4)]
     history = HISTORY.splitlines()[:3] + [HISTORY.splitlines()[3].replace("1,draw,2,1", "1,free,0,1")]
-    folder = write_run(tmp_path / "bar.out", start, free, cells, "\n".join(history) + "\n", STATUS,
+    one = np.ones(len(start))
+    fields = {"thickness": (one, one), **{name: (0 * one, 0 * one) for name in (
+        "thinning", "draw_in", "equivalent_plastic_strain", "major_strain_middle", "minor_strain_middle")}}
+    folder = write_run(tmp_path / "bar.out", start, free, cells, "\n".join(history) + "\n", STATUS, fields,
                        phases=[DRAW, RELEASED])
     sheet = Sheet(folder)
     found = find(sheet, [DRAW, RELEASED])
@@ -189,4 +238,10 @@ def test_springback(tmp_path):
     line = sheet.cut(np.eye(3)[0], 10.0)[0]
     assert abs(rotation(line, found, np.eye(3)[0]) - 0.5) < 2e-3
     assert max(map(abs, opening(line, found, np.eye(3)[0]))) < 1e-6
+    call("report", folder, "--section", "x=10", "--output", tmp_path / "report")
+    rows, distance = rows_of(tmp_path / "report" / "report.html")["Springback"], found.distance()
+    assert rows["largest distance from the drawn shape"] == f"{distance.max():.4g} mm"
+    assert rows["mean distance"] == f"{distance.mean():.4g} mm"
+    assert rows["twist about x from 10 to 90 % of the length"] == "+1.6 degrees"
+    assert rows["section x=10"].startswith("turned by +0.5 degrees; its ends against that by "), rows
     assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found, ["x"]) is None

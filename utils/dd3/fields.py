@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fields of a run, fields.vtkhdf."""
 
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,12 +9,21 @@ import h5py
 import numpy as np
 
 from dd3.errors import Problem
+from dd3.run import read_job
 
 if TYPE_CHECKING:
     import pyvista as pv
 
 
+AT = "travel in mm, PHASE for its end, or PHASE:PERCENT; the nearest step (default: the last)"  # help of --at
 COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
+
+
+def missing(path: Path) -> str:
+    """Return the message for results without fields."""
+    if (path.parent / "run.json").is_file() and read_job(path.parent).get("points"):
+        return f"{path.parent}: a run of material points, without a sheet; see dd3 plot point"
+    return f"{path}: No such file"
 
 
 class Fields:
@@ -31,13 +41,20 @@ class Fields:
             self.steps: Any = self.grid["Steps"]
             self.count = int(self.steps.attrs["NSteps"])
         except FileNotFoundError:
-            raise Problem(f"{path}: No such file") from None
+            raise Problem(missing(path)) from None
         except (OSError, KeyError):
             raise Problem(f"{path}: not the field file of a run") from None
         if self.count == 0:
             raise Problem(f"{path}: no steps")
         self.path, self.folder, self.last = path, path.parent, self.count - 1
         self.travel: np.ndarray = self.steps["Values"][: self.count]
+
+    @cached_property
+    def phases(self) -> list[dict[str, Any]]:
+        """The phases as run.json describes them; none where it is missing."""
+        there = "job" in self.file and "phase" in self.file["job"] and (self.folder / "run.json").is_file()
+        found: list[dict[str, Any]] = read_job(self.folder)["phases"] if there else []
+        return found
 
     def __len__(self) -> int:
         return self.count
@@ -64,12 +81,43 @@ class Fields:
         distance = np.abs(self.travel - travel)
         return int(np.flatnonzero(distance <= distance.min() + 2e-6)[-1])
 
-    def step_at(self, travel: float) -> int:
-        """Return the last of the steps whose travel is nearest; a Problem outside the range of the run."""
+    def step_at(self, place: str | float) -> int:
+        """Return the last of the steps nearest to a travel in mm, to the end of a phase, given by its name, or to a
+        part of it in per cent, such as draw:40. A Problem where the run has no such place."""
+        name, _, percent = str(place).partition(":")
+        numbers = [phase["number"] for phase in self.phases if phase["name"] == name]
+        if numbers:
+            return self.step_of_phase(numbers[0], name, number_in(percent or "100", str(place)))
+        travel = number_in(str(place), f"{place}{self.named()}")
         if not self.travel.min() - 0.01 <= travel <= self.travel.max() + 0.01:
             raise Problem(f"{self.path}: no travel {travel:g} mm; "
-                          f"there is {self.travel.min():g} to {self.travel.max():g}")
+                          f"there is {self.travel.min():g} to {self.travel.max():g}{self.named()}")
         return self.nearest_step(travel)
+
+    def named(self) -> str:
+        """Return the names of the phases as the end of a message."""
+        names = ", ".join(phase["name"] for phase in self.phases)
+        return f"; the phases are {names}" if names else ""
+
+    def step_of_phase(self, number: int, name: str, percent: float) -> int:
+        """Return the step of a phase that is nearest to a part of it."""
+        job = self.file["job"]
+        steps = np.flatnonzero(job["phase"][: self.count] == number)
+        if not steps.size:
+            raise Problem(f"{self.path}: no step of phase '{name}'")
+        distance = np.abs(100 * job["progress"][: self.count][steps] - percent)
+        return int(steps[np.flatnonzero(distance <= distance.min() + 2e-6)[-1]])
+
+    def state(self, step: int) -> str:
+        """Return what a step is: its phase, and travel or, where no tool controls the phase, progress."""
+        job = self.file["job"]
+        number = int(job["phase"][step]) if "phase" in job else 0
+        if not 0 < number <= len(self.phases):
+            return f"travel {self.travel[step]:.2f} mm"
+        phase = self.phases[number - 1]
+        if phase["control"]:
+            return f"{phase['name']}, travel {job['travel'][step]:.2f} mm"
+        return f"{phase['name']}, {100 * job['progress'][step]:.3g} %"
 
     def points(self, step: int) -> np.ndarray:
         """Return the positions of the nodes at a step."""
@@ -100,6 +148,14 @@ class Fields:
         if chosen in ("", "magnitude"):
             return np.linalg.norm(values, axis=1), f"{label}, magnitude{unit}"
         raise Problem(f"{self.path}: no component '{chosen}' of '{name}'; there are: {', '.join(names)}, magnitude")
+
+
+def number_in(text: str, said: str) -> float:
+    """Return the number in a text."""
+    try:
+        return float(text)
+    except ValueError:
+        raise Problem(f"no place {said}; expected a travel in mm, PHASE or PHASE:PERCENT") from None
 
 
 def text_of(attribute: str | bytes) -> str:

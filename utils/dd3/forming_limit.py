@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.fields import Fields
+from dd3.fields import AT, Fields
 from dd3.plot.figures import new_figure, save
 from dd3.run import read_job
 from dd3.tables import read_text
@@ -159,7 +159,7 @@ def main(words: Sequence[str] | None = None) -> None:
     """Draw the diagram of the command line."""
     parser = new_parser("fld", __doc__)
     parser.add_argument("run", metavar="RUN", help="folder of results")
-    parser.add_argument("--at", type=float, metavar="TRAVEL", help="travel in mm, the nearest step (default: the last)")
+    parser.add_argument("--at", metavar="PLACE", help=AT)
     parser.add_argument("--surface", choices=["middle", "upper", "lower"], default="middle",
                         help="where the strains are taken (middle)")
     add_options(parser)
@@ -171,6 +171,6 @@ def main(words: Sequence[str] | None = None) -> None:
     major, minor = (fields.values(step, f"{name}_strain_{options.surface}")[0] for name in ("major", "minor"))
     figure, axes = new_figure((8, 5.2))
     said = draw(axes, major, minor, find_curve(fields, read_job(fields.folder), options), options.margin)[1]
-    axes.set_title(f"travel {fields.travel[step]:.4g} mm", fontsize=10)
+    axes.set_title(fields.state(step), fontsize=10)
     save(figure, options.output, 130)
     print(options.output, said, sep="\n")

@@ -21,6 +21,7 @@ from matplotlib.axes import Axes
 
 from dd3.command import new_parser
 from dd3.errors import Problem
+from dd3.fields import AT
 from dd3.plot.figures import new_figure, save
 from dd3.sheet import AXES, Line, Sheet, length, plane
 
@@ -121,7 +122,7 @@ def draw(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str],
         for section in sections:
             values, label = section.field(name)
             place.plot(section.length0, values, ".-", linewidth=1.2, markersize=3,
-                       label=f"travel {section.sheet.travel[section.step]:.4g} mm")
+                       label=section.sheet.state(section.step))
         place.set_ylabel(label)
         place.set_xlabel("initial length along the section (mm)")
         place.grid(True, color="0.9")
@@ -143,8 +144,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--nodes", type=int, nargs="+", metavar="N", help="numbers of nodes along a line instead")
     parser.add_argument("--lower", action="store_true", help="lower face of the sheet instead of the upper one")
     parser.add_argument("--field", action="append", default=[], help="field at the nodes; may be repeated (thickness)")
-    parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
-                        help="travel in mm, the nearest step; may be repeated (default: the last step)")
+    parser.add_argument("--at", action="append", metavar="PLACE", help=AT + "; may be repeated")
     parser.add_argument("--bottom", type=float, nargs=2, metavar=("FROM", "TO"), help="straight bottom, mm")
     parser.add_argument("--wall", type=float, nargs=2, metavar=("FROM", "TO"), help="sidewall, mm")
     parser.add_argument("--flange", type=float, nargs=2, metavar=("FROM", "TO"), help="straight flange, mm")
@@ -163,7 +163,7 @@ def main(words: Sequence[str] | None = None) -> None:
     sheet = Sheet(options.run)
     normal, distance = plane(options.plane)
     line = sheet.line_of_nodes(options.nodes) if options.nodes else sheet.cut(normal, distance, not options.lower)[0]
-    steps = [sheet.step_at(travel) for travel in options.at] if options.at else [sheet.last]
+    steps = [sheet.step_at(place) for place in options.at] if options.at else [sheet.last]
     sections = [Section(sheet, line, step) for step in steps]
     figure, axes = new_figure((7, 3 * len(options.field) + 3), len(options.field) + 1)
     draw(sections, normal, options.field, axes)

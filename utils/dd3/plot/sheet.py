@@ -27,7 +27,7 @@ from vtkmodules.vtkCommonCore import vtkLogger
 
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.fields import Fields, text_of
+from dd3.fields import AT, Fields, text_of
 from dd3.plot.beads import draw_beads
 from dd3.programs import command, find_program, launch, setting
 from dd3.progress import each
@@ -80,17 +80,6 @@ class Run(Fields):
         data = mesh.cell_data if at_cells else mesh.point_data
         data["shown"], label = self.component(step, field, at_cells)
         return mesh, label
-
-    def state(self, step: int) -> str:
-        """Return what a step is: its phase, and travel or, where no tool controls the phase, progress."""
-        job, phases = self.file["job"], self.job.get("phases", [])
-        number = int(job["phase"][step]) if "phase" in job else 0
-        if not 0 < number <= len(phases):
-            return f"travel {self.travel[step]:.2f} mm"
-        phase = phases[number - 1]
-        if phase["control"]:
-            return f"{phase['name']}, travel {job['travel'][step]:.2f} mm"
-        return f"{phase['name']}, {100 * job['progress'][step]:.3g} %"
 
     def tool_placements(self, step: int) -> dict[str, Placement]:
         """Return the placement of each tool at a step."""
@@ -255,8 +244,7 @@ def command_line() -> argparse.ArgumentParser:
                         help="the program, for an input file (default: the one on the path)")
     parser.add_argument("--set", action="append", type=setting, default=[], metavar="NAME=VALUE",
                         help="parameter of an input file")
-    parser.add_argument("--at", type=float, action="append", metavar="TRAVEL",
-                        help="travel in mm, the nearest step is drawn; may be repeated (default: the last step)")
+    parser.add_argument("--at", action="append", metavar="PLACE", help=AT + "; may be repeated")
     parser.add_argument("--field", help="field, or field:component, such as stress:11 or displacement:z "
                         "(equivalent_plastic_strain; of an input file thickness)")
     parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
@@ -368,7 +356,7 @@ def new_plotter(options: argparse.Namespace, count: int) -> Any:
 def make_picture(run: Run, options: argparse.Namespace) -> None:
     """Draw the steps of the options and write the picture."""
     tools = find_tools(run, options)
-    steps = [run.step_at(t) for t in options.at] if options.at else [run.last]
+    steps = [run.step_at(place) for place in options.at] if options.at else [run.last]
     limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
     plotter = new_plotter(options, len(steps))
     for row, step in enumerate(each(steps, "pictures")):
