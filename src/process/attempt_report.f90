@@ -35,13 +35,15 @@ module dd3_process_attempt_report
   character(len=*), parameter :: line_search_remedy = "line_search = on in *NEWTON"
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: limit_remedy = "a larger value of this limit"
-  character(len=*), parameter :: mesh_remedy = ", a finer mesh there"
+  character(len=*), parameter :: mesh_remedy = "a finer mesh there"
 
-  !> Factors on the penalty, on the height of the contact layer, on the limit of rotation and on the
-  !> number of iterations that are proposed; rotation proposed if it is not limited, degrees.
+  !> Factors on the penalty, on the height of the contact layer and on the limit of rotation that are
+  !> proposed. A setting that is at its bound has been tried.
   real(wp), parameter :: penalty_factor = 0.1_wp, layer_factor = 2.0_wp, rotation_factor = 0.25_wp
-  integer, parameter :: iterations_factor = 2
-  character(len=*), parameter :: usual_rotation = "0.5"
+  !> Bounds: height of the contact layer over the thickness, rotation, degrees.
+  real(wp), parameter :: largest_layer = 0.03_wp, smallest_rotation = 0.5_wp
+  !> Numbers of iterations that are proposed: the usual one and a large one.
+  integer, parameter :: usual_iterations = 30, many_iterations = 60
 
 contains
 
@@ -189,17 +191,17 @@ contains
       else if (.not. phase%newton%line_search) then
         remedy = line_search_remedy
       else if (any(verdict%cause == [cause_large_step, cause_inverted, cause_inverted_strain])) then
-        remedy = usual_rotation
-        if (phase%limits%rotation%active) &
-            remedy = to_text(rotation_factor*phase%limits%rotation%value, 3)
-        remedy = "rotation = "//remedy//" in *LIMITS"//mesh_remedy
+        remedy = remedy_of_increments(phase, attempt)
       else if (verdict%element > 0) then
         remedy = material_remedy
+      else if (phase%newton%iterations < usual_iterations) then
+        remedy = "iterations = "//to_text(usual_iterations)//" in *NEWTON"
       else if (attempt%touched) then
-        remedy = remedy_of_contact(model, phase, model%candidate_of(verdict%node))
+        remedy = remedy_of_contact(model, phase, attempt)
+      else if (phase%newton%iterations < many_iterations) then
+        remedy = "iterations = "//to_text(many_iterations)//" in *NEWTON"
       else
-        remedy = "iterations = "//to_text(iterations_factor*phase%newton%iterations)// &
-            " in *NEWTON"
+        remedy = remedy_of_increments(phase, attempt)
       end if
     end associate
   end function first_remedy
@@ -231,19 +233,44 @@ contains
     end select
   end function remedy_of_input
 
-  !> Return the first remedy where the contact of a candidate does not settle.
-  function remedy_of_contact(model, phase, c) result(remedy)
+  !> Return the first remedy where the contact of a candidate does not settle: a setting of the
+  !> contact that has its default, else smaller increments.
+  function remedy_of_contact(model, phase, attempt) result(remedy)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    integer, intent(in) :: c
+    type(attempt_t), intent(in) :: attempt
     character(len=:), allocatable :: remedy
 
-    if (phase%mixed) then
-      remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)
+    integer :: c
+
+    c = model%candidate_of(attempt%verdict%node)
+    if (phase%mixed .and. phase%penalty <= 0.0_wp) then
+      remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
+          " in *CONTACT"
+    else if (.not. phase%mixed .and. phase%layer < largest_layer) then
+      remedy = "layer = "//to_text(min(largest_layer, layer_factor*phase%layer), 3)//" in *CONTACT"
     else
-      remedy = "layer = "//to_text(layer_factor*phase%layer, 3)
+      remedy = remedy_of_increments(phase, attempt)
     end if
-    remedy = remedy//" in *CONTACT"
   end function remedy_of_contact
+
+  !> Return the first remedy where the increments may be too large: smaller ones, and the mesh alone
+  !> where they are small already or the attempts have cut them back.
+  function remedy_of_increments(phase, attempt) result(remedy)
+    type(phase_t), intent(in) :: phase
+    type(attempt_t), intent(in) :: attempt
+    character(len=:), allocatable :: remedy
+
+    real(wp) :: proposed
+
+    remedy = mesh_remedy
+    if (attempt%number > 1) return
+    proposed = smallest_rotation
+    associate (rotation => phase%limits%rotation)
+      if (rotation%active) proposed = max(proposed, rotation_factor*rotation%value)
+      if (rotation%active .and. rotation%value <= proposed) return
+    end associate
+    remedy = "rotation = "//to_text(proposed, 3)//" in *LIMITS, "//remedy
+  end function remedy_of_increments
 
 end module dd3_process_attempt_report

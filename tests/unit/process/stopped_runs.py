@@ -7,6 +7,7 @@
 """
 import csv
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -112,6 +113,26 @@ def led_into_tool(program, directory):
     check(check_description(directory, 3)["outcome"]["message"] in output, "run.json has another message")
 
 
+def follow_advice(program, directory):
+    """Test that the settings that the messages propose, one after the other, bring a run to its end, none twice."""
+    text = BEGINNING.read_text(encoding="utf-8").replace("../../../", f"{ROOT}/").replace("  penalty = 1000\n", "")
+    start_of, end_of = text.index("*LIMITS"), text.index("*PHASE clamp")
+    text = text[:start_of] + ("*LIMITS\n  strain = off\n  rotation = 40\n  depth = off\n*NEWTON\n  cutback = off\n"
+                              "  line_search = off\n  iterations = 3\n") + text[end_of:]
+    deck, followed = directory.with_suffix(".dat"), []
+    while True:
+        deck.write_text(text, encoding="utf-8")
+        done = subprocess.run([program, "--quiet", "--output", directory, deck], capture_output=True, text=True, timeout=300,
+                              check=False)
+        if done.returncode == 0:
+            break
+        advice = re.search(r"try first: ((\w+) = [^ ,]+) in \*NEWTON", done.stderr)
+        check(advice and advice[1] not in followed, f"after {followed}:\n{done.stderr}")
+        followed.append(advice[1])
+        text = re.sub(rf"(?m)^  {advice[2]} = .*$", f"  {advice[1]}", text)
+    check(followed == ["cutback = on", "line_search = on", "iterations = 30"], f"the advice was {followed}")
+
+
 def small_disk(program, directory):
     """Test a limit of the file size reached in the middle of a phase; what is known of the tools is said."""
     output = run(program, directory, BEGINNING,
@@ -215,8 +236,8 @@ def main():
     options = parser_of_runs(__doc__).parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     options.work.mkdir(parents=True)
-    for test in (no_convergence, inside_out, free_sheet, led_into_tool, small_disk, full_disk, full_device,
-                 no_directory, next_to_old, interrupted, initial):
+    for test in (no_convergence, inside_out, free_sheet, led_into_tool, follow_advice, small_disk, full_disk,
+                 full_device, no_directory, next_to_old, interrupted, initial):
         test(options.program, options.work.resolve() / test.__name__)
         print(f"passed: {test.__name__}")
 
