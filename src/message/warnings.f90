@@ -114,7 +114,11 @@ contains
           "A pivot of the linear system vanished and was perturbed: hardly anything resists "// &
           "this displacement. `perturbed` in status.csv counts such pivots; a solution that "// &
           "does not satisfy the system is refused.", &
-          "Supports or contact that hold the part of the sheet, or the tool, that is named.")]
+          "Supports or contact that hold the part of the sheet, or the tool, that is named."), &
+      row("W115", "energy balance that is not closed", &
+          "At the end of a forming run `energy_error` is more than 5 % of the work: forces or "// &
+          "stresses change too much within the increments.", &
+          "`accuracy = fine` in `*LIMITS`, a smaller `trial`; compare the results.")]
   end function run_warnings
 
   !> Return the notes.

@@ -13,7 +13,7 @@ module dd3_model_energy
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: contact_energy, elastic_energy, plastic_work_increment
+  public :: contact_energy, elastic_energy, energy_error, plastic_work_increment
 
 contains
 
@@ -66,6 +66,16 @@ contains
           + layer_energy(layer, -dot_product(hit%normal, state%lambda(:, c)))
     end do
   end function contact_energy
+
+  !> Return the work on the sheet less internal work, friction work, that of draw-beads and the energy
+  !> of the contact layers, mJ. It vanishes with the increments and the tolerance of equilibrium.
+  pure real(wp) function energy_error(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    energy_error = state%tool_work + state%external_work - state%internal_work &
+        - state%friction_work - state%bead_work - contact_energy(model, state)
+  end function energy_error
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.

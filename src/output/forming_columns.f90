@@ -4,7 +4,7 @@
 module dd3_output_forming_columns
   use dd3_base_kinds, only : wp
   use dd3_model_contact_results, only : tool_contact_t, tool_contacts
-  use dd3_model_energy, only : contact_energy, elastic_energy
+  use dd3_model_energy, only : contact_energy, elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
@@ -67,21 +67,15 @@ contains
     call table%add_reals(energies(model, state))
   end subroutine add_forming_values
 
-  !> Return work and energies, mJ. The error is the work on the sheet less internal work, friction
-  !> work, that of draw-beads and the energy of the contact layers; it vanishes with the increments
-  !> and the tolerance of equilibrium.
+  !> Return work and energies, mJ.
   pure function energies(model, state) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp) :: energy(size(energy_name))
 
-    real(wp) :: stored
-
-    stored = contact_energy(model, state)
     energy = [state%tool_work, state%external_work, state%internal_work, &
         elastic_energy(model, state), state%plastic_work, state%friction_work, &
-        stored, state%tool_work + state%external_work - state%internal_work - state%friction_work &
-        - state%bead_work - stored]
+        contact_energy(model, state), energy_error(model, state)]
   end function energies
 
 end module dd3_output_forming_columns

@@ -13,6 +13,7 @@ module dd3_process_phase_warnings
   use dd3_input_case, only : until_force
   use dd3_linalg_tensor, only : identity
   use dd3_model_contact_layer, only : layer_at
+  use dd3_model_energy, only : elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
@@ -26,10 +27,14 @@ module dd3_process_phase_warnings
   implicit none
   private
   public :: start_notes, end_notes
-  public :: gap_note, press_warning, release_warning, support_warning, until_warning
+  public :: energy_warning, gap_note, press_warning, release_warning, support_warning, until_warning
 
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
+
+  !> Error of the energy balance over the work of a run that is reported, where the plastic work is
+  !> that multiple of the elastic energy: before, the closing of the contact outweighs the forming.
+  real(wp), parameter :: notable_energy = 0.05_wp, formed = 20.0_wp
 
 contains
 
@@ -65,6 +70,9 @@ contains
       call notes%add_new("W106", release_warning(model%phase(state%phase), state))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
+      if (state%phase == size(model%phase)) &
+          call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
+          energy_error(model, state)))
     end if
     call add_tool_warnings(model, state, ended, notes)
   end subroutine end_notes
@@ -212,6 +220,23 @@ contains
         to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
         "compare with tools withdrawn by `move`"
   end function release_warning
+
+  !> Return a warning if the energy balance at the end of a run is far from closed; empty otherwise.
+  function energy_warning(state, elastic, error) result(text)
+    type(state_t), intent(in) :: state
+    !> Elastic energy, and error of the balance, mJ.
+    real(wp), intent(in) :: elastic, error
+    character(len=:), allocatable :: text
+
+    real(wp) :: work
+
+    text = ""
+    if (state%plastic_work < formed*elastic) return
+    work = max(abs(state%tool_work), abs(state%external_work), abs(state%internal_work))
+    if (abs(error) > notable_energy*work) text = "the energy balance of the run is off by "// &
+        to_text(100.0_wp*abs(error)/work, 2)//" % of its work: the increments are too "// &
+        "large; compare with `accuracy = fine` in *LIMITS"
+  end function energy_warning
 
   !> Return a note on the mean gap between sheet and tools, weighted by the contact forces: what the
   !> layers keep the sheet off the tools. Friction counts in the forces, about 1 % of them. Empty in

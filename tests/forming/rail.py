@@ -17,16 +17,16 @@ from dd3.errors import run
 from dd3.pages import put_table
 from dd3.run import read_job
 from dd3.sheet import Sheet
-from dd3.springback import find, twist
+from dd3.springback import best_fit, find, twist
 
 DECK, REPORT, PICTURE = studies.paths("rail")
 BOTTOM, FLANGE = 10.0, 21.0  # half width of the bottom, start of the flange beside the middle, mm
 OFFSET = 10.0480947162  # of the straight ends from the middle, mm
 STATION, REACH = 60.0, 8.0  # middle and half length of the piece of a straight end that is measured, mm
 THICKNESS = 0.8
-MESHES = ["28 16", "40 24", "54 32", "108 64"]
+MESHES = ["28 16", "54 32", "80 32", "54 64", "54 128"]  # along and across the rail; the finest last
 HEAD = ["material", "mesh", "elements", "flange", "bottom", "twist at 60 mm", "twist, 10 to 90 %", "largest distance, mm",
-        "thinning, %", "from the finest, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
+        "free shape from the finest's, mm: rms, largest", "thinning, %", "from the finest's, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
 
 
 class Rail:
@@ -70,10 +70,23 @@ class Rail:
         line = grid[np.abs(grid[:, self.shape[1]//2, 0] - STATION).argmin()]
         return line[:, 1], line[:, 2]
 
+    def free_grid(self):
+        """Return the positions of the free middle surface, along x and y of the blank, mm."""
+        start = middle(self.sheet.points(0))
+        return self.free[np.lexsort((start[:, 1].round(6), start[:, 0].round(6)))].reshape(*self.shape, 3)
+
 
 def middle(points):
     """Return the positions of the middle surface, the mean of the lower and the upper face."""
     return points.reshape(-1, 2, 3).mean(axis=1)
+
+
+def resampled(grid, shape):
+    """Return values at the nodes of one mesh at those of another, linear in between."""
+    for axis, n in enumerate(shape):
+        old, new = (np.linspace(0, 1, m) for m in (grid.shape[axis], n))
+        grid = np.apply_along_axis(lambda line, old=old, new=new: np.interp(new, old, line), axis, grid)
+    return grid
 
 
 def at_cells(values, shape):
@@ -87,6 +100,11 @@ def at_cells(values, shape):
 def extremes(values):
     """Return the smallest and the largest value as text."""
     return f"{values.min():.2f} to {values.max():.2f}"
+
+
+def of_differences(values):
+    """Return the root mean square and the largest magnitude as text."""
+    return f"{np.sqrt((values**2).mean()):.2f}, {np.abs(values).max():.2f}"
 
 
 def slope(points):
@@ -122,10 +140,12 @@ def row_of(material, mesh, rail, finest, folder):
     """Return the row of a run."""
     bottom, flange = rail.springback(1)
     difference = rail.thinning() - at_cells(finest.thinning(), np.array(rail.shape) - 1)
+    shape = resampled(finest.free_grid(), rail.shape).reshape(-1, 3)
+    apart = np.linalg.norm(best_fit(rail.free_grid().reshape(-1, 3), shape) - shape, axis=1)
     values = flange, bottom, bottom - rail.springback(-1)[0], twist(rail.sheet, rail.found)[1]
     return [material.upper(), " x ".join(mesh.split()), str(len(rail.sheet.corners)), *(f"{v:.2f}" for v in values),
-            f"{rail.found.distance().max():.2f}", extremes(rail.thinning()),
-            f"{np.sqrt((difference**2).mean()):.2f}, {np.abs(difference).max():.2f}" if rail is not finest else "",
+            f"{rail.found.distance().max():.2f}", of_differences(apart) if rail is not finest else "",
+            extremes(rail.thinning()), of_differences(difference) if rail is not finest else "",
             extremes(rail.thinning_by_nodes()), *studies.effort(folder)]
 
 

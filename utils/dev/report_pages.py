@@ -3,7 +3,7 @@
 """Look at the reports of the input files in a browser: Chromium or Chrome, headless.
 
     utils/dev/report_pages.py --program build/release/dd3imp --work build/report_pages
-    utils/dev/report_pages.py rail square_cup --program build/release/dd3imp --work build/report_pages --write
+    utils/dev/report_pages.py rail build/tray/second.out --program dd3imp --work build/report_pages --write
 
 Runs each input file of input_files that has a blank (finished runs are kept), makes its report, and loads it in windows
 of 1280 and 520 pixels: every picture must be shown, nothing be wider than the window, and no number be nan or inf.
@@ -22,6 +22,7 @@ from PIL import Image
 
 from dd3.errors import Problem, run
 from dd3.progress import each
+from dd3.run import read_job
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input_files"
@@ -45,9 +46,9 @@ PROBE = """<script>addEventListener("load", () => {
 
 
 def decks():
-    """Return the input files with a blank by their names."""
-    return {path.stem: path for path in sorted(DECKS.glob("*/*.dat"))
-            if re.search(r"^\*BLANK", path.read_text(encoding="utf-8"), re.MULTILINE | re.IGNORECASE)}
+    """Return the input files with a blank by their names; that of the tutorial has no tools before its commands."""
+    return {path.stem: path for path in sorted(DECKS.glob("*/*.dat")) if path.parent.name != "tutorial"
+            and re.search(r"^\*BLANK", path.read_text(encoding="utf-8"), re.MULTILINE | re.IGNORECASE)}
 
 
 def browser():
@@ -80,13 +81,17 @@ def faults(page, width):
     return wrong, found["height"]
 
 
-def report(options, name, deck):
-    """Run an input file, make its report and return what is wrong with the page."""
+def made(options, name, deck):
+    """Return the folder of results of an input file, after its run unless it is there."""
     folder = options.work / f"{name}.out"
     job = folder / "run.json"
-    state = json.loads(job.read_text())["outcome"]["state"] if job.exists() else ""
-    if state != "reached":
+    if not job.exists() or json.loads(job.read_text())["outcome"]["state"] != "reached":
         subprocess.run([options.program, "--output", folder, deck], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+def report(options, name, folder):
+    """Make the report of a run and return what is wrong with the page."""
     mirror = ["--mirror", *MIRROR[name].split()] if name in MIRROR else []
     subprocess.run([sys.executable, "-m", "dd3", "report", folder, *mirror], check=True, stdout=subprocess.DEVNULL)
     page = folder / "report" / "report.html"
@@ -108,19 +113,23 @@ def report(options, name, deck):
 def main():
     """Look at the pages of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("deck", nargs="*", help="input file, by its name (default: all with a blank)")
+    parser.add_argument("deck", nargs="*", help="input file, by its name, or a folder of results (default: all input "
+                        "files with a blank but the tutorial's)")
     parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     parser.add_argument("--work", type=Path, required=True, help="folder of the runs")
     parser.add_argument("--write", action="store_true", help="put the pictures into docs/images/reports")
     options = parser.parse_args()
     there = decks()
     for name in options.deck:
-        if name not in there:
-            raise Problem(f"no input file {name}; there are: {', '.join(there)}")
+        if name not in there and not Path(name, "run.json").exists():
+            raise Problem(f"no input file or folder of results {name}; there are: {', '.join(there)}")
     options.work.mkdir(parents=True, exist_ok=True)
     wrong = []
     for name in each(options.deck or there, "reports"):
-        wrong += report(options, name, there[name])
+        if name in there:
+            wrong += report(options, name, made(options, name, there[name]))
+        else:
+            wrong += report(options, Path(read_job(Path(name))["command"]["file"]).stem, Path(name))
     if wrong:
         raise Problem("\n".join(wrong))
 
