@@ -44,7 +44,7 @@ img{max-width:100%;height:auto;display:block;margin:auto}table{border-collapse:c
 td,th{padding:.15em .9em .15em 0;text-align:left;vertical-align:top}td.n{text-align:right}
 .row{display:flex;flex-wrap:wrap;gap:1em 3em}.bar{display:inline-block;height:.8em;background:#5b8fd6}
 .key{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.warn{color:#8a4b00}
-pre{overflow-x:auto;font-size:13px}
+pre{overflow-x:auto;font-size:13px}p,li{overflow-wrap:break-word}
 """
 
 

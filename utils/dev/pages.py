@@ -87,7 +87,8 @@ PAGES = {
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
-    "rail": forming("rail", 15),
+    "pages": Page(20, f"{MECHANICS} input_files utils/dd3/report.py", (f"utils/dev/report_pages.py{RUN}",)),
+    "rail": forming("rail", 75),
     "robustness": Page(10, "src/material tests/benchmark/robustness.f90 tests/benchmark/parameter_sets.f90", (
         "cmake --build {build} --target benchmark_robustness",
         "tests/benchmark/robustness.py --build {build} --write")),

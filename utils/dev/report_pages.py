@@ -7,7 +7,8 @@
 
 Runs each input file of input_files that has a blank (finished runs are kept), makes its report, and loads it in windows
 of 1280 and 520 pixels: every picture must be shown, nothing be wider than the window, and no number be nan or inf.
-Writes <input file>.png beside the runs; --write puts a smaller copy into docs/images/reports.
+Writes <input file>.png beside the runs; --write puts smaller copies into docs/images/reports, and the table of the runs
+into docs/reports/pages.md.
 """
 
 import argparse
@@ -21,18 +22,21 @@ from pathlib import Path
 from PIL import Image
 
 from dd3.errors import Problem, run
+from dd3.pages import put_table, table
 from dd3.progress import each
 from dd3.run import read_job
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input_files"
 PICTURES = ROOT / "docs" / "images" / "reports"
+PAGE = ROOT / "docs" / "reports" / "pages.md"
+HEAD = ["input file", "elements", "tools", "phases", "increments", "iterations", "warnings"]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS = (1280, 520)
 TALLEST = 12000  # pixels of a screenshot
-SMALL = (640, 4000)  # size of the copies, at most
+SMALL = (480, 4000)  # size of the copies, at most
 MIRROR = {"bending": "x", "fine": "x", "solid_shell": "x", "square_cup": "x y", "aluminium": "x y", "round_cup": "x y",
-          "round_cup_aa6016": "x y", "draw_bending": "x", "draw_bead": "x", "tray": "x y"}
+          "round_cup_aa6016": "x y", "draw_bending": "x", "draw_bead": "x", "tray": "x y", "roll_forming": "y"}
 PROBE = """<script>addEventListener("load", () => {
   const found = {broken: [...document.images].filter(i => !i.naturalWidth).map(i => i.alt),
     images: document.images.length, width: document.documentElement.scrollWidth, window: innerWidth,
@@ -102,12 +106,25 @@ def report(options, name, folder):
         if width == WIDTHS[0]:
             picture = options.work / f"{name}.png"
             load(page, width, min(height, TALLEST), f"--screenshot={picture.resolve()}")
-    if options.write:
-        PICTURES.mkdir(parents=True, exist_ok=True)
+    return [f"{name}: {text}" for text in wrong]
+
+
+def row_of(name, job):
+    """Return the row of a run in the table of the page."""
+    counts = job["counts"]
+    return [f"[{name}](#{name})", str(job["sheet"]["elements"]), str(len(job["tools"])), str(len(job["phases"])),
+            str(counts["increments"]), str(counts["iterations"]), ", ".join(w["code"] for w in job["warnings"])]
+
+
+def write(options, folders):
+    """Put small pictures and the table of the runs into the documents."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for name in folders:
         with Image.open(options.work / f"{name}.png") as image:
             image.thumbnail(SMALL)
             image.convert("P", palette=Image.Palette.ADAPTIVE).save(PICTURES / f"{name}.png", optimize=True)
-    return [f"{name}: {text}" for text in wrong]
+    jobs = {name: read_job(folder) for name, folder in folders.items()}
+    put_table(PAGE, "reports", table(HEAD, [row_of(name, job) for name, job in jobs.items()]), jobs.values())
 
 
 def main():
@@ -117,19 +134,21 @@ def main():
                         "files with a blank but the tutorial's)")
     parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     parser.add_argument("--work", type=Path, required=True, help="folder of the runs")
-    parser.add_argument("--write", action="store_true", help="put the pictures into docs/images/reports")
+    parser.add_argument("--write", action="store_true", help="put pictures and table into docs")
     options = parser.parse_args()
     there = decks()
     for name in options.deck:
         if name not in there and not Path(name, "run.json").exists():
             raise Problem(f"no input file or folder of results {name}; there are: {', '.join(there)}")
     options.work.mkdir(parents=True, exist_ok=True)
-    wrong = []
+    folders, wrong = {}, []
     for name in each(options.deck or there, "reports"):
-        if name in there:
-            wrong += report(options, name, made(options, name, there[name]))
-        else:
-            wrong += report(options, Path(read_job(Path(name))["command"]["file"]).stem, Path(name))
+        folder = made(options, name, there[name]) if name in there else Path(name)
+        name = Path(read_job(folder)["command"]["file"]).stem
+        folders[name] = folder
+        wrong += report(options, name, folder)
+    if options.write:
+        write(options, folders)
     if wrong:
         raise Problem("\n".join(wrong))
 
