@@ -218,9 +218,8 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     return options
 
 
-def convert(words: Sequence[str]) -> None:
-    """Read, judge, write, report."""
-    options = arguments(words)
+def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
+    """Return the surface of the options, its joints and the report on it."""
     progress = Progress(options.source.name)
     surface, parts, lines, errors = options.reader(options, progress)
     progress.end()
@@ -231,6 +230,13 @@ def convert(words: Sequence[str]) -> None:
     for title, text in [*lines, *(("", note) for note in surface.notes)]:
         result.add(title, text)
     result.errors += errors
+    return surface, joints, result
+
+
+def convert(words: Sequence[str]) -> None:
+    """Read, judge, write, report."""
+    options = arguments(words)
+    surface, joints, result = made(options)
     if options.picture:
         from dd3.tools.picture import draw
         draw(surface, joints, options.picture)

@@ -162,14 +162,15 @@ def read_inp(path: Path) -> Facets:
 
 
 def dyna_lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
-    """Yield the lines of a keyword file and of those that it includes, as (place, text)."""
+    """Yield the lines of a keyword file and of those that it includes, as (place, text), empty ones too: a card of
+    defaults may be empty."""
     if depth > 10:
         raise Problem(f"{path}: includes nest too deeply")
     if depth and not path.is_file():
         raise Problem(f"{path}: no such included file")
     include = False
     for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
-        if line.startswith("$") or not line.strip():
+        if line.startswith("$") or (include and not line.strip()):
             continue
         if line.startswith("*"):
             include = line.strip().upper() == "*INCLUDE"
@@ -191,7 +192,21 @@ def fields(line: str, widths: list[int], count: int) -> list[str]:
 
 def read_dyna(path: Path) -> Facets:
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
-    nodes, cells, titles, keyword, options, row = {}, [], {}, "", "", 0
+    nodes, cells, titles = dyna_mesh(path)
+    result = from_cells(path, nodes, cells)
+    result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
+    return result
+
+
+DynaCell = tuple[int, int, tuple[int, ...]]  # part, dimension and nodes
+
+
+def dyna_mesh(path: Path) -> tuple[dict[int, tuple[float, ...]], list[DynaCell], dict[int, str]]:
+    """Return the nodes of an LS-DYNA keyword file, its cells, and the titles of the parts."""
+    nodes: dict[int, tuple[float, ...]] = {}
+    cells: list[DynaCell] = []
+    titles: dict[int, str] = {}
+    keyword, options, row, title = "", "", 0, ""
     wide, part = False, None
     for place, line in dyna_lines(path):
         if line.startswith("*"):
@@ -199,6 +214,8 @@ def read_dyna(path: Path) -> Facets:
             wide = wide or (keyword == "*KEYWORD" and "LONG=Y" in tail.replace(" ", ""))
             keyword, plus, options = keyword.rstrip("+-"), keyword.endswith("+") or tail.strip() == "+", keyword
             long, row, part = wide or plus, 0, None
+            continue
+        if not line.strip() and (keyword != "*PART" or row % 2):
             continue
         row += 1
         try:
@@ -228,10 +245,7 @@ def read_dyna(path: Path) -> Facets:
                     titles[int(fields(line, [20 if long else 10], 1)[0])] = title
         except (ValueError, IndexError):
             raise Problem(f"{place}: error: a line of {keyword} cannot be read: '{line.strip()}'") from None
-    cells = [(name, dim, members) for name, dim, members in cells if dim == 2 or len(members) in SOLIDS]
-    result = from_cells(path, nodes, cells)
-    result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
-    return result
+    return nodes, [(name, dim, members) for name, dim, members in cells if dim == 2 or len(members) in SOLIDS], titles
 
 
 def solid_of(labels: list[int]) -> tuple[int, ...]:

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""LS-DYNA decks of a strip that is drawn to a U, made for tests: of shells under a holder, and of solids."""
+
+import math
+
+WIDTH = 10.0  # of the strip, mm
+RADIUS, SEGMENTS = 5.0, 12  # of the tools' edges, mm, and the facets around a quarter
+
+
+def arc(centre, start, end, radius=RADIUS):
+    """Return points x z on an arc from an angle to another, degrees."""
+    angles = [math.radians(start + (end - start) * i / SEGMENTS) for i in range(SEGMENTS + 1)]
+    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
+
+
+def profiles(thickness):
+    """Return the lines x z of punch, die and holder: a punch 20 mm wide over a sheet about z = 0."""
+    low, high = -thickness / 2, thickness / 2
+    half = [(10.0, 30.0), *arc((10 - RADIUS, high + RADIUS), 0, -90), (0.0, high)]
+    punch = half + [(-x, z) for x, z in half[-2::-1]]
+    opening = 10 + 1.2 * thickness
+    shoulder = [(45.0, low), *arc((opening + RADIUS, low - RADIUS), 90, 180), (opening, -30.0)]
+    die = [shoulder, [(-x, z) for x, z in shoulder]]
+    holder = [[(45.0, high), (opening + RADIUS, high)], [(-45.0, high), (-opening - RADIUS, high)]]
+    return {"punch": [punch], "die": die, "holder": holder}
+
+
+class Writer:
+    """Nodes and elements of a deck."""
+
+    def __init__(self, scale=1.0):
+        self.scale, self.nodes, self.shells, self.solids, self.node_sets = scale, [], [], [], {}
+
+    def node(self, *point):
+        """Add a node and return its label."""
+        self.nodes.append([self.scale * value for value in point])
+        return len(self.nodes)
+
+    def sweep(self, part, line):
+        """Add shells of a line x z, 4 mm wider than the strip."""
+        rows = [[self.node(x, y, z) for x, z in line] for y in (-2.0, WIDTH + 2)]
+        for i in range(len(line) - 1):
+            self.shells.append((part, rows[0][i], rows[0][i + 1], rows[1][i + 1], rows[1][i]))
+
+    def text(self):
+        """Return the cards."""
+        lines = ["*NODE"] + [f"{i:8d}{x:16.8g}{y:16.8g}{z:16.8g}" for i, (x, y, z) in enumerate(self.nodes, 1)]
+        for keyword, cells in (("*ELEMENT_SHELL", self.shells), ("*ELEMENT_SOLID", self.solids)):
+            if cells:
+                lines += [keyword] + ["".join(f"{value:8d}" for value in (i, *cell)) for i, cell in enumerate(cells, 1)]
+        for number, labels in self.node_sets.items():
+            lines += ["*SET_NODE_LIST", f"{number:10d}"]
+            lines += ["".join(f"{label:10d}" for label in labels[i:i + 8]) for i in range(0, len(labels), 8)]
+        return "\n".join(lines) + "\n"
+
+
+def row(*values):
+    """Return fields of ten columns."""
+    return "".join(f"{value:>10}" for value in values)
+
+
+def parts(names, first_section):
+    """Return the parts: the blank of material 1, the others rigid."""
+    lines = []
+    for number, name in enumerate(names, 1):
+        lines += ["*PART", name, row(number, first_section if number == 1 else 2, 1 if number == 1 else 2)]
+    return lines
+
+
+def rigid(young):
+    """Return material and section of the tools."""
+    return ["*MAT_RIGID", row(2, "7.8E-9", young, 0.3), "*SECTION_SHELL", row(2, 2, "", 2), row(1.0, 1.0, 1.0, 1.0)]
+
+
+def contacts(names, friction):
+    """Return a contact of the blank with each tool."""
+    lines = []
+    for number in range(2, len(names) + 1):
+        lines += ["*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE_ID", row(number) + f"blank to {names[number - 1]}",
+                  row(1, number, 3, 3), row(friction, friction), row("")]
+    return lines
+
+
+def curve(number, *points):
+    """Return a curve."""
+    return ["*DEFINE_CURVE", row(number)] + [f"{x:>20g}{y:>20g}" for x, y in points]
+
+
+def shell_deck(elements=44, depth=8.0):
+    """Return a deck of shells, mm, t, s: Barlat and Lian with m = 2, a curve, a holder under a force, velocities."""
+    writer, names = Writer(), ["blank", "punch", "die", "holder"]
+    step = 80.0 / elements
+    rows = [[writer.node(-40 + step * i, y, 0.0) for i in range(elements + 1)] for y in (0.0, WIDTH)]
+    for i in range(elements):
+        writer.shells.append((1, rows[0][i], rows[0][i + 1], rows[1][i + 1], rows[1][i]))
+    middle = [label for line in rows for label in line if abs(writer.nodes[label - 1][0]) < 1e-9]
+    writer.node_sets = {1: middle, 2: rows[0] + rows[1]}
+    for number, name in enumerate(names[1:], 2):
+        for line in profiles(0.8)[name]:
+            writer.sweep(number, line)
+    stress = [(p, 400 * (0.01 + p)**0.2) for p in (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8)]
+    lines = ["*KEYWORD", "*TITLE", "U profile of shells", "*CONTROL_TERMINATION", row("0.02"), "*CONTROL_TIMESTEP",
+             row("", "", "", "", "-1.0E-7"), "*CONTROL_ADAPTIVE", row("1.0E-4", 4.0), *parts(names, 1),
+             "*SECTION_SHELL_TITLE", "sheet", row(1, 16, "", 7), row(0.8, 0.8, 0.8, 0.8), "*MAT_3-PARAMETER_BARLAT",
+             row(1, "7.85E-9", "2.1E5", 0.3, 3.0), row(2.0, 1.8, 1.4, 2.1, 10), row(2.0), row("", "", "", 1.0, 0.0, 0.0),
+             row(""), *rigid("2.1E5"), *curve(10, *stress), *curve(11, (0.0, 0.0), (0.001, 1.0), (1.0, 1.0)),
+             # A trapezoid from 0.005 to 0.015 s, whose area is the depth.
+             *curve(12, (0.0, 0.0), (0.005, 0.0), (0.006, depth / 0.009), (0.014, depth / 0.009), (0.015, 0.0),
+                    (1.0, 0.0)),
+             "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 0, 12, -1.0), "*LOAD_RIGID_BODY", row(4, 3, 11, -1500.0),
+             "*BOUNDARY_SPC_SET", row(1, 0, 1, 0, 0), row(2, 0, 0, 1, 0), *contacts(names, 0.1),
+             "*INTERFACE_SPRINGBACK_LSDYNA", row(1)]
+    return "\n".join(lines) + "\n" + writer.text() + "*END\n"
+
+
+def solid_deck(elements=40, depth=6.0):
+    """Return a deck of hexahedra, m, Pa: a bilinear material, a punch displaced between supports."""
+    writer, names = Writer(1e-3), ["blank", "punch", "die"]
+    step = 60.0 / elements
+    grid = {(i, y, z): writer.node(-30 + step * i, y, z) for z in (-0.5, 0.5) for y in (0.0, WIDTH)
+            for i in range(elements + 1)}
+    for i in range(elements):
+        writer.solids.append((1, *(grid[i + a, y, z] for z in (-0.5, 0.5)
+                                   for a, y in ((0, 0.0), (1, 0.0), (1, WIDTH), (0, WIDTH)))))
+    middle = [label for (i, _, _), label in grid.items() if 2 * i == elements]
+    writer.node_sets = {1: middle, 2: list(grid.values())}
+    for number, name in enumerate(names[1:], 2):
+        for line in profiles(1.0)[name]:
+            writer.sweep(number, line)
+    lines = ["*KEYWORD", *parts(names, 1), "*SECTION_SOLID", row(1, 1), "*MAT_024", row(1, 7850.0, "2.1E11", 0.3, "2.0E8",
+             "1.0E9"), *rigid("2.1E11"), *curve(11, (0.0, 0.0), (0.01, 1.0)), "*PARAMETER",
+             row("R depth", f"{-1e-3 * depth:g}"), "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 11, "&depth"),
+             "*BOUNDARY_SPC_SET", row(1, 0, 1, 0, 0), row(2, 0, 0, 1, 0), *contacts(names, 0.05)]
+    return "\n".join(lines) + "\n" + writer.text() + "*END\n"

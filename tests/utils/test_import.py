@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Import of LS-DYNA decks: two that run to their ends, materials, wrong and damaged decks."""
+
+import argparse
+import math
+import random
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dyna_decks import curve, row, shell_deck, solid_deck
+from helpers import call
+
+from dd3.dyna.command import Import
+from dd3.dyna.laws import yld2000_at
+from dd3.errors import Problem
+from dd3.mesh import read_inp
+
+MUTATED = 1000
+
+
+def imported(text, **options):
+    """Return the import of a deck in the folder of the test, without its tools' surfaces."""
+    Path("deck.k").write_text(text)
+    found = Import(argparse.Namespace(deck=Path("deck.k"), units=None, blank=None, **options))
+    return found, "\n".join(found.entries())
+
+
+def refused(text):
+    """Return the message on a deck that is refused."""
+    with pytest.raises(Problem) as error:
+        imported(text)
+    return str(error.value)
+
+
+def test_shells(program):
+    """Check a deck of shells: mesh, material, phases, what is left out; it runs to its end."""
+    Path("u.k").write_text(shell_deck())
+    said = call("import", "u.k")
+    assert "blank of 44 solid_shell, 0.8 mm; tools: punch, die, holder" in said
+    for keyword in ("u.k:6 *CONTROL_TIMESTEP: ", "u.k:8 *CONTROL_ADAPTIVE: "):
+        assert f"left out: {keyword}" in said
+    text = Path("u/u.dat").read_text()
+    for line in ("yield = hill48 r0=1.8 r45=1.4 r90=2.1", "rolling_direction = 1 0 0", "friction = 0.1",
+                 "press = holder 0 0 -1500", "move = punch 0 0 -8", "unload = on", "thickness_points = 7"):
+        assert line in text or line.startswith("rolling"), line
+    assert text.index("press = holder") < text.index("move = punch") < text.index("unload")
+    assert re.findall(r"\*TOOL (\w+)\n.*\n.*\n  contact = (\w+)", text) == [
+        ("punch", "z_max"), ("die", "z_min"), ("holder", "z_max")]
+    mesh = read_inp(Path("u/blank.inp"), None)
+    assert sorted({round(z, 9) for _, _, z in mesh.nodes.values()}) == [-0.4, 0.4] and len(mesh.nodes) == 180
+    assert {name: len(members) for name, members in mesh.node_sets.items()} == {"hold_xy": 4, "hold_y": 176}
+    done = subprocess.run([program, "u/u.dat"], capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_solids(program):
+    """Check a deck of solids in metres and pascals: it runs to its end."""
+    Path("u.k").write_text(solid_deck())
+    said = call("import", "u.k", "--output", "solid")
+    assert "blank of 40 solid_shell, 1 mm; tools: punch, die" in said and "left out" not in said
+    text = Path("solid/u.dat").read_text()
+    hardening = 2.1e5 * 1000 / (2.1e5 - 1000)
+    for line in ("young = 210000", f"hardening = linear Y0=200 H={hardening:.8g}", "move = punch 0 0 -6",
+                 "imported from LS-DYNA (m Pa)", "friction = 0.05"):
+        assert line in text, line
+    mesh = read_inp(Path("solid/blank.inp"), None)
+    assert np.allclose(np.ptp(np.array(list(mesh.nodes.values())), axis=0), (60, 10, 1))
+    done = subprocess.run([program, "solid/u.dat"], capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def with_material(*lines):
+    """Return the deck of shells with another material of the blank."""
+    text = shell_deck(elements=8)
+    start, end = text.index("*MAT_3-PARAMETER"), text.index("*MAT_RIGID")
+    return text[:start] + "\n".join(lines) + "\n" + text[end:]
+
+
+def test_materials():
+    """Check the laws of each material."""
+    elastic = (1, "7.8E-9", "2.1E5", 0.3)
+    swift = math.log(400 / 2.1e5) / (1 - 0.2)
+    for card, criterion, hardening in (
+            (["*MAT_PLASTIC_KINEMATIC", row(*elastic, 200.0, 1000.0, 1.0)], "von_mises", "linear Y0=200 H=1004.7847"),
+            (["*MAT_018", row(*elastic, 400.0, 0.2), row("")], "von_mises",
+             f"swift K=400 e0={math.exp(swift):.8g} n=0.2"),
+            (["*MAT_24_TITLE", "name", row(*elastic), row("", "", 10)], "von_mises", "table 0:159.243 0.01:182.922"),
+            (["*MAT_024", row(*elastic), row(""), row(0.0, 0.1), row(200.0, 250.0)], "von_mises", "table 0:200 0.1:250"),
+            (["*MAT_037", row(*elastic, 200.0, 0.0, 1.5)], "hill48 r0=1.5 r45=1.5 r90=1.5", "linear Y0=200 H=0"),
+            (["*MAT_HILL_3R", row(*elastic, 2.0, 500.0, 0.2), row(1.6, 1.2, 2.0, "", 0.01)],
+             "hill48 r0=1.6 r45=1.2 r90=2", "swift K=500 e0=0.01 n=0.2"),
+            (["*MAT_036", row(*elastic, 1.0, 1000.0, 200.0), row(6.0, 1.6, 1.2, 2.0)], "hill48 r0=1.6 r45=1.2 r90=2",
+             "linear Y0=200 H=1004.7847"),
+            (["*MAT_133", row(*elastic, 0.0), row(500.0, 0.01, 0.2, "", "", 1.0, 8.0), row(*[1.0] * 8)],
+             "hill48 r0=1 r45=1 r90=1", "swift K=500 e0=0.01 n=0.2")):
+        found, text = imported(with_material(*card))
+        assert f"  yield = {criterion}\n" in text and f"  hardening = {hardening}" in text, (card, found.law)
+    found, text = imported(with_material("*MAT_036", row(*elastic, 1.0, 1000.0, 200.0), row(6.0, 1.6, 1.2, 2.0), row(3.0),
+                                         row(""), row(0.0, 1.0, 0.0, "", "", "", 30.0)))
+    assert np.allclose(found.law.rolling, (math.cos(math.radians(30)), math.sin(math.radians(30)), 0), atol=1e-6)
+    assert "# - yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent 6; nearer: dd3 iden" in text
+
+
+def test_yld2000():
+    """Check r-values and yield stresses of AA2090-T3 (Barlat et al. 2003, Tables 1 and 3)."""
+    alpha = np.array([0.4865, 1.3783, 0.7536, 1.0246, 1.0363, 0.9036, 1.2321, 1.4858])
+    for angle, stress, r in ((0, 1.0, 0.2115), (45, 0.8114, 1.5769), (90, 0.9102, 0.6923)):
+        found = yld2000_at(alpha, 8, math.radians(angle))
+        assert np.allclose(found, (stress, r), atol=4e-3), (angle, found)
+
+
+def test_stages():
+    """Check phases of two tools: a holder that closes, then holds while the punch moves and another force acts."""
+    text = shell_deck(elements=8)
+    start, end = text.index("*BOUNDARY_PRESCRIBED"), text.index("*BOUNDARY_SPC_SET")
+    motion = [*curve(21, (0.0, 0.0), (0.004, 2.0), (1.0, 2.0)), *curve(22, (0.0, 0.0), (0.008, 0.0), (0.016, 3.0)),
+              *curve(23, (0.0, 0.0), (0.01, 0.0), (0.011, 7.0)),
+              "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(4, 3, 2, 21, -1.0), row(2, 3, 2, 22, -2.0), row(2, 5, 2, 22),
+              "*LOAD_RIGID_BODY", row(3, 3, 23, 10.0), row(9, 3, 23)]
+    found, deck = imported(text[:start] + "\n".join(motion) + "\n" + text[end:])
+    assert re.findall(r"\*PHASE (\w+)", deck) == ["move_1", "press_2", "move_3", "springback"]
+    assert "move = holder 0 0 -2\n" in deck and "move = punch 0 0 -6\n" in deck and "press = die 0 0 70\n" in deck
+    assert any("part 9, no tool" in note for note in found.notes)
+    assert any("dof = 5" in why for _, _, why in found.deck.left_out)
+
+
+def test_wrong_decks():
+    """Check the messages on decks that cannot be carried over, with the line of the card."""
+    text = shell_deck(elements=8)
+    wrong = with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 20))
+    wrong = wrong.replace("*END", "\n".join(curve(20, (0.0, 0.0), (1.0, 13.0))) + "\n*END")
+    place = wrong.splitlines().index("*DEFINE_CURVE", wrong.splitlines().index("*SET_NODE_LIST")) + 3
+    for deck, said in (
+            (wrong, f"deck.k:{place}: error: a flow stress of 0 MPa at the plastic strain 0; expected"),
+            (text.replace("*MAT_3-PARAMETER_BARLAT", "*MAT_ELASTIC"), "*MAT_ELASTIC of the blank is not read"),
+            (text.replace("2.1E5       0.3       3.0", " 7777       0.3       3.0"), "tells no units"),
+            (text.replace(row(2, 3, 0, 12, -1.0), row(2, 3, 0, 99, -1.0)), "there is no *DEFINE_CURVE 99"),
+            (text.replace("*LOAD_RIGID_BODY", "*SENSOR").replace(row(2, 3, 0, 12, -1.0), row(2, 5, 0, 12, -1.0)),
+             "no tool moves and none is pressed"),
+            (text.replace("*TITLE", "*INCLUDE_TRANSFORM"), "moves or copies nodes"),
+            (text.replace("*MAT_RIGID", "*MAT_024"), "--blank chooses one"),
+            (text.replace("*PART\npunch", "*PART\npunch\n" + row(3, 2, 2) + "\nx"), "a second *PART 3")):
+        assert said in refused(deck), (said, refused(deck))
+    assert "No such" in call("import", "none.k", expect=2) or "no such file" in call("import", "none.k", expect=2)
+
+
+def mutated(text, chance):
+    """Return a deck with one to four faults: lines lost, doubled or exchanged, fields changed, the end cut off."""
+    lines = text.splitlines()
+    for _ in range(chance.randint(1, 4)):
+        i = chance.randrange(len(lines))
+        kind = chance.randrange(7)
+        if kind == 0:
+            del lines[i]
+        elif kind == 1:
+            lines.insert(i, lines[chance.randrange(len(lines))])
+        elif kind == 2:
+            j = chance.randrange(len(lines))
+            lines[i], lines[j] = lines[j], lines[i]
+        elif kind == 3:
+            lines = lines[:max(2, i)]
+        else:
+            words = lines[i].split()
+            if words:
+                word = chance.choice(words)
+                value = chance.choice(["0", "-1", "1e300", "nan", "x", "", "&none", "999999", "0.5", "1E-30"])
+                lines[i] = lines[i].replace(word, value[:len(word)].rjust(len(word)), 1)
+    return "\n".join(lines) + "\n"
+
+
+def test_mutated_decks():
+    """Check that damaged decks are imported or refused by a message."""
+    chance, imports = random.Random(1), 0
+    texts = [shell_deck(elements=8), solid_deck(elements=8)]
+    for i in range(MUTATED):
+        text = mutated(texts[i % 2], chance)
+        try:
+            imported(text)
+            imports += 1
+        except Problem as problem:
+            assert "deck.k" in str(problem) or "blank" in str(problem), problem
+    assert 0.1 * MUTATED < imports < 0.95 * MUTATED, imports
+    for _ in range(10):
+        Path("one.k").write_text(mutated(texts[1], chance))
+        for code in (0, 2):
+            try:
+                call("import", "one.k", expect=code)
+                break
+            except AssertionError as error:
+                assert "Traceback" not in str(error), error

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Import a forming deck of LS-DYNA: an input file with comments, the blank's mesh and the tools' surfaces.
+
+    dd3 import cup.k                             writes cup/cup.dat, cup/blank.inp, cup/punch.bez, ...
+    dd3 import cup.k --output study --units "m Pa"
+    dd3imp cup/cup.dat
+
+The blank is the part that deforms, of quadrilateral shells, which are extruded about their mid-surface, or hexahedra;
+the tools are rigid parts in contact with it. Materials: *MAT_003, 018, 024, 036, 037, 122, 133. Motions and forces by
+curves become phases, each with the displacements of the tools between the times at which one starts or stops. What
+cannot be carried over is listed with its reason, here and in the input file.
+"""
+
+import argparse
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from dd3 import tool as tools
+from dd3.command import new_parser
+from dd3.dyna.blank import Blank, blank_of, with_sets
+from dd3.dyna.deck import Deck, Part
+from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of
+from dd3.dyna.process import Stage, stages
+from dd3.errors import Problem, run
+from dd3.mesh import set_name, write_inp
+from dd3.programs import made_folder
+from dd3.progress import each
+from dd3.tools.surface import write
+
+RIGID = 20
+COARSE = 0.05  # estimated distance of facets from their surface that is noted, mm
+TRIAL = 0.5, 0.05  # trial increment of a tool, mm, at most this part of its displacement
+
+
+@dataclass
+class Tool:
+    """A tool: its parts of the deck, its name, friction, and whether it is on the side of the blank's normal."""
+
+    parts: list[int]
+    name: str
+    friction: float
+    above: bool
+
+
+class Import:
+    """The import of a deck: what is found in it, and the notes for the user."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.deck = deck = Deck(options.deck)
+        self.part = self.blank_part(options.blank)
+        self.material = deck.materials[self.part.material]
+        self.units: Units = units_of(self.material, options.units)
+        self.blank: Blank = blank_of(deck, self.part, self.units)
+        self.law: Law = law_of(deck, self.material, self.units, np.array([self.blank.edge, self.blank.normal]))
+        self.notes = list(self.law.notes)
+        self.tools = self.find_tools()
+        self.stages: list[Stage] = self.find_stages()
+        self.fixed = self.find_supports()
+
+    def is_rigid(self, part: Part) -> bool:
+        """Check whether a part is rigid."""
+        if part.material not in self.deck.materials:
+            raise Problem(f"{part.place}: error: part {part.number} has no *MAT {part.material}")
+        return number_of(self.deck.materials[part.material]) == RIGID
+
+    def blank_part(self, wanted: int | None) -> Part:
+        """Return the part that is the blank."""
+        soft = [part for part in self.deck.parts.values() if part.cells and not self.is_rigid(part)]
+        if wanted is not None:
+            soft = [part for part in soft if part.number == wanted]
+        if len(soft) != 1:
+            there = ", ".join(f"{part.number} {part.title}".strip() for part in soft)
+            raise Problem(f"{self.deck.path}: expected one part that deforms, the blank; "
+                          + (f"there are {there}; --blank chooses one" if soft else "there is none"))
+        return soft[0]
+
+    def find_tools(self) -> list[Tool]:
+        """Return the tools: rigid parts in contact with the blank, joined where one follows another."""
+        pairs, friction = self.deck.pairs(), {}
+        for pair in pairs:
+            for one, other in (pair.sides, pair.sides[::-1]):
+                if self.part.number in one:
+                    friction.update(dict.fromkeys(other, pair.friction))
+        groups: dict[int, list[Part]] = {}
+        for part in self.deck.parts.values():
+            if part.number == self.part.number or not part.cells:
+                continue
+            if not self.is_rigid(part):
+                self.notes.append(f"part {part.number} {part.title}: it deforms, as only the blank does here; left out")
+            elif pairs and part.number not in friction:
+                self.notes.append(f"part {part.number} {part.title}: no contact with the blank; left out")
+            else:
+                groups.setdefault(self.root(part.number), []).append(part)
+        if not groups:
+            raise Problem(f"{self.deck.path}: no rigid part in contact with the blank, part {self.part.number}")
+        if not pairs:
+            self.notes.append("no contact is defined: all rigid parts are tools, without friction")
+        found, names = [], set[str]()
+        for root, parts in groups.items():
+            leader = next((part for part in parts if part.number == root), parts[0])
+            name = set_name(leader.title or f"tool_{leader.number}")
+            name = f"{name}_{leader.number}" if name in names else name
+            names.add(name)
+            values = [friction.get(part.number, 0.0) for part in parts]
+            if len(set(values)) > 1:
+                self.notes.append(f"tool {name}: frictions {values}; the largest is taken")
+            found.append(Tool([part.number for part in parts], name, max(values), self.is_above(parts)))
+        return found
+
+    def root(self, number: int) -> int:
+        """Return the rigid part that a part follows."""
+        seen = {number}
+        while (number := self.deck.master.get(number, number)) not in seen:
+            seen.add(number)
+        return number
+
+    def is_above(self, parts: list[Part]) -> bool:
+        """Check whether a tool is on the side of the blank's normal, by its nodes over the blank."""
+        sheet = np.array(list(self.blank.mesh.nodes.values()))
+        labels = sorted({label for part in parts for _, members in part.cells for label in members})
+        if missing := [label for label in labels if label not in self.deck.nodes]:
+            raise Problem(f"{self.deck.path}: node {missing[0]} of an element has no coordinates")
+        points = np.array([self.deck.nodes[label] for label in labels]) * self.units.length
+        flat = np.eye(3) - np.outer(self.blank.normal, self.blank.normal)
+        low, high = (sheet @ flat).min(axis=0), (sheet @ flat).max(axis=0)
+        over = np.all((points @ flat >= low - 1e-6) & (points @ flat <= high + 1e-6), axis=1)
+        heights = (points[over] if over.any() else points) @ self.blank.normal
+        return bool(heights.mean() > (sheet @ self.blank.normal).mean())
+
+    def find_stages(self) -> list[Stage]:
+        """Return the stages of the process, with tools in place of parts."""
+        number_of_tool = {part: i for i, tool in enumerate(self.tools) for part in tool.parts}
+        drives = []
+        for drive in self.deck.drives:
+            target = number_of_tool.get(self.root(drive.target))
+            if drive.of_set or target is None:
+                self.notes.append(f"{drive.place}: a {drive.kind} of "
+                                  + ("a set" if drive.of_set else f"part {drive.target}, no tool") + "; left out")
+                continue
+            drive.target = target
+            drives.append(drive)
+        found = stages(self.deck, drives)
+        if not any(stage.moves or stage.forces for stage in found):
+            raise Problem(f"{self.deck.path}: no tool moves and none is pressed: expected "
+                          "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool")
+        return found
+
+    def find_supports(self) -> dict[str, set[int]]:
+        """Return the nodes of the blank that are held, by the axes."""
+        mine = {label for _, members in self.part.cells for label in members}
+        held: dict[int, set[str]] = {}
+        for fix in self.deck.fixes():
+            for label in fix.nodes & mine:
+                held.setdefault(label, set()).update(fix.axes)
+        found: dict[str, set[int]] = {}
+        for label, axes in held.items():
+            found.setdefault("".join(sorted(axes)), set()).add(label)
+        return found
+
+    def write_tools(self, folder: Path) -> None:
+        """Write the surfaces of the tools."""
+        for tool in each(self.tools, "tools"):
+            toward = -self.blank.normal if tool.above else self.blank.normal
+            words = [str(self.deck.path), str(folder / f"{tool.name}.bez"), "--scale", f"{self.units.length:g}",
+                     "--toward", *(f"{value:.6g}" for value in toward)]
+            for number in tool.parts:
+                words += ["--part", str(number)]
+            options = tools.arguments([*words, "--tolerance", "1000"])
+            surface, _, result = tools.made(options)
+            if result.errors:
+                raise Problem(f"tool {tool.name}: {'; '.join(result.errors)}; alone: dd3 tool {' '.join(words)}")
+            write(options.target, surface, [f"{self.deck.path.name}: dd3 tool {' '.join(words[2:])}"])
+            estimate = next((line.strip() for line in result.lines if "estimated" in line), "")
+            self.notes.append(f"tool {tool.name}: {len(surface.net)} patches, {' '.join(estimate.split())}")
+
+    def entries(self) -> list[str]:
+        """Return the lines of the input file."""
+        lines = [f"# {self.deck.path.name}, imported from LS-DYNA ({self.units.name}) to mm, N and MPa."]
+        lines += ["#", "# Notes:", *(f"# - {note}" for note in self.notes)] if self.notes else []
+        if self.deck.left_out:
+            lines += ["#", "# Left out:", *(f"# - {Path(place).name} {keyword}: {why}"
+                                            for place, keyword, why in self.deck.left_out)]
+        lines += ["*TITLE", f"  {self.deck.title or self.deck.path.stem}", ""]
+        lines += [f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
+                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
+                  f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}"]
+        if self.law.rolling:
+            lines.append("  rolling_direction = " + numbers(self.law.rolling))
+        if abs(self.blank.normal[2]) < 1 - 1e-6:
+            lines.append("  normal_direction = " + numbers(self.blank.normal))
+        lines += ["", f"# Part {self.part.number} {self.part.title}".rstrip() + f", {self.blank.thickness:g} mm.",
+                  "*MESH sheet", "  file = blank.inp", f"  element = {self.blank.element}"]
+        if self.blank.element == "solid_shell":
+            lines.append(f"  thickness_points = {self.blank.points}")
+        lines += ["  material = blank", ""]
+        for tool in self.tools:
+            lines += [f"# Part {' and '.join(map(str, tool.parts))}, {'above' if tool.above else 'below'} the sheet.",
+                      f"*TOOL {tool.name}", f"  patches = {tool.name}.bez", f"  friction = {tool.friction:g}",
+                      f"  contact = {'z_max' if tool.above else 'z_min'}", ""]
+        lines += ["*CONTACT", ""]
+        return [*lines, *self.bead_lines(), *self.support_lines(), *self.phase_lines(),
+                "*OUTPUT", "  fields = every 5 mm"]
+
+    def bead_lines(self) -> list[str]:
+        """Return the draw-beads."""
+        lines = []
+        for i, bead in enumerate(self.deck.lines_of_beads(), 1):
+            curve = self.deck.curve(bead.curve, bead.place)
+            force = abs(bead.scale * float(curve.y[-1])) * self.units.force / self.units.length
+            points = [self.deck.nodes[label] for label in bead.nodes if label in self.deck.nodes]
+            if len(points) < 2:
+                raise Problem(f"{bead.place}: error: a draw-bead of {len(points)} nodes; expected 2 or more")
+            lines += [f"*DRAWBEAD bead_{i}", f"  force = {force:g}", "  points = " + "  ".join(
+                numbers([self.units.length * value for value in point[:2]]) for point in points), ""]
+        return lines
+
+    def support_lines(self) -> list[str]:
+        """Return the supports; of a sheet without any the node nearest to its middle is held in its plane."""
+        lines = []
+        for axes in self.fixed:
+            lines += [f"*BOUNDARY hold_{axes}", f"  set = hold_{axes}", f"  fix = {' '.join(axes)}", ""]
+        if lines:
+            return lines
+        middle = np.mean(list(self.blank.mesh.nodes.values()), axis=0)
+        plane = " ".join(axis for axis, part in zip("xyz", np.abs(self.blank.normal)) if part < 0.7)
+        return ["# The deck holds no node of the blank: its middle is held in the plane.", "*SET middle",
+                f"  near = {numbers(middle)}", "", "*BOUNDARY middle", "  set = middle", f"  fix = {plane}", ""]
+
+    def phase_lines(self) -> list[str]:
+        """Return the phases: before a stage that presses a tool anew, one that presses it alone."""
+        lines: list[str] = []
+        pressed: dict[int, np.ndarray] = {}
+        count = 0
+        for stage in self.stages:
+            forces = {tool: force * self.units.force for tool, force in stage.forces.items() if tool not in stage.moves}
+            new = {tool: force for tool, force in forces.items() if tool not in pressed}
+            changed = {tool: force for tool, force in forces.items()
+                       if tool not in pressed or not np.allclose(force, pressed[tool])}
+            pressed |= forces
+            if new or (changed and not stage.moves):
+                count += 1
+                lines += [f"# At {stage.ends:g}, before tools move.", f"*PHASE press_{count}", "  control = load",
+                          "  trial = 0.1", *self.presses(changed), ""]
+                changed = {}
+            if not stage.moves:
+                continue
+            count += 1
+            moves = {tool: move * self.units.length for tool, move in stage.moves.items()}
+            leader = max(moves, key=lambda tool: float(np.linalg.norm(moves[tool])))
+            trial = min(TRIAL[0], TRIAL[1] * float(np.linalg.norm(moves[leader])))
+            lines += [f"# From {stage.begins:g} to {stage.ends:g}.", f"*PHASE move_{count}",
+                      f"  control = {self.tools[leader].name}", f"  trial = {trial:.3g}",
+                      *(f"  move = {self.tools[tool].name} {numbers(move)}" for tool, move in moves.items()),
+                      *self.presses(changed), ""]
+        if self.deck.springback:
+            lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on", ""]
+        return lines
+
+    def presses(self, forces: dict[int, np.ndarray]) -> list[str]:
+        """Return the lines that press tools."""
+        return [f"  press = {self.tools[tool].name} {numbers(force)}" for tool, force in forces.items()]
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Return numbers as words."""
+    return " ".join(f"{value + 0.0:.6g}" for value in values)
+
+
+def convert(words: Sequence[str]) -> None:
+    """Import the deck of the command line."""
+    parser = new_parser("import", __doc__)
+    parser.add_argument("deck", type=Path, help="keyword file of LS-DYNA: .k, .key, .dyn")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder to write (default: the deck's name)")
+    parser.add_argument("--units", choices=list(UNITS), help="units of lengths and stresses (by Young's modulus)")
+    parser.add_argument("--blank", type=int, metavar="PART", help="number of the part that is the blank")
+    options = parser.parse_args(words)
+    if not options.deck.is_file():
+        raise Problem(f"{options.deck}: no such file")
+    found = Import(options)
+    folder = made_folder(options.output or options.deck.with_suffix(""))
+    found.write_tools(folder)
+    lines = found.entries()
+    mesh = with_sets(found.blank, {f"hold_{axes}": labels for axes, labels in found.fixed.items()})
+    write_inp(folder / "blank.inp", mesh, options.deck)
+    target = folder / f"{options.deck.stem}.dat"
+    target.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(f"{target}: blank of {len(mesh.elements)} {found.blank.element}, {found.blank.thickness:g} mm; tools: "
+          + ", ".join(tool.name for tool in found.tools))
+    for note in found.notes:
+        print(f"note: {note}")
+    for place, keyword, why in found.deck.left_out:
+        print(f"left out: {place} {keyword}: {why}")
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Import the deck of the command line."""
+    words = sys.argv[1:] if words is None else words
+    run(lambda: convert(words))

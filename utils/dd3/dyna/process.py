@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Phases from the motions and forces of an LS-DYNA deck, which are functions of time."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dd3.dyna.deck import Deck, Drive
+from dd3.errors import Problem
+
+STILL = 1e-6  # velocity over the largest one, displacement over the largest one, that count as none
+SAME = 1e-3  # distance of times, over the time of the whole process, that count as one
+SAMPLES = 400  # of a curve between its points
+
+
+@dataclass
+class Stage:
+    """A part of the process: displacement of each tool over it, and force on each at its end, in units of the deck."""
+
+    begins: float
+    ends: float
+    moves: dict[int, np.ndarray] = field(default_factory=dict)
+    forces: dict[int, np.ndarray] = field(default_factory=dict)
+
+
+def displacement(deck: Deck, drive: Drive, times: np.ndarray) -> np.ndarray:
+    """Return the displacement by a motion at times."""
+    curve = deck.curve(drive.curve, drive.place)
+    inside = np.clip(times, drive.begins, min(drive.ends, 1e30)) - drive.begins
+    if drive.kind == "displacement":
+        value = np.interp(inside, curve.x, curve.y)
+        return drive.scale * (value - np.interp(0.0, curve.x, curve.y))
+    path = np.concatenate([[0.0], np.cumsum(np.diff(curve.x) * (curve.y[1:] + curve.y[:-1]) / 2)])
+    return drive.scale * (integral(curve.x, curve.y, path, inside) - integral(curve.x, curve.y, path, np.zeros(1))[0])
+
+
+def integral(x: np.ndarray, y: np.ndarray, path: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return the integral of a polygon, constant beyond its ends, from its first point to other abscissae."""
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    inner = np.clip(at, x[0], x[-1])
+    part = inner - x[i]
+    slope = (y[i + 1] - y[i]) / (x[i + 1] - x[i])
+    result: np.ndarray = path[i] + part * (y[i] + slope * part / 2)
+    return result + np.where(at > x[-1], (at - x[-1]) * y[-1], 0.0) + np.where(at < x[0], (at - x[0]) * y[0], 0.0)
+
+
+def end_time(deck: Deck) -> float:
+    """Return the time at which the process ends."""
+    ends = deck.end_time
+    if not ends:
+        ends = max((float(deck.curve(drive.curve, drive.place).x[-1]) + drive.begins for drive in deck.drives),
+                   default=0.0)
+    if not ends > 0:
+        raise Problem(f"{deck.path}: no tool moves and none is pressed: expected *BOUNDARY_PRESCRIBED_MOTION_RIGID or "
+                      "*LOAD_RIGID_BODY")
+    return ends
+
+
+def stages(deck: Deck, drives: Iterable[Drive]) -> list[Stage]:
+    """Return the stages of a process: within one the same tools move."""
+    drives, end = list(drives), end_time(deck)
+    times = np.unique(np.concatenate([np.linspace(0, end, SAMPLES)]
+                                     + [points_in_time(deck, drive, end) for drive in drives]))
+    moved: dict[tuple[int, int], np.ndarray] = {}
+    for drive in drives:
+        if drive.kind != "force":
+            path = moved.setdefault((drive.target, drive.axis), np.zeros(len(times)))
+            path += displacement(deck, drive, times)
+    found = []
+    for first, last in zip(borders := breaks(times, moved, end), borders[1:]):
+        stage = Stage(first, last)
+        for (tool, axis), path in moved.items():
+            change = float(np.interp(last, times, path) - np.interp(first, times, path))
+            if abs(change) > STILL * max(np.ptp(path), 1e-12):
+                stage.moves.setdefault(tool, np.zeros(3))[axis] += change
+        for drive in drives:
+            if drive.kind == "force":
+                value = drive.scale * np.interp(last, *points_of(deck, drive))
+                if value:
+                    stage.forces.setdefault(drive.target, np.zeros(3))[drive.axis] += value
+        if stage.moves or stage.forces:
+            found.append(stage)
+    return merged(found)
+
+
+def points_of(deck: Deck, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points of the curve of a drive."""
+    curve = deck.curve(drive.curve, drive.place)
+    return curve.x, curve.y
+
+
+def points_in_time(deck: Deck, drive: Drive, end: float) -> np.ndarray:
+    """Return the times of the points of a drive's curve within the process."""
+    times = deck.curve(drive.curve, drive.place).x + drive.begins
+    times = np.append(times, [drive.begins, drive.ends])
+    return times[(times >= 0) & (times <= end)]
+
+
+def breaks(times: np.ndarray, moved: dict, end: float) -> list[float]:
+    """Return the times at which tools start or stop, with those of start and end."""
+    found = [0.0, end]
+    for path in moved.values():
+        rate = np.abs(np.diff(path)) / np.diff(times)
+        moving = rate > 1e-3 * max(rate.max(initial=0.0), 1e-300)
+        for i in np.flatnonzero(np.diff(np.concatenate([[False], moving, [False]]).astype(int))):
+            found.append(float(times[i]))
+    result: list[float] = []
+    for time in sorted(found):
+        if not result or time - result[-1] > SAME * end:
+            result.append(time)
+    return result
+
+
+def merged(found: list[Stage]) -> list[Stage]:
+    """Return the stages without those in which nothing moves before others with the same forces."""
+    return [stage for i, stage in enumerate(found)
+            if stage.moves or i + 1 == len(found) or not same_forces(stage, found[i + 1])]
+
+
+def same_forces(one: Stage, other: Stage) -> bool:
+    """Check whether the forces of two stages are the same."""
+    return one.forces.keys() == other.forces.keys() and all(
+        np.allclose(force, other.forces[tool]) for tool, force in one.forces.items())
