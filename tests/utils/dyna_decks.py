@@ -132,3 +132,23 @@ def solid_deck(elements=40, depth=6.0):
              row("R depth", f"{-1e-3 * depth:g}"), "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 11, "&depth"),
              "*BOUNDARY_SPC_SET", row(1, 0, 1, 0, 0), row(2, 0, 0, 1, 0), *contacts(names, 0.05)]
     return "\n".join(lines) + "\n" + writer.text() + "*END\n"
+
+
+def roll_deck(angle=0.5):
+    """Return a deck of shells between two rolls of radius 20 mm: they turn by an angle, rad; 4 nodes are pulled first."""
+    writer, names = Writer(), ["strip", "upper", "lower"]
+    rows = [[writer.node(-20 + 2 * i, y, 0.0) for i in range(13)] for y in (0.0, WIDTH)]
+    for i in range(12):
+        writer.shells.append((1, rows[0][i], rows[0][i + 1], rows[1][i + 1], rows[1][i]))
+    writer.node_sets = {1: rows[0] + rows[1], 2: [rows[0][-1], rows[1][-1]]}
+    for number, z in ((2, 20.5), (3, -20.5)):
+        writer.sweep(number, [point for start in (0, 90, 180, 270)
+                              for point in arc((0.0, z), start, start + 90, 20.0)[bool(start):]])
+    lines = ["*KEYWORD", "*CONTROL_TERMINATION", row("0.02"), *parts(names, 1), "*SECTION_SHELL", row(1, 16, "", 5),
+             row(1.0, 1.0, 1.0, 1.0), "*MAT_TRANSVERSELY_ANISOTROPIC_ELASTIC_PLASTIC",
+             row(1, "7.85E-9", "2.1E5", 0.3, 300.0, 500.0, -1.6), *rigid("2.1E5"),
+             *curve(2, (0.0, angle / 0.01), (0.01, angle / 0.01), (0.0101, 0.0), (1.0, 0.0)),
+             *curve(4, (0.0, 10.0), (0.005, 10.0), (0.0055, 0.0), (1.0, 0.0)),
+             "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 6, 0, 2, -1.0), row(3, 6, 0, 2, 1.0),
+             "*LOAD_NODE_SET", row(2, 1, 4, 1.0), "*BOUNDARY_SPC_SET", row(1, 0, 0, 1, 0), *contacts(names, 0.125)]
+    return "\n".join(lines) + "\n" + writer.text() + "*END\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dyna_decks import curve, row, shell_deck, solid_deck
+from dyna_decks import curve, roll_deck, row, shell_deck, solid_deck
 from helpers import call
 
 from dd3.dyna.command import Import
@@ -118,13 +118,30 @@ def test_stages():
     start, end = text.index("*BOUNDARY_PRESCRIBED"), text.index("*BOUNDARY_SPC_SET")
     motion = [*curve(21, (0.0, 0.0), (0.004, 2.0), (1.0, 2.0)), *curve(22, (0.0, 0.0), (0.008, 0.0), (0.016, 3.0)),
               *curve(23, (0.0, 0.0), (0.01, 0.0), (0.011, 7.0)),
-              "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(4, 3, 2, 21, -1.0), row(2, 3, 2, 22, -2.0), row(2, 5, 2, 22),
+              "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(4, 3, 2, 21, -1.0), row(2, 3, 2, 22, -2.0), row(2, 4, 2, 22),
               "*LOAD_RIGID_BODY", row(3, 3, 23, 10.0), row(9, 3, 23)]
     found, deck = imported(text[:start] + "\n".join(motion) + "\n" + text[end:])
-    assert re.findall(r"\*PHASE (\w+)", deck) == ["move_1", "press_2", "move_3", "springback"]
-    assert "move = holder 0 0 -2\n" in deck and "move = punch 0 0 -6\n" in deck and "press = die 0 0 70\n" in deck
+    assert re.findall(r"\*PHASE (\w+)", deck) == ["move_1", "move_2", "press_3", "move_4", "springback"]
+    assert "move = holder 0 0 -2\n" in deck and "press = die 0 0 70\n" in deck
+    assert re.findall("move = punch 0 0 (.*)", deck) == ["-1.5", "-4.5"]
     assert any("part 9, no tool" in note for note in found.notes)
-    assert any("dof = 5" in why for _, _, why in found.deck.left_out)
+    assert any("dof = 4" in why for _, _, why in found.deck.left_out)
+
+
+def test_rolls(program):
+    """Check tools that turn, about the centre of their area, and forces on nodes that end; rings face outwards."""
+    found, deck = imported(roll_deck())
+    assert call("import", "deck.k").startswith("deck/deck.dat: ")
+    done = subprocess.run([program, "--check", "deck/deck.dat"], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    turns = re.findall("turn = (\\w+) (.*)  (.*)  (.*)", deck)
+    assert [(name, axis) for name, _, axis, _ in turns] == [("upper", "0 -1 0"), ("lower", "0 1 0")] * 2
+    for name, point, _, _ in turns:
+        assert np.allclose(np.array(point.split(), float), (0, 5, 20.5 if name == "upper" else -20.5), atol=1e-3), point
+    angles = [float(angle) for *_, angle in turns]
+    assert abs(angles[0] + angles[2] - math.degrees(0.5 * 1.005)) < 1e-3
+    assert re.findall("load = load_2 (.*)", deck) == ["20 0 0", "0 0 0"] and "control = load\n" in deck
+    assert len(found.stages) == 2 and found.units.name == "mm MPa"
 
 
 def test_wrong_decks():
@@ -138,7 +155,7 @@ def test_wrong_decks():
             (text.replace("*MAT_3-PARAMETER_BARLAT", "*MAT_ELASTIC"), "*MAT_ELASTIC of the blank is not read"),
             (text.replace("2.1E5       0.3       3.0", " 7777       0.3       3.0"), "tells no units"),
             (text.replace(row(2, 3, 0, 12, -1.0), row(2, 3, 0, 99, -1.0)), "there is no *DEFINE_CURVE 99"),
-            (text.replace("*LOAD_RIGID_BODY", "*SENSOR").replace(row(2, 3, 0, 12, -1.0), row(2, 5, 0, 12, -1.0)),
+            (text.replace("*LOAD_RIGID_BODY", "*SENSOR").replace(row(2, 3, 0, 12, -1.0), row(2, 4, 0, 12, -1.0)),
              "no tool moves and none is pressed"),
             (text.replace("*TITLE", "*INCLUDE_TRANSFORM"), "moves or copies nodes"),
             (text.replace("*MAT_RIGID", "*MAT_024"), "--blank chooses one"),

@@ -29,6 +29,11 @@ class Blank:
     upper: dict[int, int]
     edge: np.ndarray
 
+    @property
+    def size(self) -> float:
+        """The length of an edge of the first element, mm."""
+        return float(np.linalg.norm(self.edge))
+
 
 def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
     """Return the blank of a part: shells extruded about their mid-surface, hexahedra as they are."""

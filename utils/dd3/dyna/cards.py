@@ -95,8 +95,7 @@ def read_cards(path: Path) -> Iterator[Card]:
 
 
 def finished(card: Card, parameters: dict[str, float]) -> Card:
-    """Return a card with its title taken from its rows, without empty rows at its end; the parameters that it defines are
-    added."""
+    """Return a card with its title taken from its rows, and without empty rows at its end; parameters are added."""
     while card.rows and not card.rows[-1].text.strip():
         card.rows.pop()
     if card.keyword.startswith("*PARAMETER") and "EXPRESSION" not in card.keyword:

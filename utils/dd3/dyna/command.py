@@ -14,7 +14,7 @@ cannot be carried over is listed with its reason, here and in the input file.
 import argparse
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -136,18 +136,26 @@ class Import:
         number_of_tool = {part: i for i, tool in enumerate(self.tools) for part in tool.parts}
         drives = []
         for drive in self.deck.drives:
+            if drive.of_set and drive.kind == "force" and self.members(drive.target):
+                drives.append(drive)
+                continue
             target = number_of_tool.get(self.root(drive.target))
             if drive.of_set or target is None:
                 self.notes.append(f"{drive.place}: a {drive.kind} of "
-                                  + ("a set" if drive.of_set else f"part {drive.target}, no tool") + "; left out")
+                                  + (f"set {drive.target}" if drive.of_set else f"part {drive.target}, no tool")
+                                  + "; left out")
                 continue
-            drive.target = target
-            drives.append(drive)
+            drives.append(replace(drive, target=target))
         found = stages(self.deck, drives)
-        if not any(stage.moves or stage.forces for stage in found):
+        if not any(stage.moving or stage.forces for stage in found):
             raise Problem(f"{self.deck.path}: no tool moves and none is pressed: expected "
                           "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool")
         return found
+
+    def members(self, number: int) -> set[int]:
+        """Return the nodes of the blank in a set."""
+        mine = {label for _, members in self.part.cells for label in members}
+        return mine & set(self.deck.node_sets.get(number, ()))
 
     def find_supports(self) -> dict[str, set[int]]:
         """Return the nodes of the blank that are held, by the axes."""
@@ -202,8 +210,9 @@ class Import:
                       f"*TOOL {tool.name}", f"  patches = {tool.name}.bez", f"  friction = {tool.friction:g}",
                       f"  contact = {'z_max' if tool.above else 'z_min'}", ""]
         lines += ["*CONTACT", ""]
+        fields = "every 5 mm" if any(stage.moves for stage in self.stages) else "increments 10"
         return [*lines, *self.bead_lines(), *self.support_lines(), *self.phase_lines(),
-                "*OUTPUT", "  fields = every 5 mm"]
+                "*OUTPUT", f"  fields = {fields}"]
 
     def bead_lines(self) -> list[str]:
         """Return the draw-beads."""
@@ -234,6 +243,7 @@ class Import:
         """Return the phases: before a stage that presses a tool anew, one that presses it alone."""
         lines: list[str] = []
         pressed: dict[int, np.ndarray] = {}
+        loaded: set[int] = set()
         count = 0
         for stage in self.stages:
             forces = {tool: force * self.units.force for tool, force in stage.forces.items() if tool not in stage.moves}
@@ -241,23 +251,56 @@ class Import:
             changed = {tool: force for tool, force in forces.items()
                        if tool not in pressed or not np.allclose(force, pressed[tool])}
             pressed |= forces
-            if new or (changed and not stage.moves):
+            if new or (changed and not stage.moving):
                 count += 1
                 lines += [f"# At {stage.ends:g}, before tools move.", f"*PHASE press_{count}", "  control = load",
                           "  trial = 0.1", *self.presses(changed), ""]
                 changed = {}
-            if not stage.moves:
+            if not stage.moving and stage.loads.keys() <= loaded:
                 continue
             count += 1
-            moves = {tool: move * self.units.length for tool, move in stage.moves.items()}
-            leader = max(moves, key=lambda tool: float(np.linalg.norm(moves[tool])))
-            trial = min(TRIAL[0], TRIAL[1] * float(np.linalg.norm(moves[leader])))
-            lines += [f"# From {stage.begins:g} to {stage.ends:g}.", f"*PHASE move_{count}",
-                      f"  control = {self.tools[leader].name}", f"  trial = {trial:.3g}",
-                      *(f"  move = {self.tools[tool].name} {numbers(move)}" for tool, move in moves.items()),
-                      *self.presses(changed), ""]
+            lines += [f"# From {stage.begins:g} to {stage.ends:g}.", f"*PHASE move_{count}", *self.motion_lines(stage),
+                      *self.presses(changed), *self.load_lines(stage, loaded), ""]
+            loaded |= stage.loads.keys()
         if self.deck.springback:
             lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on", ""]
+        return lines
+
+    def motion_lines(self, stage: Stage) -> list[str]:
+        """Return the lines of a phase that move and turn tools."""
+        moves = {tool: move * self.units.length for tool, move in stage.moves.items()}
+        lines = [f"  move = {self.tools[tool].name} {numbers(move)}" for tool, move in moves.items()]
+        part = 0.1  # of the phase, in the trial increment
+        for tool, turn in stage.turns.items():
+            points, centre = self.tool_points(tool)
+            angle, axis = float(np.linalg.norm(turn)), turn / np.linalg.norm(turn)
+            if np.count_nonzero(turn) > 1:
+                self.notes.append(f"tool {self.tools[tool].name}: turns about several axes are taken as one")
+            path = angle * float(np.linalg.norm(np.cross(points - centre, axis), axis=1).max())
+            part = float(np.clip(self.blank.size / 4 / path, 1e-4, part)) if path > 0 else part
+            lines.append(f"  turn = {self.tools[tool].name} {numbers(centre)}  {numbers(axis)}  "
+                         f"{np.degrees(angle):.6g}")
+        if not moves:
+            return ["  control = load", f"  trial = {part:.3g}", *lines]
+        leader = max(moves, key=lambda tool: float(np.linalg.norm(moves[tool])))
+        length = float(np.linalg.norm(moves[leader]))
+        trial = min(TRIAL[0], min(TRIAL[1], part) * length)
+        return [f"  control = {self.tools[leader].name}", f"  trial = {trial:.3g}", *lines]
+
+    def tool_points(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the nodes of a tool and the centre of its area, mm."""
+        cells = [members for part in self.tools[number].parts for _, members in self.deck.parts[part].cells]
+        corners = np.array([[self.deck.nodes[label] for label in (*cell, *cell[-1:] * 4)[:4]] for cell in cells])
+        area = np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
+        centre = np.average(corners.mean(axis=1), axis=0, weights=area) if area.sum() > 0 else corners.mean(axis=(0, 1))
+        return corners.reshape(-1, 3) * self.units.length, centre * self.units.length
+
+    def load_lines(self, stage: Stage, loaded: set[int]) -> list[str]:
+        """Return the lines of a phase with the forces on sets of nodes; those that end are 0."""
+        lines = []
+        for number in sorted(loaded | stage.loads.keys()):
+            force = stage.loads.get(number, np.zeros(3)) * self.units.force * len(self.members(number))
+            lines.append(f"  load = load_{number} {numbers(force)}")
         return lines
 
     def presses(self, forces: dict[int, np.ndarray]) -> list[str]:
@@ -267,7 +310,7 @@ class Import:
 
 def numbers(values: Iterable[float]) -> str:
     """Return numbers as words."""
-    return " ".join(f"{value + 0.0:.6g}" for value in values)
+    return " ".join(f"{round(value, 9) + 0.0:.6g}" for value in values)
 
 
 def convert(words: Sequence[str]) -> None:
@@ -284,7 +327,9 @@ def convert(words: Sequence[str]) -> None:
     folder = made_folder(options.output or options.deck.with_suffix(""))
     found.write_tools(folder)
     lines = found.entries()
-    mesh = with_sets(found.blank, {f"hold_{axes}": labels for axes, labels in found.fixed.items()})
+    sets = {f"hold_{axes}": labels for axes, labels in found.fixed.items()}
+    sets |= {f"load_{number}": found.members(number) for stage in found.stages for number in stage.loads}
+    mesh = with_sets(found.blank, sets)
     write_inp(folder / "blank.inp", mesh, options.deck)
     target = folder / f"{options.deck.stem}.dat"
     target.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -68,9 +68,9 @@ class Pair:
 
 @dataclass
 class Drive:
-    """A motion or a force of a part or a set along an axis, 0 to 2, by a curve with a scale.
+    """A motion or a force of a part or a set along an axis, 0 to 2, by a curve with a scale; `turns` about the axis.
 
-    kind: velocity, displacement or force.
+    kind: velocity, displacement or force; of a set it is the force on each node.
     """
 
     target: int
@@ -82,6 +82,7 @@ class Drive:
     begins: float = 0.0
     ends: float = np.inf
     of_set: bool = False
+    turns: bool = False
 
 
 @dataclass
@@ -130,8 +131,8 @@ class Deck:
         if not cells:
             raise Problem(f"{path}: no shells and no solids")
         if lost := [label for label, point in self.nodes.items() if not max(map(abs, point)) < FARTHEST]:
-            raise Problem(f"{path}: node {lost[0]} at {' '.join(map(str, self.nodes[lost[0]]))}; expected coordinates below "
-                          f"{FARTHEST:g}")
+            raise Problem(f"{path}: node {lost[0]} at {' '.join(map(str, self.nodes[lost[0]]))}; expected coordinates "
+                          f"below {FARTHEST:g}")
         for number, dimension, members in cells:
             if number not in self.parts:
                 raise Problem(f"{path}: elements of part {number}, but no *PART of this number")
@@ -181,6 +182,7 @@ class Deck:
                 ("*SET_PART_LIST", self.take_part_set), ("*SET_PART", self.take_part_set),
                 ("*CONSTRAINED_RIGID_BODIES", self.take_master), ("*CONTACT_", self.take_contact),
                 ("*BOUNDARY_PRESCRIBED_MOTION_", self.take_motion), ("*LOAD_RIGID_BODY", self.take_force),
+                ("*LOAD_NODE_SET", self.take_force),
                 ("*BOUNDARY_SPC_", self.supports.append))
 
     def take_part(self, card: Card) -> None:
@@ -254,22 +256,25 @@ class Deck:
         of_set = "_SET" in card.keyword
         for row in filled(card):
             dof, vad = row.label(1), row.label(2)
-            if dof not in (1, 2, 3) or vad not in (0, 2):
-                self.leave(card, f"motion of kind dof = {dof}, vad = {vad} (a rotation: `turn` in *PHASE)")
+            if dof not in (1, 2, 3, 5, 6, 7) or vad not in (0, 2):
+                self.leave(card, f"motion of kind dof = {dof}, vad = {vad}")
                 continue
-            begins, ends = row.number(7), row.number(6) or np.inf
-            self.drives.append(Drive(row.label(0), dof - 1, "displacement" if vad == 2 else "velocity", row.label(3),
-                                     row.number(4, 1.0) or 1.0, row.place, begins, ends, of_set))
+            begins, ends, turns = row.number(7), row.number(6) or np.inf, dof > 3
+            axis, scale = dof - (5 if turns else 1), row.number(4, 1.0) or 1.0
+            kind = "displacement" if vad == 2 else "velocity"
+            self.drives.append(Drive(row.label(0), axis, kind, row.label(3), scale,
+                                     row.place, begins, ends, of_set, turns))
 
     def take_force(self, card: Card) -> None:
-        """Take forces on rigid bodies."""
+        """Take forces on rigid bodies and on the nodes of sets."""
+        of_set = card.keyword == "*LOAD_NODE_SET"
         for row in filled(card):
             dof = row.label(1)
             if dof not in (1, 2, 3):
                 self.leave(card, f"force of kind dof = {dof}")
                 continue
             scale = row.number(3, 1.0) or 1.0
-            self.drives.append(Drive(row.label(0), dof - 1, "force", row.label(2), scale, row.place))
+            self.drives.append(Drive(row.label(0), dof - 1, "force", row.label(2), scale, row.place, of_set=of_set))
 
     def of_parts(self, number: int, kind: int, place: str) -> set[int]:
         """Return the parts of a side of a contact: of kind 2 a set, 3 a part, 5 all."""

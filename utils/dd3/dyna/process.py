@@ -11,17 +11,26 @@ from dd3.errors import Problem
 
 STILL = 1e-6  # velocity over the largest one, displacement over the largest one, that count as none
 SAME = 1e-3  # distance of times, over the time of the whole process, that count as one
+MOST_KINKS = 8  # points of a curve of a force that divide the process
 SAMPLES = 400  # of a curve between its points
 
 
 @dataclass
 class Stage:
-    """A part of the process: displacement of each tool over it, and force on each at its end, in units of the deck."""
+    """A part of the process: displacement and turn (rad) of each tool over it, force on each at its end, and force on
+    each node of sets at its end, in units of the deck."""
 
     begins: float
     ends: float
     moves: dict[int, np.ndarray] = field(default_factory=dict)
+    turns: dict[int, np.ndarray] = field(default_factory=dict)
     forces: dict[int, np.ndarray] = field(default_factory=dict)
+    loads: dict[int, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def moving(self) -> set[int]:
+        """The tools that move or turn."""
+        return self.moves.keys() | self.turns.keys()
 
 
 def displacement(deck: Deck, drive: Drive, times: np.ndarray) -> np.ndarray:
@@ -62,25 +71,28 @@ def stages(deck: Deck, drives: Iterable[Drive]) -> list[Stage]:
     drives, end = list(drives), end_time(deck)
     times = np.unique(np.concatenate([np.linspace(0, end, SAMPLES)]
                                      + [points_in_time(deck, drive, end) for drive in drives]))
-    moved: dict[tuple[int, int], np.ndarray] = {}
+    moved: dict[tuple[int, int, bool], np.ndarray] = {}
+    kinks = []
     for drive in drives:
         if drive.kind != "force":
-            path = moved.setdefault((drive.target, drive.axis), np.zeros(len(times)))
+            path = moved.setdefault((drive.target, drive.axis, drive.turns), np.zeros(len(times)))
             path += displacement(deck, drive, times)
+        elif len(points := points_in_time(deck, drive, end)) <= MOST_KINKS:
+            kinks += points.tolist()
     found = []
-    for first, last in zip(borders := breaks(times, moved, end), borders[1:]):
+    for first, last in zip(borders := breaks(times, moved, [0.0, end, *kinks]), borders[1:]):
         stage = Stage(first, last)
-        for (tool, axis), path in moved.items():
+        for (tool, axis, turns), path in moved.items():
             change = float(np.interp(last, times, path) - np.interp(first, times, path))
             if abs(change) > STILL * max(np.ptp(path), 1e-12):
-                stage.moves.setdefault(tool, np.zeros(3))[axis] += change
+                (stage.turns if turns else stage.moves).setdefault(tool, np.zeros(3))[axis] += change
         for drive in drives:
             if drive.kind == "force":
                 value = drive.scale * np.interp(last, *points_of(deck, drive))
                 if value:
-                    stage.forces.setdefault(drive.target, np.zeros(3))[drive.axis] += value
-        if stage.moves or stage.forces:
-            found.append(stage)
+                    target = stage.loads if drive.of_set else stage.forces
+                    target.setdefault(drive.target, np.zeros(3))[drive.axis] += value
+        found.append(stage)
     return merged(found)
 
 
@@ -97,9 +109,9 @@ def points_in_time(deck: Deck, drive: Drive, end: float) -> np.ndarray:
     return times[(times >= 0) & (times <= end)]
 
 
-def breaks(times: np.ndarray, moved: dict, end: float) -> list[float]:
-    """Return the times at which tools start or stop, with those of start and end."""
-    found = [0.0, end]
+def breaks(times: np.ndarray, moved: dict, others: list[float]) -> list[float]:
+    """Return the times at which tools start or stop, with others, those of start and end among them."""
+    found = list(others)
     for path in moved.values():
         rate = np.abs(np.diff(path)) / np.diff(times)
         moving = rate > 1e-3 * max(rate.max(initial=0.0), 1e-300)
@@ -107,18 +119,28 @@ def breaks(times: np.ndarray, moved: dict, end: float) -> list[float]:
             found.append(float(times[i]))
     result: list[float] = []
     for time in sorted(found):
-        if not result or time - result[-1] > SAME * end:
+        if not result or time - result[-1] > SAME * max(found):
             result.append(time)
     return result
 
 
 def merged(found: list[Stage]) -> list[Stage]:
-    """Return the stages without those in which nothing moves before others with the same forces."""
-    return [stage for i, stage in enumerate(found)
-            if stage.moves or i + 1 == len(found) or not same_forces(stage, found[i + 1])]
+    """Return the stages without those in which nothing happens; neighbours in which the same tools move under the same
+    forces are one."""
+    result: list[Stage] = []
+    for stage in found:
+        last = result[-1] if result else Stage(0.0, 0.0)
+        if not same(stage.forces, last.forces) or not same(stage.loads, last.loads) or (
+                stage.moving and stage.moving != last.moving):
+            result.append(stage)
+        elif stage.moving:
+            last.ends = stage.ends
+            for one, other in (last.moves, stage.moves), (last.turns, stage.turns):
+                for tool, change in other.items():
+                    one[tool] = one.get(tool, 0.0) + change
+    return result
 
 
-def same_forces(one: Stage, other: Stage) -> bool:
-    """Check whether the forces of two stages are the same."""
-    return one.forces.keys() == other.forces.keys() and all(
-        np.allclose(force, other.forces[tool]) for tool, force in one.forces.items())
+def same(one: dict[int, np.ndarray], other: dict[int, np.ndarray]) -> bool:
+    """Check whether forces are the same."""
+    return one.keys() == other.keys() and all(np.allclose(force, other[tool]) for tool, force in one.items())

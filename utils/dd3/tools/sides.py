@@ -8,6 +8,8 @@ from dd3.tools.surface import Surface, area_vectors, points_at
 
 # Cosine of the angle between a normal and --toward below which a patch faces away; walls are kept.
 AWAY = -0.05
+# Part of its area times distance from its centre by which the normals of a ring point outwards, or inwards.
+RING = 0.1
 
 
 def settle(area: np.ndarray, centre: np.ndarray, face: np.ndarray, sign: np.ndarray, body: np.ndarray,
@@ -15,8 +17,9 @@ def settle(area: np.ndarray, centre: np.ndarray, face: np.ndarray, sign: np.ndar
     """Return the signs of the items, which are kept, and lines for the report.
 
     The items (patches or facets) have area vectors, centres, faces, signs that make their bodies consistent, and
-    bodies. A closed body is turned outwards. An open one is turned to `toward`, or keeps the side of the greater part
-    of its area. With `toward`, faces of which no item faces that way are left out.
+    bodies. A closed body is turned outwards, and so is a ring, an open one with as much area towards as away from
+    `toward`. Another open one is turned to `toward`, or keeps the side of the greater part of its area. With `toward`,
+    faces of which no item faces that way are left out.
     """
     sign = sign.copy()
     turned_faces, notes = set(), []
@@ -29,15 +32,19 @@ def settle(area: np.ndarray, centre: np.ndarray, face: np.ndarray, sign: np.ndar
             of_face = face[chosen] == item
             if weight[of_face] @ sign[chosen][of_face] * majority < 0:
                 turned_faces.add(item)
+        # The centre of the item's own body, so that rounding of a far one does not matter.
+        place = centre[chosen] - centre[chosen].mean(axis=0)
+        outward = np.einsum("nc,nc", place, vectors)
         if not is_open[number]:
-            # The centre of the item's own body, so that rounding of a far one does not matter.
-            place = centre[chosen] - centre[chosen].mean(axis=0)
-            side = np.einsum("nc,nc", place, vectors)
+            side = outward
         elif toward is not None:
             side = vectors.sum(axis=0) @ toward
             if abs(side) < 1e-6 * weight.sum():
-                notes.append("a body has as much area towards as away from --toward: its side is that of the file")
-                side = majority
+                ring = abs(outward) > RING * (weight @ np.linalg.norm(place, axis=1))
+                notes.append("a body has as much area towards as away from --toward: "
+                             + ("a ring; its normals point outwards, with --turn inwards" if ring else
+                                "its side is that of the file"))
+                side = outward if ring else majority
         else:
             side = majority
         if side < 0:
