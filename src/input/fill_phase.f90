@@ -7,7 +7,8 @@ module dd3_input_fill_phase
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
       newton_spec_t, tool_gap_t, tool_name_t, tool_turn_t, tool_vector_t, displace_spec_t, &
-      free_spec_t, load_spec_t, motion_spec_t, pressure_spec_t, until_spec_t, until_displacement, until_force
+      free_spec_t, load_spec_t, motion_spec_t, pressure_spec_t, until_spec_t, &
+      until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact

@@ -209,9 +209,10 @@ contains
           "linear solver; dd3imp --help method lists them"), &
       row("ilu_level", kind_integer, "", "2", "level of fill of the incomplete factorisation", &
           lower=zero, upper=100.0_wp), &
-      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs, also where it refines block_lu", &
-          lower=1.0e-15_wp, upper=0.01_wp), &
-      row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs, also where it refines block_lu", &
+      row("tolerance", kind_real, "", "1e-10", "relative residual of cgs, also where it "// &
+          "refines block_lu", lower=1.0e-15_wp, upper=0.01_wp), &
+      row("iterations", kind_integer, "", "500", "maximum number of iterations of cgs, also "// &
+          "where it refines block_lu", &
           lower=1.0_wp, upper=1.0e6_wp), &
       row("ordering", kind_name, "", "auto", &
           "ordering of the unknowns; none: as the nodes are numbered; auto: the cheapest one", &

@@ -329,20 +329,25 @@ contains
 
   !> Set the stiffness of the sheet through its thickness under each point, E A/t, with its area A,
   !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets
-  !> the mean area, and the modulus of the first element.
+  !> the mean area, and the modulus of an element that has it.
   subroutine set_stiffness(model, area)
     type(model_t), intent(inout) :: model
     !> `(n_contact)`; 0 for none.
     real(wp), intent(in) :: area(:)
 
     real(wp) :: mean
-    integer :: c
+    integer :: element(model%n_contact), at_node(model%n_node), c, e
 
+    do e = 1, model%n_element
+      at_node(model%connectivity(:, e)) = e
+    end do
+    element = [(model%contact_point(c)%element, c=1, model%n_contact)]
+    where (element == 0) element = at_node(model%contact_node(:model%n_contact))
     mean = model%thickness**2
     if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
-    model%contact_stiffness = [(model%material(model%material_of(max(1, &
-        model%contact_point(c)%element)))%young*merge(area(c), mean, area(c) > 0.0_wp) &
-        /model%thickness_at(model%contact_node(c)), c=1, model%n_contact)]
+    model%contact_stiffness = [(model%material(model%material_of(element(c)))%young &
+        *merge(area(c), mean, area(c) > 0.0_wp)/model%thickness_at(model%contact_node(c)), &
+        c=1, model%n_contact)]
   end subroutine set_stiffness
 
 end module dd3_model_contact_points

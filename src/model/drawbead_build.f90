@@ -132,8 +132,8 @@ contains
         if (table(i - 1) - table(i + 1) <= 0.5_wp*largest*(table(i) - table(i - 2)) &
             /(elastic_slip*thickness)) cycle
         call errors%push_input(spec%source%at("table"), "the force falls too fast: from path "// &
-            to_text(table(i - 2), 4)//" to "//to_text(table(i), 4), "a fall by its largest value "// &
-            "over "//to_text(2.0_wp*elastic_slip)//" thicknesses or more", code="E150")
+            to_text(table(i - 2), 4)//" to "//to_text(table(i), 4), "a fall by its largest "// &
+            "value over "//to_text(2.0_wp*elastic_slip)//" thicknesses or more", code="E150")
       end do
     end associate
   end subroutine check_slopes

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Thickness of the sheet at cells and nodes, for any element. In an element the directors, from the
-!> bottom to the top of the columns of nodes, splay where the sheet is bent: in an element whose ends
-!> are turned by theta against each other they are longer than the thickness by the factor
+!> bottom to the top of the columns of nodes, splay where the sheet is bent: in an element whose
+!> ends are turned by theta against each other they are longer than the thickness by the factor
 !> 1/cos(theta/2). The thickness of a cell is therefore the length of the mean director along the
 !> normal of the middle surface at the centre, which pure bending and stretching give exactly; that
 !> at a node is the mean of the cells that share it.

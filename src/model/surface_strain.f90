@@ -3,8 +3,9 @@
 !> element: principal values of the right stretch of the surface, whose positions are interpolated
 !> between the columns' bottom and top nodes with the shape functions of the elements' lower faces.
 !> Straight edges stand for circular arcs, which turn by the angle theta between the directors (from
-!> the bottom to the top of the columns) at their ends: a chord is shorter than its arc by the factor
-!> 2 sin(theta/2)/theta. At a node the strain tensors of the faces that share it are averaged.
+!> the bottom to the top of the columns) at their ends: a chord is shorter than its arc by the
+!> factor 2 sin(theta/2)/theta. At a node the strain tensors of the faces that share it are
+!> averaged.
 module dd3_model_surface_strain
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross

@@ -89,8 +89,8 @@ contains
 
     associate (two => surface%crowded)
       if (two(1) == 0) return
-      call errors%push_input(patches(maxval(two))%at, "dozens of patches lie at the same place, "// &
-          "among them "//to_text(patches(minval(two))%number)//" and "// &
+      call errors%push_input(patches(maxval(two))%at, "dozens of patches lie at the same "// &
+          "place, among them "//to_text(patches(minval(two))%number)//" and "// &
           to_text(patches(maxval(two))%number), "each part of the surface once", code="E141")
     end associate
   end subroutine check_crowding

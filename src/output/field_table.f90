@@ -7,8 +7,8 @@ module dd3_output_field_table
   use dd3_model_internal_variables, only : global_components
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_output_forming_fields, only : fill_contact_gap, fill_contact_pressure, fill_contact_tool, &
-      fill_draw_in, fill_slip_path, fill_thickness, fill_thinning
+  use dd3_output_forming_fields, only : fill_contact_gap, fill_contact_pressure, &
+      fill_contact_tool, fill_draw_in, fill_slip_path, fill_thickness, fill_thinning
   implicit none
   private
   public :: field_t, field_table, common_fields, fill_internal_variable, at_nodes_and_cells, &

@@ -37,8 +37,8 @@ module dd3_process_attempt_report
   character(len=*), parameter :: limit_remedy = "a larger value of this limit"
   character(len=*), parameter :: mesh_remedy = "a finer mesh there"
 
-  !> Factors on the penalty, on the height of the contact layer and on the limit of rotation that are
-  !> proposed. A setting that is at its bound has been tried.
+  !> Factors on the penalty, on the height of the contact layer and on the limit of rotation that
+  !> are proposed. A setting that is at its bound has been tried.
   real(wp), parameter :: penalty_factor = 0.1_wp, layer_factor = 2.0_wp, rotation_factor = 0.25_wp
   !> Bounds: height of the contact layer over the thickness, rotation, degrees.
   real(wp), parameter :: largest_layer = 0.03_wp, smallest_rotation = 0.5_wp

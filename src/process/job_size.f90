@@ -124,8 +124,8 @@ contains
     text = text//"; matrix of "//to_text(9.0_wp*real(self%blocks, wp)/1.0e6_wp, 3)// &
         " million entries, "
     if (self%factors > 0.0_wp) then
-      text = text//"factors "//to_text(self%factors/real_bytes/(9.0_wp*real(self%blocks, wp)), 3)// &
-          " times as many"
+      text = text//"factors "// &
+          to_text(self%factors/real_bytes/(9.0_wp*real(self%blocks, wp)), 3)//" times as many"
     else
       text = text//"factors not known before the factorisation"
     end if

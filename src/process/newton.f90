@@ -4,8 +4,8 @@
 !>     g(s) = du . R(u + s du),
 !> the derivative of the potential along the step, if there is one. The full step is taken if it
 !> ends short of the minimum or g there is small against g(0), or if g(0) says nothing; otherwise it
-!> is shortened to where g is small, or where it is in the domain of the problem. Full steps are too long where points
-!> return from plastic to elastic behaviour: the tangent is that of plastic flow.
+!> is shortened to where g is small, or where it is in the domain of the problem. Full steps are too
+!> long where points return from plastic to elastic behaviour: the tangent is that of plastic flow.
 !> Source: H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626 (line search);
 !> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction).
 module dd3_process_newton

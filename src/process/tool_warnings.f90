@@ -213,8 +213,9 @@ contains
     end do
     if (pinched == 0) return
     text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
-        "' pinch the sheet at "//to_text(pinched)//" columns of nodes: where it is ironed, forces "// &
-        "are too low with contact points between the nodes; compare with points = 1 in *CONTACT"
+        "' pinch the sheet at "//to_text(pinched)//" columns of nodes: where it is ironed, "// &
+        "forces are too low with contact points between the nodes; compare with points = 1 in "// &
+        "*CONTACT"
 
   contains
 

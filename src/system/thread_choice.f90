@@ -97,8 +97,8 @@ contains
       if (faster /= self%chosen) then
         self%interval = first_interval
         self%news = "threads: "//to_text(faster)//" from here on: an iteration took "// &
-            to_text(self%seconds(1), 3)//" s with one, "//to_text(self%seconds(2), 3)//" s with "// &
-            to_text(self%all)
+            to_text(self%seconds(1), 3)//" s with one, "//to_text(self%seconds(2), 3)// &
+            " s with "//to_text(self%all)
       end if
       self%chosen = faster
       self%wait = self%interval
