@@ -3,6 +3,10 @@
 
 import math
 
+import numpy as np
+
+from dd3.plot.sheet import bernstein, read_patches
+
 WIDTH = 10.0  # of the strip, mm
 RADIUS, SEGMENTS = 5.0, 12  # of the tools' edges, mm, and the facets around a quarter
 
@@ -151,4 +155,35 @@ def roll_deck(angle=0.5):
              *curve(4, (0.0, 10.0), (0.005, 10.0), (0.0055, 0.0), (1.0, 0.0)),
              "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 6, 0, 2, -1.0), row(3, 6, 0, 2, 1.0),
              "*LOAD_NODE_SET", row(2, 1, 4, 1.0), "*BOUNDARY_SPC_SET", row(1, 0, 0, 1, 0), *contacts(names, 0.125)]
+    return "\n".join(lines) + "\n" + writer.text() + "*END\n"
+
+
+def sampled(path, count):
+    """Yield the points (v, u) of a regular grid on each patch of a tool."""
+    for points, weights in read_patches(path):
+        in_v, in_u = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size in weights.shape)
+        net = np.concatenate([points * weights[..., None], weights[..., None]], axis=2)
+        value = np.einsum("iv,ju,ijc->vuc", in_v, in_u, net)
+        yield value[..., :3] / value[..., 3:]
+
+
+def cup_deck(folder, elements, depth):
+    """Return the square cup of a folder of tools as shells: Hill (1948), Swift's law, a holder under 4900 N."""
+    writer, names = Writer(), ["blank", "punch", "die", "holder"]
+    grid = [[writer.node(75 * i / elements, 75 * j / elements, 0.39) for i in range(elements + 1)]
+            for j in range(elements + 1)]
+    meshes = [(1, grid)]
+    for number, name in enumerate(names[1:], 2):
+        meshes += [(number, [[writer.node(*point) for point in line] for line in net])
+                   for net in sampled(folder / f"{name}.bez", 8)]
+    for number, net in meshes:
+        writer.shells += [(number, a[i], a[i + 1], b[i + 1], b[i]) for a, b in zip(net, net[1:])
+                          for i in range(len(a) - 1)]
+    writer.node_sets = {1: [line[0] for line in grid], 2: grid[0]}
+    lines = ["*KEYWORD", "*CONTROL_TERMINATION", row(0.014), *parts(names, 1), "*SECTION_SHELL", row(1, 16, "", 5),
+             row(0.78, 0.78, 0.78, 0.78), "*MAT_HILL_3R", row(1, "7.85E-9", "2.06E5", 0.3, 2.0, 565.32, 0.2589),
+             row(1.79, 1.51, 2.27, "", 0.007117), *rigid("2.1E5"), *curve(11, (0.0, 0.0), (0.001, 1.0), (1.0, 1.0)),
+             *curve(12, (0.0, 0.0), (0.002, 0.0), (0.012, depth), (1.0, depth)),
+             "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 12, -1.0), "*LOAD_RIGID_BODY", row(4, 3, 11, -4900.0),
+             "*BOUNDARY_SPC_SET", row(1, 0, 1, 0, 0, 0, 1, 1), row(2, 0, 0, 1, 0, 1, 0, 1), *contacts(names, 0.144)]
     return "\n".join(lines) + "\n" + writer.text() + "*END\n"

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dyna_decks import curve, roll_deck, row, shell_deck, solid_deck
-from helpers import call
+from dyna_decks import cup_deck, curve, roll_deck, row, shell_deck, solid_deck
+from helpers import ROOT, call
 
 from dd3.dyna.command import Import
 from dd3.dyna.laws import yld2000_at
 from dd3.errors import Problem
 from dd3.mesh import read_inp
+from dd3.run import read_frame
 
 MUTATED = 1000
 
@@ -70,6 +71,21 @@ def test_solids(program):
     assert np.allclose(np.ptp(np.array(list(mesh.nodes.values())), axis=0), (60, 10, 1))
     done = subprocess.run([program, "solid/u.dat"], capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_square_cup(program):
+    """Check that the square cup by way of an LS-DYNA deck takes the force of that of input_files, within 0.5 %."""
+    folder = ROOT / "input_files" / "square_cup"
+    Path("cup.k").write_text(cup_deck(folder, 16, 8.0))
+    call("import", "cup.k")
+    force = []
+    for name, words in (("imported", ["cup/cup.dat"]), ("own", [folder / "square_cup.dat", "--set", "divisions=16 16 1",
+                                                       "--set", "depth=8"])):
+        done = subprocess.run([program, "--quiet", "--output", name, *words], capture_output=True, text=True, timeout=300,
+                              check=False)
+        assert done.returncode == 0, done.stderr
+        force.append(float(read_frame(Path(name), "history.csv")["punch_fz"].iloc[-1]))
+    assert abs(force[0] / force[1] - 1) < 0.005, force
 
 
 def with_material(*lines):

@@ -32,7 +32,6 @@ from dd3.progress import each
 from dd3.tools.surface import write
 
 RIGID = 20
-COARSE = 0.05  # estimated distance of facets from their surface that is noted, mm
 TRIAL = 0.5, 0.05  # trial increment of a tool, mm, at most this part of its displacement
 
 
