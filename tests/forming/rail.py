@@ -126,16 +126,6 @@ def draw(rails):
     figure.savefig(PICTURE, dpi=110)
 
 
-def deck_of(options, material):
-    """Return the deck with another material."""
-    text = DECK.read_text(encoding="utf-8").replace("dp600", material).replace("DP600", material.upper())
-    text = text.replace("../materials", str(DECK.parents[1] / "materials"))
-    text = text.replace("tools = . ", f"tools = {DECK.parent} ")
-    path = options.work / f"{material}.dat"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 def row_of(material, mesh, rail, finest, folder):
     """Return the row of a run."""
     bottom, flange = rail.springback(1)
@@ -156,8 +146,8 @@ def main():
     for material in ("dp600", "dc06"):
         found = {}
         for mesh in MESHES:
-            folder = studies.make(options, f"{material}_{mesh.replace(' ', 'x')}", deck_of(options, material),
-                                  {"divisions": f"{mesh} 1"})
+            folder = studies.make(options, f"{material}_{mesh.replace(' ', 'x')}", DECK,
+                                  {"divisions": f"{mesh} 1", "material": material})
             if folder:
                 found[mesh] = Rail(folder), folder
                 jobs.append(read_job(folder))

@@ -9,6 +9,7 @@ from importlib import import_module
 
 from dd3.errors import Problem, run
 
+ANY = "<file>"  # stands for the words that are no command of a group
 # Name: module and summary. A group has the summary, an example and the table of its own.
 COMMANDS = {
     "tool": ("dd3.tool", "make a tool surface from CAD, STL, a mesh or a profile"),
@@ -25,8 +26,9 @@ COMMANDS = {
     "fld": ("dd3.forming_limit", "draw the forming limit diagram of a run"),
     "identify": ("dd3.identify.command", "identify a yield criterion, with a hardening law, from measured values"),
     "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
-    "study": ("run the bending study, gather and draw its results", "dd3 study run --quick", {
-        "run": ("dd3.study.run", "run all cases, gather the table and draw the figures"),
+    "study": ("vary parameters of an input file; the bending study", "dd3 study job.dat --vary friction=0.1,0.14", {
+        ANY: ("dd3.study.vary", "vary parameters of this input file, with a table and pictures of results"),
+        "run": ("dd3.study.run", "the bending study: run all cases, gather the table and draw the figures"),
         "command": ("dd3.study.cases:print_command", "print the command of a case"),
         "case": ("dd3.study.cases:run_case", "run a case unless it is done"),
         "table": ("dd3.study.cases:gather", "gather the finished cases in results.csv"),
@@ -59,6 +61,8 @@ def dispatch(words: Sequence[str], name: str = "dd3", summary: str = "Tools for 
     elif first == "--version" and table is COMMANDS:
         from dd3 import __version__
         print(f"dd3 {__version__}")
+    elif first not in table and ANY in table and (first.startswith("-") or "." in first):
+        dispatch([ANY, *words], name, summary, example, table)
     elif first not in table:
         near = difflib.get_close_matches(first, table, 1)
         said = f"no command '{first}'" if first else "a command is missing"

@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vary parameters of an input file: all combinations of their values, a table and pictures of chosen results.
+
+    dd3 study rail.dat --vary friction=0.05:0.15:3 holder=-15000,-20000 --result punch_fz:max thinning:max
+    dd3 study cup.dat --vary material=dp600,dc06 friction=0.1,0.14 --result die_fz --cores 4 --indices
+
+A parameter is one of *PARAMETER: values apart by commas, or FIRST:LAST:NUMBER. A result is a column of history.csv at
+the end, or :max or :min over the run; or a field of fields.vtkhdf at the end, its :max, :min or :mean of the elements.
+results.csv and a picture of each result over the first parameter with several numbers are written into --work. After an
+interruption the same command continues: finished runs are kept, others continue from their restart files; runs that are
+older than the input file are made anew.
+
+--indices prints for each result which part of its variance over the combinations belongs to each parameter: alone
+(first order) and with all its interactions (total), after Sobol (1993), exact for combinations of equal weight.
+"""
+
+import argparse
+import csv
+import itertools
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from dd3.command import new_parser
+from dd3.errors import Problem
+from dd3.fields import Fields
+from dd3.plot.figures import new_figure, save
+from dd3.programs import command, find_program, launch, made_folder
+from dd3.progress import counter
+from dd3.run import read_frame, read_job
+
+FOLDS: dict[str, Callable[[np.ndarray], float]] = {
+    "max": np.max, "min": np.min, "mean": np.mean, "last": lambda values: values[-1]}
+MOST = 10000  # combinations
+
+
+@dataclass
+class Case:
+    """A combination: its values by parameter, its folder, and its results once it has run."""
+
+    values: dict[str, str]
+    folder: Path
+    state: str = ""
+    results: list[float] | None = None
+
+
+def parameter(text: str) -> tuple[str, list[str]]:
+    """Return name and values of an argument of --vary."""
+    name, equals, values = text.partition("=")
+    parts = values.split(":")
+    if len(parts) == 3:
+        try:
+            first, last, number = float(parts[0]), float(parts[1]), int(parts[2])
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"takes FIRST:LAST:NUMBER, not {values}") from None
+        if number < 2:
+            raise argparse.ArgumentTypeError(f"takes a NUMBER of 2 or more, not {number}")
+        found = [f"{value:.8g}" for value in np.linspace(first, last, number)]
+    else:
+        found = [value.strip() for value in values.split(",")]
+    if not name or not equals or not all(found) or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"takes NAME=VALUE,VALUE,... or NAME=FIRST:LAST:NUMBER, not {text}")
+    return name, found
+
+
+def result(text: str) -> tuple[str, str]:
+    """Return name and fold of an argument of --result; the fold is empty where it is not given."""
+    name, _, fold = text.rpartition(":")
+    if fold not in FOLDS:
+        name, fold = text, ""
+    return name, fold
+
+
+def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path) -> list[Case]:
+    """Return all combinations, each with a folder that names it."""
+    names = [name for name, _ in parameters]
+    if len(set(names)) < len(names):
+        raise Problem("a parameter of --vary is given twice")
+    count = int(np.prod([len(values) for _, values in parameters]))
+    if count > MOST:
+        raise Problem(f"{count} combinations; expected at most {MOST}")
+    found = []
+    for row in itertools.product(*(values for _, values in parameters)):
+        values = dict(zip(names, row))
+        word = "_".join(f"{name}={value}" for name, value in values.items())
+        found.append(Case(values, work / "".join(c if c.isalnum() or c in "._=+-" else "-" for c in word)))
+    if len({case.folder for case in found}) < len(found):
+        raise Problem("values of --vary that differ in blanks or signs only: their folders would be the same")
+    return found
+
+
+def state_of(folder: Path) -> str:
+    """Return the state of a run, empty where there is none."""
+    return str(read_job(folder)["outcome"]["state"]) if (folder / "run.json").is_file() else ""
+
+
+def make(case: Case, program: Path, deck: Path) -> None:
+    """Run a case unless it has ended; an interrupted run is continued."""
+    ended = case.folder / "run.json"
+    old = ended.is_file() and ended.stat().st_mtime < deck.stat().st_mtime
+    case.state = "" if old else state_of(case.folder)
+    if case.state in ("reached", "stopped"):
+        return
+    restart = case.folder / "restart.h5"
+    options: list[object] = ["--quiet", "--threads", "1"]
+    if restart.is_file() and not old:
+        options += ["--restart", restart]
+    done = launch(command(program, deck, case.folder, options, case.values))
+    if done.code == 2:
+        raise Problem(done.errors.strip())
+    case.state = state_of(case.folder)
+
+
+def value_of(folder: Path, name: str, fold: str) -> float:
+    """Return a result of a run: of a column of the history, or of a field at the elements."""
+    history = read_frame(folder, "history.csv")
+    if name in history:
+        return float(FOLDS[fold or "last"](history[name].to_numpy(float)))
+    fields = Fields(folder)
+    field = name.partition(":")[0]
+    at_cells = field in fields.grid["CellData"]
+    if not at_cells and field not in fields.grid["PointData"]:
+        raise Problem(f"no result '{name}'; there are the columns {', '.join(history)} and the fields "
+                      f"{', '.join(fields.grid['CellData'])}")
+    if fold == "last":
+        raise Problem(f"{name}:last: a field is taken at the end; expected :max, :min or :mean")
+    return float(FOLDS[fold or "max"](fields.component(fields.last, name, at_cells)[0]))
+
+
+def run_all(cases: list[Case], options: argparse.Namespace) -> None:
+    """Run the cases, several at a time, with a bar."""
+    bar = counter("runs", "run")
+    bar.total = len(cases)
+    with ThreadPoolExecutor(options.cores) as pool:
+        waiting = [pool.submit(make, case, options.program, options.deck) for case in cases]
+        try:
+            for one in waiting:
+                one.result()
+                bar.update(1)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+        finally:
+            bar.close()
+
+
+def write_table(path: Path, cases: list[Case], names: list[str]) -> list[list[str]]:
+    """Write results.csv and return its rows, the heading first."""
+    rows = [[*cases[0].values, *names, "state", "increments", "iterations", "seconds"]]
+    for case in cases:
+        job = read_job(case.folder)
+        found = [f"{value:.7g}" for value in case.results] if case.results else [""] * len(names)
+        counts = [str(job["counts"][name]) for name in ("increments", "iterations")]
+        rows.append([*case.values.values(), *found, case.state, *counts, f"{job['seconds'] or 0:.3g}"])
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+    return rows
+
+
+def numbers_of(values: list[str]) -> np.ndarray | None:
+    """Return values as numbers, None where one is a word."""
+    try:
+        return np.array([float(value) for value in values])
+    except ValueError:
+        return None
+
+
+def draw(path: Path, cases: list[Case], parameters: list[tuple[str, list[str]]], i: int, name: str) -> None:
+    """Draw a result over the first parameter with several numbers, a line for each combination of the others."""
+    along = next((key for key, values in parameters if len(values) > 1 and numbers_of(values) is not None),
+                 parameters[0][0])
+    lines: dict[str, list[tuple[str, float]]] = {}
+    for case in cases:
+        if case.results:
+            rest = ", ".join(f"{key} = {value}" for key, value in case.values.items() if key != along)
+            lines.setdefault(rest, []).append((case.values[along], case.results[i]))
+    figure, axes = new_figure((8, 4.5))
+    for rest, points in lines.items():
+        x = numbers_of([value for value, _ in points])
+        axes.plot(x if x is not None else [value for value, _ in points], [value for _, value in points], "o-",
+                  markersize=4, label=rest)
+    axes.set(xlabel=along, ylabel=name.replace("_", " "))
+    axes.grid(True, color="0.9")
+    if any(lines):
+        axes.legend(frameon=False, fontsize="small")
+    save(figure, path, 130)
+
+
+def indices(values: np.ndarray) -> list[tuple[float, float]]:
+    """Return first-order and total index of each axis of a table of results, one axis a parameter.
+
+    Source: I. M. Sobol, Math. Modelling Comput. Exp. 1 (1993) 407-414: the parts of the variance, here over the
+    combinations.
+    """
+    total = float(values.var())
+    found = []
+    for axis in range(values.ndim):
+        others = tuple(k for k in range(values.ndim) if k != axis)
+        alone = float(values.mean(axis=others).var())
+        without = float(values.mean(axis=axis).var())
+        found.append((alone / total, 1 - without / total) if total > 0 else (0.0, 0.0))
+    return found
+
+
+def print_indices(cases: list[Case], parameters: list[tuple[str, list[str]]], names: list[str]) -> None:
+    """Print the indices of each result."""
+    if not all(case.results for case in cases):
+        raise Problem("--indices takes results of all combinations; some runs stopped")
+    shape = [len(values) for _, values in parameters]
+    for i, name in enumerate(names):
+        print(f"{name}: part of the variance, alone and with interactions")
+        found = indices(np.array([case.results[i] for case in cases if case.results]).reshape(shape))
+        for (key, _), (alone, total) in zip(parameters, found):
+            print(f"  {key:<20} {alone:6.3f} {total:6.3f}")
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Make the study of the command line."""
+    parser = new_parser("study", __doc__)
+    parser.add_argument("deck", type=Path, help="input file")
+    parser.add_argument("--vary", nargs="+", type=parameter, required=True, metavar="NAME=VALUES",
+                        help="parameter and values: 0.1,0.14 or FIRST:LAST:NUMBER")
+    parser.add_argument("--result", nargs="+", type=result, default=[("tool_work", "")], metavar="NAME[:FOLD]",
+                        help="column of history.csv or field, with :max, :min or :mean (tool_work)")
+    parser.add_argument("--work", type=Path, help="folder of the study (default: the input file's name with .study)")
+    parser.add_argument("--program", type=find_program, default="dd3imp", help="the program dd3imp (on the path)")
+    parser.add_argument("--cores", type=int, default=os.cpu_count() or 1, metavar="N",
+                        help="runs at a time, each with one thread (default: the number of cores)")
+    parser.add_argument("--indices", action="store_true", help="print the indices of Sobol")
+    options = parser.parse_args(words)
+    if options.cores < 1:
+        parser.error("--cores takes a positive number")
+    if not options.deck.is_file():
+        raise Problem(f"{options.deck}: no such file")
+    work = made_folder(options.work or options.deck.with_suffix(".study"))
+    cases = combinations(options.vary, work)
+    run_all(cases, options)
+    for case in cases:
+        if case.state == "reached":
+            case.results = [value_of(case.folder, name, fold) for name, fold in options.result]
+    names = [f"{name}:{fold}" if fold else name for name, fold in options.result]
+    rows = write_table(work / "results.csv", cases, names)
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    for row in rows:
+        print("  ".join(word.ljust(width) for word, width in zip(row, widths)).rstrip())
+    for i, name in enumerate(names):
+        draw(work / f"{name.replace(':', '_')}.png", cases, options.vary, i, name)
+    if options.indices:
+        print_indices(cases, options.vary, names)
+    stopped = [case for case in cases if case.state != "reached"]
+    if stopped:
+        raise Problem(f"{len(stopped)} of {len(cases)} runs did not reach their end; the first: {stopped[0].folder}")
