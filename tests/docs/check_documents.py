@@ -92,8 +92,8 @@ def broken_commands(program, text):
         if re.match(r"(build/\w+/)?dd3imp$", words[0]) if words else False:
             known = run(program, "--help")[0]
         elif words and words[0] == "dd3":
-            known, code = run(sys.executable, "-m", "dd3", *takewhile(lambda word: word[0] != "-", words[1:2 + (words[1] in GROUPS)]),
-                              "--help")
+            names_of = takewhile(lambda word: word[0] != "-", words[1:2 + (words[1] in GROUPS)])
+            known, code = run(sys.executable, "-m", "dd3", *names_of, "--help")
             if code:
                 yield f"there is no such command: {line}"
         else:
