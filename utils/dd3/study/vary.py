@@ -32,6 +32,7 @@ from dd3.plot.figures import new_figure, save
 from dd3.programs import command, find_program, launch, made_folder
 from dd3.progress import counter
 from dd3.run import read_frame, read_job
+from dd3.tables import read_table, totals
 
 FOLDS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max, "min": np.min, "mean": np.mean, "last": lambda values: values[-1]}
@@ -115,11 +116,14 @@ def make(case: Case, program: Path, deck: Path) -> None:
     case.state = state_of(case.folder)
 
 
-def value_of(folder: Path, name: str, fold: str) -> float:
-    """Return a result of a run: of a column of the history, or of a field at the elements."""
+def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
+    """Return a result of a run, of a column of the history or of a field at the elements, and its label."""
     history = read_frame(folder, "history.csv")
+    how = f", {fold}" if fold else ""
     if name in history:
-        return float(FOLDS[fold or "last"](history[name].to_numpy(float)))
+        unit = history.attrs.get("units", {}).get(name, "-")
+        label = name.replace("_", " ") + ("" if unit == "-" else f" ({unit})")
+        return float(FOLDS[fold or "last"](history[name].to_numpy(float))), label + how
     fields = Fields(folder)
     field = name.partition(":")[0]
     at_cells = field in fields.grid["CellData"]
@@ -128,7 +132,8 @@ def value_of(folder: Path, name: str, fold: str) -> float:
                       f"{', '.join(fields.grid['CellData'])}")
     if fold == "last":
         raise Problem(f"{name}:last: a field is taken at the end; expected :max, :min or :mean")
-    return float(FOLDS[fold or "max"](fields.component(fields.last, name, at_cells)[0]))
+    values, label = fields.component(fields.last, name, at_cells)
+    return float(FOLDS[fold or "max"](values)), label + how
 
 
 def run_all(cases: list[Case], options: argparse.Namespace) -> None:
@@ -152,10 +157,11 @@ def write_table(path: Path, cases: list[Case], names: list[str]) -> list[list[st
     """Write results.csv and return its rows, the heading first."""
     rows = [[*cases[0].values, *names, "state", "increments", "iterations", "seconds"]]
     for case in cases:
-        job = read_job(case.folder)
+        status = read_table(case.folder / "status.csv")  # an interrupted run's rows too
+        sums, seconds = totals(status), sum(float(row["seconds"]) for row in status)
         found = [f"{value:.7g}" for value in case.results] if case.results else [""] * len(names)
-        counts = [str(job["counts"][name]) for name in ("increments", "iterations")]
-        rows.append([*case.values.values(), *found, case.state, *counts, f"{job['seconds'] or 0:.3g}"])
+        rows.append([*case.values.values(), *found, case.state, str(sums.increments), str(sums.iterations),
+                     f"{seconds:.3g}"])
     with path.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
     return rows
@@ -169,7 +175,7 @@ def numbers_of(values: list[str]) -> np.ndarray | None:
         return None
 
 
-def draw(path: Path, cases: list[Case], parameters: list[tuple[str, list[str]]], i: int, name: str) -> None:
+def draw(path: Path, cases: list[Case], parameters: list[tuple[str, list[str]]], i: int, label: str) -> None:
     """Draw a result over the first parameter with several numbers, a line for each combination of the others."""
     along = next((key for key, values in parameters if len(values) > 1 and numbers_of(values) is not None),
                  parameters[0][0])
@@ -183,7 +189,7 @@ def draw(path: Path, cases: list[Case], parameters: list[tuple[str, list[str]]],
         x = numbers_of([value for value, _ in points])
         axes.plot(x if x is not None else [value for value, _ in points], [value for _, value in points], "o-",
                   markersize=4, label=rest)
-    axes.set(xlabel=along, ylabel=name.replace("_", " "))
+    axes.set(xlabel=along, ylabel=label)
     axes.grid(True, color="0.9")
     if any(lines):
         axes.legend(frameon=False, fontsize="small")
@@ -239,16 +245,17 @@ def main(words: Sequence[str] | None = None) -> None:
     work = made_folder(options.work or options.deck.with_suffix(".study"))
     cases = combinations(options.vary, work)
     run_all(cases, options)
+    labels: list[str] = [""] * len(options.result)
     for case in cases:
         if case.state == "reached":
-            case.results = [value_of(case.folder, name, fold) for name, fold in options.result]
+            case.results, labels = map(list, zip(*(value_of(case.folder, *wanted) for wanted in options.result)))
     names = [f"{name}:{fold}" if fold else name for name, fold in options.result]
     rows = write_table(work / "results.csv", cases, names)
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         print("  ".join(word.ljust(width) for word, width in zip(row, widths)).rstrip())
-    for i, name in enumerate(names):
-        draw(work / f"{name.replace(':', '_')}.png", cases, options.vary, i, name)
+    for i, (name, label) in enumerate(zip(names, labels)):
+        draw(work / f"{name.replace(':', '_')}.png", cases, options.vary, i, label)
     if options.indices:
         print_indices(cases, options.vary, names)
     stopped = [case for case in cases if case.state != "reached"]
