@@ -26,7 +26,8 @@ STATION, REACH = 60.0, 8.0  # middle and half length of the piece of a straight 
 THICKNESS = 0.8
 MESHES = ["28 16", "54 32", "80 32", "54 64", "54 128"]  # along and across the rail; the finest last
 HEAD = ["material", "mesh", "elements", "flange", "bottom", "twist at 60 mm", "twist, 10 to 90 %", "largest distance, mm",
-        "free shape from the finest's, mm: rms, largest", "thinning, %", "from the finest's, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
+        "free shape from the finest's, mm: rms, largest", "thinning, %",
+        "from the finest's, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
 
 
 class Rail:

@@ -39,7 +39,7 @@ MIRROR = {"bending": "x", "fine": "x", "solid_shell": "x", "square_cup": "x y", 
           "round_cup_aa6016": "x y", "draw_bending": "x", "draw_bead": "x", "tray": "x y", "roll_forming": "y"}
 PROBE = """<script>addEventListener("load", () => {
   const found = {broken: [...document.images].filter(i => !i.naturalWidth).map(i => i.alt),
-    images: document.images.length, width: document.documentElement.scrollWidth, window: innerWidth,
+    images: document.images.length, window: innerWidth,
     height: document.documentElement.scrollHeight,
     wide: [...document.querySelectorAll("section *")].filter(e => e.getBoundingClientRect().right > innerWidth + 1 &&
       !e.closest("pre")).map(e => e.tagName + " " + (e.alt || e.textContent.slice(0, 40))),
@@ -88,8 +88,7 @@ def faults(page, width):
 def made(options, name, deck):
     """Return the folder of results of an input file, after its run unless it is there."""
     folder = options.work / f"{name}.out"
-    job = folder / "run.json"
-    if not job.exists() or json.loads(job.read_text())["outcome"]["state"] != "reached":
+    if not (folder / "run.json").exists() or read_job(folder)["outcome"]["state"] != "reached":
         subprocess.run([options.program, "--output", folder, deck], check=True, stdout=subprocess.DEVNULL)
     return folder
 

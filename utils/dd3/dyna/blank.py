@@ -75,9 +75,9 @@ def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[
     if not np.all(np.linalg.norm(normals, axis=1) > 0):
         raise Problem(f"{part.place}: error: a shell of the blank, part {part.number}, has no area")
     mean = normals.sum(axis=0)
-    upward = mean if abs(mean[2]) < 0.5 * np.linalg.norm(mean) or mean[2] > 0 else -mean
     if not np.linalg.norm(mean) > 0:
         raise Problem(f"{part.place}: error: the normals of the shells of part {part.number} cancel each other")
+    upward = upright(mean)
     turned = normals @ upward < 0
     normals[turned] *= -1
     sums: dict[int, np.ndarray] = {}
@@ -94,24 +94,27 @@ def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[
         ring = list(cell[::-1] if back else cell)
         mesh.elements[i] = ring + [label + first for label in ring]
     points = section.row(0).label(3)
-    return Blank(mesh, upward / np.linalg.norm(upward), thickness, min(points, MOST_POINTS) if points >= 5 else POINTS,
+    return Blank(mesh, upward, thickness, min(points, MOST_POINTS) if points >= 5 else POINTS,
                  "solid_shell", {label: label + first for label in sums}, edge)
 
 
+def upright(vector: np.ndarray) -> np.ndarray:
+    """Return the unit vector that points to +z, as the program turns the thickness; an upright sheet keeps its side."""
+    unit: np.ndarray = vector / np.linalg.norm(vector)
+    return -unit if unit[2] < -1e-6 else unit
+
+
 def of_solids(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray], edge: np.ndarray) -> Blank:
-    """Return the blank of hexahedra; in the order of their nodes the first four are the lower face."""
+    """Return the blank of hexahedra, a flat sheet: its normal is the direction in which the nodes vary least."""
     mesh = Mesh({label: tuple(nodes[label].tolist()) for cell in cells for label in cell},
                 {i: list(cell) for i, cell in enumerate(cells, 1)})
     turn_mirrored(mesh)
-    normal = face_normals(cells, nodes).sum(axis=0)
-    normal = normal if normal[2] >= 0 else -normal
-    if not np.linalg.norm(normal) > 0:
-        raise Problem("the lower faces of the solids of the blank have no common side")
-    lower = {label for cell in cells for label in cell[:4]}
-    upper = {label for cell in cells for label in cell[4:]}
-    height = np.mean([np.linalg.norm(nodes[cell[4]] - nodes[cell[0]]) for cell in cells])
-    element = "hex8" if lower & upper else "solid_shell"  # in one layer no node is in both faces
-    return Blank(mesh, normal / np.linalg.norm(normal), float(height), POINTS, element, {}, edge)
+    points = np.array(list(mesh.nodes.values()))
+    normal = upright(np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][-1])
+    heights = points @ normal
+    thickness = float(np.ptp(heights))
+    one_layer = len(np.unique(np.round(heights / max(thickness, 1e-300), 3))) == 2
+    return Blank(mesh, normal, thickness, POINTS, "solid_shell" if one_layer else "hex8", {}, edge)
 
 
 def with_sets(blank: Blank, sets: dict[str, set[int]]) -> Mesh:

@@ -12,7 +12,8 @@ from dd3.tools.facet_files import dyna_lines, fields
 
 WIDTH, LONG = 10, 20  # columns of a field
 PARAMETER = re.compile(r"(-?)&(\w+)")
-MESHES = ("*NODE", "*ELEMENT_SHELL", "*ELEMENT_SOLID", "*ELEMENT_TSHELL")  # many rows, in other columns
+# Keywords with many rows, in other columns.
+MESHES = re.compile(r"\*NODE$|\*ELEMENT_(SHELL|SOLID|TSHELL)(_\w+)?$")
 TITLED = ("*MAT", "*SECTION", "*DEFINE", "*SET", "*HOURGLASS")
 
 
@@ -78,18 +79,18 @@ def as_number(word: str) -> float | None:
 
 
 def read_cards(path: Path) -> Iterator[Card]:
-    """Yield the cards of a deck and of the files that it includes, without nodes and elements."""
+    """Yield the cards of a deck and of the files that it includes; those of nodes and elements without their rows."""
     card, wide, parameters = None, False, dict[str, float]()
     for place, line in dyna_lines(path):
         if not line.startswith("*"):
-            if card:
+            if card and not MESHES.match(card.keyword):
                 card.rows.append(Row(place, line, WIDTH if not wide else LONG, parameters))
             continue
         if card:
             yield finished(card, parameters)
         keyword, _, tail = line.strip().upper().partition(" ")
         wide = wide or (keyword == "*KEYWORD" and "LONG=Y" in tail.replace(" ", ""))
-        card = None if keyword.startswith(MESHES) else Card(keyword.rstrip("+-"), place, [])
+        card = Card(keyword.rstrip("+-"), place, [])
     if card:
         yield finished(card, parameters)
 
@@ -108,7 +109,10 @@ def finished(card: Card, parameters: dict[str, float]) -> Card:
     if card.keyword.endswith("_TITLE") and card.keyword.startswith(TITLED):
         card.keyword = card.keyword.removesuffix("_TITLE")
         card.title = card.rows.pop(0).text.strip() if card.rows else ""
-    elif card.keyword.endswith("_ID") and card.rows:
-        card.keyword = card.keyword.removesuffix("_ID")
+    options = card.keyword.split("_")
+    if "ID" in options and card.rows:
         card.title = card.rows.pop(0).text[WIDTH:].strip()
+    if "MPP" in options:  # settings for several processes, on one row or two
+        card.rows = card.rows[2 if len(card.rows) > 1 and card.rows[1].text.startswith("&") else 1:]
+    card.keyword = "_".join(word for word in options if word not in ("ID", "MPP"))
     return card

@@ -56,6 +56,7 @@ class Import:
         self.blank: Blank = blank_of(deck, self.part, self.units)
         self.law: Law = law_of(deck, self.material, self.units, np.array([self.blank.edge, self.blank.normal]))
         self.notes = list(self.law.notes)
+        self.nodes = {label for _, members in self.part.cells for label in members}  # of the blank
         self.tools = self.find_tools()
         self.stages: list[Stage] = self.find_stages()
         self.fixed = self.find_supports()
@@ -102,7 +103,7 @@ class Import:
         for root, parts in groups.items():
             leader = next((part for part in parts if part.number == root), parts[0])
             name = set_name(leader.title or f"tool_{leader.number}")
-            name = f"{name}_{leader.number}" if name in names else name
+            name = f"{name}_{leader.number}" if name in names or name == "load" else name
             names.add(name)
             values = [friction.get(part.number, 0.0) for part in parts]
             if len(set(values)) > 1:
@@ -144,6 +145,8 @@ class Import:
                                   + (f"set {drive.target}" if drive.of_set else f"part {drive.target}, no tool")
                                   + "; left out")
                 continue
+            if drive.begins:
+                self.notes.append(f"{drive.place}: the curve of the motion is taken from its birth on")
             drives.append(replace(drive, target=target))
         found = stages(self.deck, drives)
         if not any(stage.moving or stage.forces for stage in found):
@@ -153,15 +156,13 @@ class Import:
 
     def members(self, number: int) -> set[int]:
         """Return the nodes of the blank in a set."""
-        mine = {label for _, members in self.part.cells for label in members}
-        return mine & set(self.deck.node_sets.get(number, ()))
+        return self.nodes & set(self.deck.node_sets.get(number, ()))
 
     def find_supports(self) -> dict[str, set[int]]:
         """Return the nodes of the blank that are held, by the axes."""
-        mine = {label for _, members in self.part.cells for label in members}
         held: dict[int, set[str]] = {}
         for fix in self.deck.fixes():
-            for label in fix.nodes & mine:
+            for label in fix.nodes & self.nodes:
                 held.setdefault(label, set()).update(fix.axes)
         found: dict[str, set[int]] = {}
         for label, axes in held.items():
@@ -173,7 +174,7 @@ class Import:
         for tool in each(self.tools, "tools"):
             toward = -self.blank.normal if tool.above else self.blank.normal
             words = [str(self.deck.path), str(folder / f"{tool.name}.bez"), "--scale", f"{self.units.length:g}",
-                     "--toward", *(f"{value:.6g}" for value in toward)]
+                     "--toward", *numbers(toward).split()]
             for number in tool.parts:
                 words += ["--part", str(number)]
             options = tools.arguments([*words, "--tolerance", "1000"])
@@ -185,16 +186,21 @@ class Import:
             self.notes.append(f"tool {tool.name}: {len(surface.net)} patches, {' '.join(estimate.split())}")
 
     def entries(self) -> list[str]:
-        """Return the lines of the input file."""
+        """Return the lines of the input file, behind notes and what is left out."""
+        body = self.body()
         lines = [f"# {self.deck.path.name}, imported from LS-DYNA ({self.units.name}) to mm, N and MPa."]
         lines += ["#", "# Notes:", *(f"# - {note}" for note in self.notes)] if self.notes else []
         if self.deck.left_out:
             lines += ["#", "# Left out:", *(f"# - {Path(place).name} {keyword}: {why}"
                                             for place, keyword, why in self.deck.left_out)]
-        lines += ["*TITLE", f"  {self.deck.title or self.deck.path.stem}", ""]
-        lines += [f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
-                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
-                  f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}"]
+        return lines + body
+
+    def body(self) -> list[str]:
+        """Return the blocks of the input file."""
+        lines = ["*TITLE", f"  {self.deck.title or self.deck.path.stem}", "",
+                 f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
+                 f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
+                 f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}"]
         if self.law.rolling:
             lines.append("  rolling_direction = " + numbers(self.law.rolling))
         if abs(self.blank.normal[2]) < 1 - 1e-6:

@@ -12,7 +12,7 @@ from dd3.errors import Problem
 from dd3.tools.facet_files import dyna_mesh
 
 FARTHEST = 1e7  # coordinate of a node
-SILENT = ("*KEYWORD", "*TITLE", "*END", "*NODE", "*PARAMETER", "*COMMENT", "*INCLUDE", "*CONTROL_TERMINATION")
+SILENT = ("*KEYWORD", "*TITLE", "*END", "*PARAMETER", "*COMMENT", "*INCLUDE", "*CONTROL_TERMINATION")
 # Keywords by their beginning, and why they are left out; the first that fits.
 REASONS = (
     ("*CONTROL_ADAPTIVE", "the mesh is not adapted: give the blank elements of half the smallest radius"),
@@ -30,8 +30,11 @@ REASONS = (
     ("*SENSOR", "sensors are not available; `until` ends a phase by force or travel"),
     ("*DEFINE_FRICTION", "friction is constant for each tool"),
     ("*DEFINE", "definition that nothing here uses"),
+    ("*ELEMENT_SHELL_THICKNESS", "the blank has the thickness of its section everywhere"),
+    ("*ELEMENT_SHELL_BETA", "the rolling direction is that of the material"),
     ("*EOS", "equations of state are not available"),
 )
+MESH = ("*NODE", "*ELEMENT_SHELL", "*ELEMENT_SOLID", "*ELEMENT_TSHELL")
 IGNORED = ("*DEFINE_BOX", "*DEFINE_COORDINATE", "*DEFINE_VECTOR", "*SET_SEGMENT", "*SET_SHELL", "*SET_SOLID")
 GEOMETRY = ("*INCLUDE_TRANSFORM", "*INCLUDE_STAMPED", "*NODE_TRANSFORM", "*PART_MOVE", "*DEFINE_TRANSFORMATION")
 
@@ -162,11 +165,11 @@ class Deck:
             if word == beginning or (beginning.endswith("_") and word.startswith(beginning)):
                 reader(card)
                 return
-        if word.startswith(SILENT) or word.startswith(IGNORED):
+        if word.startswith((*SILENT, *IGNORED)) or word in MESH:
             if word == "*CONTROL_TERMINATION":
                 self.end_time = card.row(0).number(0)
             elif word == "*TITLE" and card.rows:
-                self.title = card.rows[0].text.strip()
+                self.title = card.rows[0].text.replace("#", " ").strip()
             return
         if word.startswith("*INTERFACE_SPRINGBACK"):
             self.springback = True
@@ -182,8 +185,7 @@ class Deck:
                 ("*SET_PART_LIST", self.take_part_set), ("*SET_PART", self.take_part_set),
                 ("*CONSTRAINED_RIGID_BODIES", self.take_master), ("*CONTACT_", self.take_contact),
                 ("*BOUNDARY_PRESCRIBED_MOTION_", self.take_motion), ("*LOAD_RIGID_BODY", self.take_force),
-                ("*LOAD_NODE_SET", self.take_force),
-                ("*BOUNDARY_SPC_", self.supports.append))
+                ("*LOAD_NODE_SET", self.take_force), ("*BOUNDARY_SPC_", self.supports.append))
 
     def take_part(self, card: Card) -> None:
         """Take parts, two rows each; *PART_CONTACT has a third."""
@@ -253,7 +255,10 @@ class Deck:
 
     def take_motion(self, card: Card) -> None:
         """Take prescribed motions of rigid bodies and node sets."""
-        of_set = "_SET" in card.keyword
+        of_set = card.keyword.endswith("_SET")
+        if not of_set and not card.keyword.endswith("_RIGID"):
+            self.leave(card, "motion of nodes, or in axes of its own; that of a rigid part is read")
+            return
         for row in filled(card):
             dof, vad = row.label(1), row.label(2)
             if dof not in (1, 2, 3, 5, 6, 7) or vad not in (0, 2):
@@ -269,9 +274,9 @@ class Deck:
         """Take forces on rigid bodies and on the nodes of sets."""
         of_set = card.keyword == "*LOAD_NODE_SET"
         for row in filled(card):
-            dof = row.label(1)
-            if dof not in (1, 2, 3):
-                self.leave(card, f"force of kind dof = {dof}")
+            dof, axes = row.label(1), row.label(4)
+            if dof not in (1, 2, 3) or axes:
+                self.leave(card, f"force of kind dof = {dof}" + (f" in the axes {axes}" if axes else ""))
                 continue
             scale = row.number(3, 1.0) or 1.0
             self.drives.append(Drive(row.label(0), dof - 1, "force", row.label(2), scale, row.place, of_set=of_set))

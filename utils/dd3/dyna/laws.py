@@ -2,6 +2,7 @@
 """Materials of LS-DYNA as laws of *MATERIAL."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -77,18 +78,24 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     law = Law(young, poisson, "von_mises", "")
     readers[number](deck, card, units, law)
     if number in (36, 122, 133):
-        law.rolling = rolling(card, {36: 2, 122: 2, 133: 4}[number], axes, law)
+        at = 2 if number != 133 else 4 if first.number(4) else 3  # the row of AOPT
+        law.rolling = rolling(card, at, axes, law)
     return law
 
 
-def positive(value: float, name: str, place: str, expected: str = "a number > 0") -> float:
+def positive(value: float, name: str, place: str) -> float:
     """Return a value; a Problem unless it is positive."""
     if not value > 0:
-        raise Problem(f"{place}: error: {name} = {value:g}; expected {expected}")
+        raise Problem(f"{place}: error: {name} = {value:g}; expected a number > 0")
     return value
 
 
-def linear(card: Card, units: Units, law: Law, stress: float, tangent: float, place: str) -> str:
+def hill48(r: Sequence[float]) -> str:
+    """Return Hill's criterion by the r-values at 0, 45 and 90 degrees."""
+    return "hill48 " + " ".join(f"r{angle}={value:.6g}" for angle, value in zip((0, 45, 90), r))
+
+
+def linear(units: Units, law: Law, stress: float, tangent: float, place: str) -> str:
     """Return linear hardening by yield stress and tangent modulus, in units of the deck."""
     stress = positive(stress, "yield stress", place) * units.stress
     tangent *= units.stress
@@ -128,7 +135,7 @@ def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
 def bilinear(deck: Deck, card: Card, units: Units, law: Law) -> None:
     """*MAT_003: linear hardening, isotropic by its part beta."""
     row = card.row(0)
-    law.hardening = linear(card, units, law, row.number(4), row.number(5), row.place)
+    law.hardening = linear(units, law, row.number(4), row.number(5), row.place)
     beta = row.number(6)
     if beta < 1 and row.number(5) > 0:
         law.notes.append(f"hardening: isotropic for BETA = {beta:g}; kinematic hardening: `backstress`")
@@ -164,17 +171,17 @@ def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> None:
                   if card.rows[3].number(i)]
         law.hardening = "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in sorted(points))
     else:
-        law.hardening = linear(card, units, law, row.number(4), row.number(5), row.place)
+        law.hardening = linear(units, law, row.number(4), row.number(5), row.place)
 
 
 def transverse(deck: Deck, card: Card, units: Units, law: Law) -> None:
     """*MAT_037: Hill's criterion with one r-value."""
     row = card.row(0)
     r = abs(row.number(6, 1.0)) or 1.0
-    law.criterion = f"hill48 r0={r:g} r45={r:g} r90={r:g}"
+    law.criterion = hill48((r, r, r))
     number = int(abs(row.number(7)))
     law.hardening = by_curve(deck, number, units, law, row.place) if number else linear(
-        card, units, law, row.number(4), row.number(5), row.place)
+        units, law, row.number(4), row.number(5), row.place)
 
 
 def r_values(card: Card, at: int, first: int) -> tuple[float, float, float]:
@@ -199,14 +206,14 @@ def by_rule(deck: Deck, card: Card, units: Units, law: Law, curve_at: int) -> st
             start = first_strain(given, factor, exponent, law.young / units.stress)
         return swift(units, law, (factor, exponent, start), row.place)
     if rule in (0, 1):
-        return linear(card, units, law, row.number(6), row.number(5), row.place)
+        return linear(units, law, row.number(6), row.number(5), row.place)
     raise Problem(f"{row.place}: error: the hardening rule HR = {rule} is not read; expected 1, 2 or 3")
 
 
 def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> None:
     """*MAT_036: Barlat and Lian (1989) of exponent m; of m = 2 it is Hill's criterion in plane stress."""
     r = r_values(card, 1, 1)
-    law.criterion = "hill48 " + " ".join(f"r{angle}={value:g}" for angle, value in zip((0, 45, 90), r))
+    law.criterion = hill48(r)
     exponent = card.row(1).number(0)
     if abs(exponent - 2) > 1e-6:
         law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
@@ -218,7 +225,7 @@ def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> None:
 def hill(deck: Deck, card: Card, units: Units, law: Law) -> None:
     """*MAT_122: Hill (1948) by r-values."""
     r = r_values(card, 1, 0)
-    law.criterion = "hill48 " + " ".join(f"r{angle}={value:g}" for angle, value in zip((0, 45, 90), r))
+    law.criterion = hill48(r)
     law.hardening = by_rule(deck, card, units, law, 3)
 
 
@@ -238,7 +245,7 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> None:
         if not np.all(np.isfinite(found)) or min(value for _, value in found) <= 0:
             raise Problem(f"{third.place}: error: the coefficients of Yld2000 give no positive r-values")
         stress, r = [value / found[0][0] for value, _ in found], [value for _, value in found]
-    law.criterion = "hill48 " + " ".join(f"r{angle}={value:.5g}" for angle, value in zip((0, 45, 90), r))
+    law.criterion = hill48(r)
     law.notes.append("yield: hill48 with the r-values, in place of Yld2000-2d; nearer: dd3 identify blank --criterion "
                      f"yld2004 --fix m={exponent:g} --r "
                      + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r))
@@ -283,23 +290,24 @@ def yld2000_at(alpha: np.ndarray, exponent: float, angle: float) -> tuple[float,
 
 
 def rolling(card: Card, at: int, axes: np.ndarray, law: Law) -> tuple[float, ...] | None:
-    """Return the rolling direction by AOPT, None where it cannot be read."""
-    if len(card.rows) < at + 3:
-        return None
-    kind = card.rows[at].number(0)
+    """Return the rolling direction by AOPT, in a row of a material; None where it cannot be read."""
+    def numbers(row: int, first: int, count: int) -> np.ndarray:  # rows of defaults at the end of a card may be missing
+        there = row < len(card.rows)
+        return np.array([card.rows[row].number(i) if there else 0.0 for i in range(first, first + count)])
+
+    kind = numbers(at, 0, 1)[0]
     edge, normal = axes
     if kind == 2:
-        vector = np.array([card.rows[at + 1].number(i) for i in (3, 4, 5)])
+        vector = numbers(at + 1, 3, 3)
     elif kind == 3:
-        vector = np.cross([card.rows[at + 2].number(i) for i in (0, 1, 2)], normal)
-        turn = np.radians(card.rows[at + 2].number(6))
+        vector, turn = np.cross(numbers(at + 2, 0, 3), normal), np.radians(numbers(at + 2, 6, 1)[0])
         vector = np.cos(turn) * vector + np.sin(turn) * np.cross(normal, vector)
     elif kind == 0:
         vector = edge
+        law.notes.append("rolling direction: AOPT = 0, along the first edge of the blank's first element")
     else:
-        law.notes.append(f"rolling direction: AOPT = {kind:g} is not read; it is along x")
-        return None
+        vector = np.zeros(3)
     if np.linalg.norm(vector) < 1e-12:
-        law.notes.append(f"rolling direction: the vector of AOPT = {kind:g} is 0; it is along x")
+        law.notes.append(f"rolling direction: AOPT = {kind:g} is not read, or its vector is 0; it is along x")
         return None
     return tuple(float(value) for value in vector / np.linalg.norm(vector))

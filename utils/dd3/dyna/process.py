@@ -9,7 +9,8 @@ import numpy as np
 from dd3.dyna.deck import Deck, Drive
 from dd3.errors import Problem
 
-STILL = 1e-6  # velocity over the largest one, displacement over the largest one, that count as none
+STILL = 1e-6  # displacement in a stage over that of the whole process that counts as none
+SLOW = 1e-3  # velocity over the largest one of a tool that counts as none
 SAME = 1e-3  # distance of times, over the time of the whole process, that count as one
 MOST_KINKS = 8  # points of a curve of a force that divide the process
 SAMPLES = 400  # of a curve between its points
@@ -88,18 +89,13 @@ def stages(deck: Deck, drives: Iterable[Drive]) -> list[Stage]:
                 (stage.turns if turns else stage.moves).setdefault(tool, np.zeros(3))[axis] += change
         for drive in drives:
             if drive.kind == "force":
-                value = drive.scale * np.interp(last, *points_of(deck, drive))
+                curve = deck.curve(drive.curve, drive.place)
+                value = drive.scale * np.interp(last, curve.x, curve.y)
                 if value:
                     target = stage.loads if drive.of_set else stage.forces
                     target.setdefault(drive.target, np.zeros(3))[drive.axis] += value
         found.append(stage)
     return merged(found)
-
-
-def points_of(deck: Deck, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points of the curve of a drive."""
-    curve = deck.curve(drive.curve, drive.place)
-    return curve.x, curve.y
 
 
 def points_in_time(deck: Deck, drive: Drive, end: float) -> np.ndarray:
@@ -114,7 +110,7 @@ def breaks(times: np.ndarray, moved: dict, others: list[float]) -> list[float]:
     found = list(others)
     for path in moved.values():
         rate = np.abs(np.diff(path)) / np.diff(times)
-        moving = rate > 1e-3 * max(rate.max(initial=0.0), 1e-300)
+        moving = rate > SLOW * max(rate.max(initial=0.0), 1e-300)
         for i in np.flatnonzero(np.diff(np.concatenate([[False], moving, [False]]).astype(int))):
             found.append(float(times[i]))
     result: list[float] = []
