@@ -73,7 +73,7 @@ def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, 
             shift = moved.shift_of(model.labels.ravel(), normals.reshape(-1, 3), options.offset)
             surface.net = cad.surface_of(model, model.nodes + shift.reshape(model.nodes.shape)).net
             surface.net = turn(surface.net, sign[kept])
-            distance = cad.measure(gmsh, model, surface.net, options.offset)
+            distance = cad.by_face(model, cad.distances(gmsh, model, surface.net, options.offset).max(axis=1))
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 

@@ -29,6 +29,7 @@ from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
 from dd3.tools.division import Division
 from dd3.tools.joints import find_joints, folded, kinks, to_chords
 from dd3.tools.limits import limited
+from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.report import MOST_NAMES, REACH, up
 from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
@@ -37,6 +38,8 @@ SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
 NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
 MOST_ROUNDS = 8
+# Failures in a row that Gmsh blames on no face, after which it is given up.
+MOST_FAILURES = 3
 # Patches of a face beyond which it is not divided further.
 MOST_PATCHES = 2000
 # Kink inside a face above which it is divided further, degrees, in this many rounds.
@@ -46,6 +49,8 @@ KINK, KINK_ROUNDS = 0.5, 2
 READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
 # Part of the largest distance above which a face that closes in itself is cut.
 WORST = 0.1
+# Part of the largest distance below which that between nodes of a line says nothing of the direction.
+SMALL_SHARE = 0.1
 # Points of the distance: between the nodes.
 PLACES = grid(5)
 
@@ -53,12 +58,14 @@ PLACES = grid(5)
 @dataclass
 class Model:
     """What was meshed: patches' nodes (patch, v, u, 3), their parameters on the CAD's face (patch, v, u, 2; NaN where
-    unknown), node numbers and faces; per face its tag, its name and its largest distance from the CAD, mm."""
+    unknown), node numbers and faces, and the edge of its face that u runs along (see `directions`); per face its tag, its
+    name and its largest distance from the CAD, mm."""
 
     nodes: np.ndarray = field(default_factory=lambda: np.empty(0))
     uv: np.ndarray = field(default_factory=lambda: np.empty(0))
     labels: np.ndarray = field(default_factory=lambda: np.empty(0))
     face: np.ndarray = field(default_factory=lambda: np.empty(0))
+    along: np.ndarray = field(default_factory=lambda: np.empty(0))
     tags: list = field(default_factory=list)
     names: list = field(default_factory=list)
     distance: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -263,12 +270,12 @@ def collect(gmsh: Any, model: Model) -> None:
     model.nodes = xyz[place[model.labels]]
 
 
-def measure(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.ndarray:
-    """Return the largest distance of the patches from the CAD for each face, mm.
+def distances(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.ndarray:
+    """Return the distances of the patches from the CAD at PLACES (patch, 25), mm.
 
-    With a shift, the distance from the surface at that distance along the patches' normals.
+    With a shift, the distances from the surface at that distance along the patches' normals.
     """
-    distance = np.zeros(len(model.tags))
+    distance = np.zeros((len(net), len(PLACES[0])))
     for index, tag in enumerate(model.tags):
         chosen = np.flatnonzero(model.face == index)
         if not len(chosen):
@@ -278,10 +285,38 @@ def measure(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.
         if shift:
             normal = areas_at(net[chosen], *PLACES)
             normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-300)
-            distance[index] = np.abs(((point - foot) * normal).sum(axis=2) - shift).max()
+            distance[chosen] = np.abs(((point - foot) * normal).sum(axis=2) - shift)
         else:
-            distance[index] = np.linalg.norm(foot - point, axis=2).max()
+            distance[chosen] = np.linalg.norm(foot - point, axis=2)
     return distance
+
+
+def by_face(model: Model, values: np.ndarray) -> np.ndarray:
+    """Return the largest value of the patches (patch,) of each face, 0 for a face without patches."""
+    result = np.zeros(len(model.tags))
+    np.maximum.at(result, model.face, values)
+    return result
+
+
+def by_direction(model: Model, in_u: np.ndarray, in_v: np.ndarray) -> np.ndarray:
+    """Return the largest of the values along u and v of the patches, along the first and the second edge of each face
+    (face, 2); without a regular mesh the larger one for both."""
+    first = np.choose(model.along + 1, [np.maximum(in_u, in_v), in_u, in_v])
+    second = np.choose(model.along + 1, [np.maximum(in_u, in_v), in_v, in_u])
+    return np.stack([by_face(model, first), by_face(model, second)], axis=1)
+
+
+def directional(model: Model, distance: np.ndarray) -> np.ndarray:
+    """Return the largest distance of each face, divided between its first and its second edge (face, 2), mm: the larger
+    share is the whole of it.
+
+    The distance between nodes of a line along u is due to the divisions along u.
+    """
+    square = distance.reshape(-1, 5, 5)
+    share = by_direction(model, square[:, ::2, 1::2].max(axis=(1, 2)), square[:, 1::2, ::2].max(axis=(1, 2)))
+    larger = share.max(axis=1)
+    share[larger < SMALL_SHARE * model.distance] = 1.0
+    return share * (model.distance / np.maximum(share.max(axis=1), 1e-300))[:, None]
 
 
 def normals(gmsh: Any, model: Model) -> np.ndarray:
@@ -303,35 +338,70 @@ def middle_normals(model: Model) -> np.ndarray:
     return np.cross(nodes[:, 1, 2] - nodes[:, 1, 0], nodes[:, 2, 1] - nodes[:, 0, 1])
 
 
-def worst_kinks(net: np.ndarray, face: np.ndarray, count: int) -> np.ndarray:
-    """Return the largest kink inside each face, degrees."""
+def worst_kinks(model: Model, net: np.ndarray) -> np.ndarray:
+    """Return the largest kink inside each face that divisions along its first and its second edge leave (face, 2),
+    degrees."""
     joints = find_joints(net)
     angle = kinks(net, joints)
-    a, b = face[joints.first // 4], face[joints.second // 4]
-    result = np.zeros(count)
-    np.maximum.at(result, a[a == b], angle[a == b])
-    return result
+    inside = model.face[joints.first // 4] == model.face[joints.second // 4]
+    in_u, in_v = np.zeros(len(net)), np.zeros(len(net))
+    for edge in (joints.first, joints.second):
+        # Edges 1 and 3 are where u ends.
+        for values, chosen in ((in_u, inside & (edge % 2 == 1)), (in_v, inside & (edge % 2 == 0))):
+            np.maximum.at(values, edge[chosen] // 4, angle[chosen])
+    return by_direction(model, in_u, in_v)
+
+
+def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list[int]]) -> np.ndarray:
+    """Return for each patch 0 if its u runs along the first and third edge of its face, 1 if along the others, -1 if
+    the face has no regular mesh.
+
+    Opposite edges of patches form strips, which end at the edges of the face that they are parallel to.
+    """
+    corner = model.labels[:, [0, 0, 2, 2], [0, 2, 2, 0]]
+    ends = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+    strip = 2 * np.repeat(np.arange(len(corner)), 4) + np.tile([0, 1], 2 * len(corner))
+    _, edge = np.unique(ends, axis=0, return_inverse=True)
+    face = np.repeat(model.face, 4)
+    order = np.lexsort((face, edge.ravel()))
+    pair = order[:-1][(np.diff(edge.ravel()[order]) == 0) & (np.diff(face[order]) == 0)]
+    other = order[1:][(np.diff(edge.ravel()[order]) == 0) & (np.diff(face[order]) == 0)]
+    group = groups(2 * len(corner), strip[pair], strip[other])
+    along = np.full(len(corner), -1)
+    for index, tag in enumerate(model.tags):
+        if tag not in regular:
+            continue
+        chosen = np.flatnonzero(face == index)
+        for position in (0, 1):
+            nodes = np.concatenate([gmsh.model.mesh.getNodes(1, abs(loops[tag][k]), includeBoundary=True)[0]
+                                    for k in (position, position + 2)])
+            on_edge = chosen[np.isin(ends[chosen], nodes).all(axis=1)]
+            found = np.isin(group[strip[chosen]], group[strip[on_edge]])
+            along[strip[chosen[found]] // 2] = np.where(strip[chosen[found]] % 2 == 0, position, 1 - position)
+    return along
 
 
 def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, progress: Progress) -> None:
     """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
     division = Division(gmsh, model.tags)
-    best, start = None, time.process_time()
+    best, start, failures = None, time.process_time(), 0
     for rounds in range(MOST_ROUNDS):
         failed = mesh_once(gmsh, path, model, division)
         progress((rounds + 1) / MOST_ROUNDS)
         if not failed:
             kink, bent = faults(model, rounds)
-            score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).sum())
+            score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).any(axis=1).sum())
             if best is None or score < best[0]:
                 best = score, model.nodes, model.uv, model.labels, model.face, model.distance
             if not any(score):
                 break
             full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
-            if not division.refine(np.where(full, 0.0, model.distance / tolerance), np.where(full, 0.0, kink / KINK),
+            if not division.refine(np.where(full[:, None], 0.0, division.share / tolerance),
+                                   np.where(full[:, None], 0.0, kink / KINK),
                                    bent - set(np.flatnonzero(full).tolist())):
                 break
-        if time.process_time() - start > MESH_TIME:
+        failures = failures + 1 if len(failed) == len(model.tags) else 0
+        if time.process_time() - start > MESH_TIME or failures == MOST_FAILURES:
             break
     if best is None:
         raise Problem(f"{path}: Gmsh cannot mesh {', '.join(model.names[model.tags.index(tag)] for tag in failed)}; "
@@ -346,15 +416,17 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
         failed = division.mesh(gmsh)
         if not failed:
             collect(gmsh, model)
-            model.distance = measure(gmsh, model, from_nodes(model.nodes))
+            model.along = directions(gmsh, model, division.regular, division.loops)
+            distance = distances(gmsh, model, from_nodes(model.nodes))
+            model.distance = by_face(model, distance.max(axis=1))
+            division.share = directional(model, distance)
     return failed
 
 
 def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
-    """Return the largest kink inside each face, degrees, 0 after the first rounds; and the faces with folds."""
+    """Return the largest kinks inside each face (face, 2), degrees, 0 after the first rounds; and the faces with folds."""
     net = from_nodes(model.nodes)
-    count = len(model.tags)
-    kink = worst_kinks(net, model.face, count) if rounds < KINK_ROUNDS else np.zeros(count)
+    kink = worst_kinks(model, net) if rounds < KINK_ROUNDS else np.zeros((len(model.tags), 2))
     return kink, set(model.face[folded(net)].tolist())
 
 

@@ -12,6 +12,8 @@ CORNERS = 25.0, 155.0
 # Fraction of its last value that the distance of a divided face must fall below; divisions without that before it is
 # given up: rounded up, the division of one edge of a face may stay the same.
 STAGNANT, MOST_STAGNANT = 0.8, 2
+# Rounds with folded patches after which a face has no regular mesh.
+MOST_BENT = 4
 # Points at which an edge is examined.
 SAMPLES = 17
 OPTIONS = {"Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 1, "Mesh.SubdivisionAlgorithm": 1,
@@ -26,13 +28,16 @@ def turning(vectors: np.ndarray) -> float:
 
 
 class Division:
-    """Numbers of divisions of the edges; a factor on them for each face, which `refine` raises."""
+    """Numbers of divisions of the edges; for each face factors on them, along its first and its second edge, which
+    `refine` raises. They are equal for a face without a regular mesh."""
 
     def __init__(self, gmsh: Any, tags: list[int]) -> None:
         self.tags = tags
-        self.factor = dict.fromkeys(tags, 1.0)
+        self.factor = {tag: np.ones(2) for tag in tags}
         self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
+        self.share = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
+        self.bent: defaultdict[Any, int] = defaultdict(int)
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}
         for tag, loop in self.loops.items():
@@ -102,9 +107,10 @@ class Division:
                 widest = max((self.turn[other, tag] / self.length[other] for other in set(map(abs, self.loops[tag]))
                               if self.length[other] > 1e-3 * self.size), default=0.0)
                 count = max(count, widest * self.length[edge] / TURN / 4)
-            if not self.curved[tag] and self.factor[tag] > 1.0:
+            factor = self.factor[tag][self.direction(edge, tag)] if tag in self.regular else self.factor[tag].max()
+            if not self.curved[tag] and factor > 1.0:
                 count = max(count, self.length[edge] / self.size * 4)
-            need[edge] = max(need[edge], int(np.ceil(count * self.factor[tag])))
+            need[edge] = max(need[edge], int(np.ceil(count * factor)))
         group = {edge: edge for edge, _ in self.turn}
 
         def leader(edge: int) -> int:
@@ -122,6 +128,10 @@ class Division:
             largest[leader(edge)] = max(largest[leader(edge)], need[edge])
         return {edge: largest[leader(edge)] for edge in group}
 
+    def direction(self, edge: int, tag: int) -> int:
+        """Return 0 for the first and third edge of a face, 1 for the second and fourth."""
+        return [abs(other) for other in self.loops[tag]].index(edge) % 2
+
     def mesh(self, gmsh: Any) -> list[Any]:
         """Make the mesh of second order; return the faces where that failed, divided further for another try."""
         gmsh.model.mesh.clear()
@@ -136,8 +146,8 @@ class Division:
         for tag in self.regular:
             corners = self.corners[tag]
             gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
-        gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size / self.factor.get(tag, 1.0)
-                                        if dim == 2 else size)
+        gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size / self.factor[tag].max()
+                                        if dim == 2 and tag in self.factor else size)
         try:
             gmsh.model.mesh.generate(2)
         except Exception:  # Gmsh raises nothing more specific
@@ -150,24 +160,32 @@ class Division:
         return []
 
     def refine(self, distance: np.ndarray, kink: np.ndarray, folded: set[int]) -> bool:
-        """Raise the factors of faces whose relative distance or kink exceeds 1, or that have folded patches; return
-        whether any changed."""
+        """Raise the factors of faces whose relative distance or kink (face, direction) exceeds 1, or that have folded
+        patches; return whether any changed."""
         changed = False
         for index, tag in enumerate(self.tags):
-            wanted = 1.0
-            if distance[index] >= STAGNANT * self.last.get(tag, np.inf):
+            wanted = np.ones(2)
+            largest = distance[index].max()
+            if largest >= STAGNANT * self.last.get(tag, np.inf):
                 self.stagnant[tag] += 1
             # A distance that does not fall is a gap of the CAD between edge and face.
-            if distance[index] > 1.0 and self.stagnant[tag] < MOST_STAGNANT:
-                self.last[tag] = distance[index]
-                wanted = float(np.clip(1.1 * distance[index]**0.3, 1.25, 2.5))
-            elif kink[index] > 1.0:
-                wanted = float(np.clip(1.1 * kink[index]**0.5, 1.2, 2.0))
+            if largest > 1.0 and self.stagnant[tag] < MOST_STAGNANT:
+                self.last[tag] = largest
+                wanted = raised(1.1 * distance[index]**0.3, distance[index], 1.25, 2.5)
+            elif kink[index].max() > 1.0:
+                wanted = raised(1.1 * kink[index]**0.5, kink[index], 1.2, 2.0)
             if index in folded:
-                if tag in self.regular and self.factor[tag] > 1.5:
+                self.bent[tag] += 1
+                if self.bent[tag] == MOST_BENT:
                     self.regular.discard(tag)
-                wanted = max(wanted, 1.6)
-            if wanted > 1.0 and self.factor[tag] < 60.0:
+                bent = distance[index] >= largest / 2 if largest > 1.0 else True
+                wanted = np.where(bent, np.maximum(wanted, 1.6), wanted)
+            if wanted.max() > 1.0 and self.factor[tag].max() < 60.0:
                 self.factor[tag] *= wanted
                 changed = True
         return changed
+
+
+def raised(factor: np.ndarray, value: np.ndarray, lowest: float, highest: float) -> np.ndarray:
+    """Return the factors within bounds where the value exceeds 1, and 1 elsewhere."""
+    return np.where(value > 1.0, np.clip(factor, lowest, highest), 1.0)
