@@ -23,7 +23,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem, run
 from dd3.gmsh_session import session
 from dd3.progress import Progress
-from dd3.tools import cad, facets, mend, moved, report, sides
+from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -32,6 +32,8 @@ from dd3.tools.limits import supervised
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
 
+RADIUS = 0.2  # least radius of an offset, over its distance
+DRAW = "draw.dat"  # input file of a set of tools
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
@@ -59,21 +61,14 @@ def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, 
     with session() as gmsh:
         model = cad.read_cad(gmsh, options.source, options, progress)
         surface = cad.surface_of(model)
-        sign, kept, found = face_sheet(surface, find_joints(surface.net), options)
+        sign, kept, found = face_sheet(surface, find_joints(surface.net), options, cad.outward(gmsh, model))
         surface = sides.apply(surface, sign, kept)
         surface.notes += found
         distance = model.distance
         if options.offset:
-            model.nodes, model.uv, model.labels = (part[kept] for part in (model.nodes, model.uv, model.labels))
-            model.face = surface.face
-            normals = cad.normals(gmsh, model)
-            # The normals of the CAD get the sides of the patches.
-            side = np.sign((cad.middle_normals(model) * normals[:, 1, 1]).sum(axis=1)) * sign[kept]
-            normals *= side[:, None, None, None]
-            shift = moved.shift_of(model.labels.ravel(), normals.reshape(-1, 3), options.offset)
-            surface.net = cad.surface_of(model, model.nodes + shift.reshape(model.nodes.shape)).net
-            surface.net = turn(surface.net, sign[kept])
-            distance = cad.by_face(model, cad.distances(gmsh, model, surface.net, options.offset).max(axis=1))
+            known = len(model.notes)
+            surface.net, distance = cad.at_distance(gmsh, model, sign, kept, options.offset, options.radius)
+            surface.notes += model.notes[known:]
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
@@ -123,7 +118,7 @@ def nothing_faces(options: argparse.Namespace) -> Problem:
 def judge_distance(surface: Surface, distance: np.ndarray, options: argparse.Namespace, how: str
                   ) -> tuple[list[tuple[str, str]], list[str]]:
     """Return the line of the report on the distance of each face, and an error if one misses the tolerance."""
-    used = np.unique(surface.face)
+    used = np.unique(surface.face[surface.face < len(distance)])
     largest = distance[used].max()
     lines = [("distance", f"{how}: {1e3 * largest:.2g} µm at most ({surface.names[used[distance[used].argmax()]]})")]
     allowed = max(options.tolerance, options.sew or 0.0)
@@ -137,10 +132,10 @@ def judge_distance(surface: Surface, distance: np.ndarray, options: argparse.Nam
                    f"--tolerance {report.up(distance[order[0]]):g} accepts it"]
 
 
-def face_sheet(surface: Surface, joints: Joints, options: argparse.Namespace
+def face_sheet(surface: Surface, joints: Joints, options: argparse.Namespace, outward: np.ndarray | None = None
               ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Return the signs of the patches, which are kept, and lines for the report."""
-    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options))
+    sign, kept, turned_faces, notes, _, twisted = sides.faced(surface, joints, direction(options), outward)
     if not kept.any():
         raise nothing_faces(options)
     if len(twisted):
@@ -172,7 +167,8 @@ def command_line() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = new_parser("tool", __doc__)
     parser.add_argument("source", type=Path, help="CAD, mesh or shape file")
-    parser.add_argument("target", type=Path, nargs="?", help=".bez file to write; without it there is a report only")
+    parser.add_argument("target", type=Path, nargs="?",
+                        help=".bez file to write, or with --thickness a folder; without it there is a report only")
     parser.add_argument("--toward", type=float, nargs=3, metavar=("X", "Y", "Z"),
                         help="direction from the tool to the sheet: chooses the side of its normals; faces that look "
                              "the other way are left out")
@@ -187,10 +183,26 @@ def command_line() -> argparse.ArgumentParser:
                         help="largest distance from the CAD (0.002); of facets, an estimate (0.02)")
     parser.add_argument("--offset", type=float, default=0.0, metavar="mm",
                         help="move the surface along its normals, towards the sheet if positive")
+    parser.add_argument("--radius", type=float, metavar="mm",
+                        help="least radius of an offset of CAD where that of the CAD is too small for it (a fifth of the "
+                             "offset; with --thickness, the thickness)")
     parser.add_argument("--turn", action="store_true", help="turn the normals at the end: a die from a punch")
     parser.add_argument("--part", action="append", metavar="NAME",
                         help="name or number of a part to take; may be repeated (default: all)")
-    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the patches with their normals")
+    parser.add_argument("--faces", nargs="+", metavar="N", help="numbers of the CAD's faces to take, such as 3 5-8")
+    parser.add_argument("--smooth", action="store_true", help="take all faces too that join those smoothly")
+    parser.add_argument("--picture", type=Path, metavar="PNG", 
+                        help="draw the patches with their normals and the numbers of the CAD's faces")
+    whole = parser.add_argument_group("punch, die and holder of a part of CAD, and an input file that draws it")
+    whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet: makes the tools")
+    whole.add_argument("--clearance", type=float, metavar="mm",
+                       help=f"of punch and die beyond the thickness ({tool_set.CLEARANCE:g} thicknesses)")
+    whole.add_argument("--shoulder", type=float, metavar="mm",
+                       help=f"radius of the die's shoulder ({tool_set.SHOULDER:g} thicknesses)")
+    whole.add_argument("--flange", type=float, metavar="mm",
+                       help=f"width of the flange beyond the shoulder ({tool_set.FLANGE:g} thicknesses)")
+    whole.add_argument("--side", choices=("punch", "die"), default="punch", help="the tool that touches the faces")
+    whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
     return parser
 
 
@@ -204,18 +216,38 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
         raise Problem(f"{options.source}: not a file")
     if not options.source.stat().st_size:
         raise Problem(f"{options.source}: the file is empty")
-    if options.target and options.target.suffix != ".bez":
+    if options.target and not options.thickness and options.target.suffix != ".bez":
         raise Problem(f"{options.target}: the name of a tool surface ends in .bez")
     if options.toward and not np.any(options.toward):
         parser.error("--toward takes a direction")
-    for name in ("scale", "sew", "tolerance"):
+    for name in ("scale", "sew", "tolerance", "radius", "thickness", "shoulder", "flange"):
         if getattr(options, name) is not None and not 0 < getattr(options, name) < np.inf:
             parser.error(f"--{name} takes a positive number")
     if any(not np.any(axis) for *axis, _ in options.rotate):
         parser.error("--rotate takes an axis and an angle")
     options.kind, options.reader = reader_of(options.source)
+    if options.kind != "cad" and (options.thickness or options.faces):
+        parser.error(f"--{'thickness' if options.thickness else 'faces'} takes CAD: {' '.join(CAD)}")
+    options.radius = options.radius or options.thickness or RADIUS * abs(options.offset)
+    if options.thickness:
+        settle_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
     return options
+
+
+def settle_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
+    """Check the options of a set of tools, and set those that were not given."""
+    for name in ("toward", "offset", "turn"):
+        if getattr(options, name):
+            parser.error(f"--{name} is for one tool; with --thickness the punch moves along -z, see --rotate")
+    if options.target and options.target.suffix:
+        raise Problem(f"{options.target}: with --thickness a folder of punch, die, holder and {DRAW}")
+    if options.clearance is not None and not 0 <= options.clearance < np.inf:
+        parser.error("--clearance takes a number that is not negative")
+    for name, factor in (("clearance", tool_set.CLEARANCE), ("shoulder", tool_set.SHOULDER),
+                         ("flange", tool_set.FLANGE)):
+        if getattr(options, name) is None:
+            setattr(options, name, factor * options.thickness)
 
 
 def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
@@ -236,20 +268,59 @@ def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
 def convert(words: Sequence[str]) -> None:
     """Read, judge, write, report."""
     options = arguments(words)
-    surface, joints, result = made(options)
-    if options.picture:
-        from dd3.tools.picture import draw
-        draw(surface, joints, options.picture)
-    if options.target and not result.errors:
-        write(options.target, surface, [f"{options.source.name}: dd3 tool {' '.join(words)}"])
+    command = f"dd3 tool {' '.join(words)}"
+    if options.thickness:
+        reports = make_set(options, command)
+    else:
+        surface, joints, result = made(options)
+        reports = {str(options.target or options.source): result}
+        if options.picture:
+            picture.draw(surface, joints, options.picture)
+        if options.target and not result.errors:
+            write(options.target, surface, [f"{options.source.name}: {command}"])
+    for title, result in reports.items():
+        say(title, options.source, result)
+    if any(result.errors for result in reports.values()):
+        sys.exit(2)
+
+
+def say(title: str, source: Path, result: report.Report) -> None:
+    """Print a report."""
     try:
-        print(options.target or options.source, *result.lines, sep="\n", flush=True)
+        print(title, *result.lines, sep="\n", flush=True)
     finally:  # also where the reader of the report, such as head, has closed the pipe
         for kind, texts in (("warning", result.warnings), ("error", result.errors)):
             for text in texts:
-                print(f"{kind}: {options.source}: {text}", file=sys.stderr)
-    if result.errors:
-        sys.exit(2)
+                print(f"{kind}: {source}: {text}", file=sys.stderr)
+
+
+def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
+    """Write punch, die, holder and the input file of a part; return the reports by the names of the files. Nothing is
+    written if one has errors."""
+    progress = Progress(options.source.name)
+    with session() as gmsh:
+        tools = tool_set.made(gmsh, options, progress)
+    progress.end()
+    folder = options.target or Path()
+    reports = {}
+    for name, surface in tools.surfaces.items():
+        result, joints = report.judge(surface, options, 0)
+        reports[str(folder / f"{name}.bez")] = result
+        if options.picture:
+            picture.draw(surface, joints, options.picture.with_stem(f"{options.picture.stem}_{name}"))
+    lines, errors = judge_distance(tools.surfaces["punch"], tools.distance, options, "measured")
+    first = next(iter(reports.values()))
+    first.errors += errors
+    for line in lines + tools.lines:
+        first.add(*line)
+    if options.target and not any(result.errors for result in reports.values()):
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, surface in tools.surfaces.items():
+            write(folder / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
+        target = folder / DRAW
+        target.write_text(set_deck.deck(options, tools.plan, tools.travel, tools.area, command), encoding="utf-8")
+        reports[str(target)] = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm"])
+    return reports
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -14,7 +14,7 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -24,14 +24,15 @@ from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
 from dd3.progress import Progress
+from dd3.tools import faces, moved, rolling_ball
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
 from dd3.tools.division import Division
-from dd3.tools.joints import find_joints, folded, kinks, to_chords
+from dd3.tools.joints import find_joints, folded, kinks, to_chords, turn
 from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
-from dd3.tools.report import MOST_NAMES, REACH, up
+from dd3.tools.report import REACH, named, up
 from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -47,8 +48,8 @@ KINK, KINK_ROUNDS = 0.5, 2
 # Processor time after which OpenCASCADE and Gmsh are given up, s: reading, sewing, and on top of each for a MB of the
 # file; a mesh of all faces. They do not end on some files.
 READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
-# Part of the largest distance above which a face that closes in itself is cut.
-WORST = 0.1
+# Part of a patch's largest area of a parameter square below which it has no normal.
+FLAT_CORNER = 1e-3
 # Part of the largest distance below which that between nodes of a line says nothing of the direction.
 SMALL_SHARE = 0.1
 # Points of the distance: between the nodes.
@@ -69,6 +70,7 @@ class Model:
     tags: list = field(default_factory=list)
     names: list = field(default_factory=list)
     distance: np.ndarray = field(default_factory=lambda: np.empty(0))
+    solid: bool = False  # all faces belong to solids, whose normals are known to point outwards
     parts: list = field(default_factory=list)
     notes: list = field(default_factory=list)
 
@@ -270,10 +272,10 @@ def collect(gmsh: Any, model: Model) -> None:
     model.nodes = xyz[place[model.labels]]
 
 
-def distances(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> np.ndarray:
+def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None = None) -> np.ndarray:
     """Return the distances of the patches from the CAD at PLACES (patch, 25), mm.
 
-    With a shift, the distances from the surface at that distance along the patches' normals.
+    With a shift of each patch, the distances from the surface at that distance along the patches' normals.
     """
     distance = np.zeros((len(net), len(PLACES[0])))
     for index, tag in enumerate(model.tags):
@@ -282,10 +284,15 @@ def distances(gmsh: Any, model: Model, net: np.ndarray, shift: float = 0.0) -> n
             continue
         point = points_at(net[chosen], *PLACES)
         foot = closest(gmsh, tag, point, model.uv[chosen])[0]
-        if shift:
-            normal = areas_at(net[chosen], *PLACES)
-            normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-300)
-            distance[chosen] = np.abs(((point - foot) * normal).sum(axis=2) - shift)
+        if shift is not None:
+            area = areas_at(net[chosen], *PLACES)
+            length = np.linalg.norm(area, axis=2)
+            # At a corner of 180 degrees a patch has no normal.
+            regular = length > FLAT_CORNER * length.max(axis=1, keepdims=True)
+            height = ((point - foot) * area).sum(axis=2) / np.where(regular, length, 1.0)
+            away = np.linalg.norm(point - foot, axis=2)
+            wanted = shift[chosen, None]
+            distance[chosen] = np.abs(np.where(regular, height - wanted, away - np.abs(wanted)))
         else:
             distance[chosen] = np.linalg.norm(foot - point, axis=2)
     return distance
@@ -327,8 +334,10 @@ def normals(gmsh: Any, model: Model) -> np.ndarray:
         if len(chosen):
             points = model.nodes[chosen].reshape(-1, 9, 3)
             uv = closest(gmsh, tag, points, model.uv[chosen], at_nodes=True)[1]
-            normal = np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3, 3, 3))
-            result[chosen] = normal
+            result[chosen] = np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3, 3, 3))
+    # At a pole Gmsh may give the other side.
+    flipped = (result * result[:, 1:2, 1:2]).sum(axis=3) < 0
+    result[flipped] *= -1
     return result
 
 
@@ -440,11 +449,17 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
         gmsh.model.occ.synchronize()
     refuse_gaps(gmsh, path, options.sew)
     model.parts = part_names(gmsh)
-    tags = choose(path, model.parts, options.part)
+    tags = faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
+    in_solids = {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False,
+                                                               oriented=False)}
+    if options.thickness and not options.faces and set(tags) <= in_solids:
+        # The side of a sheet that the punch touches, which comes from above.
+        tags = faces.upper_side(gmsh, tags, moved.rotation(options.rotate).T @ (0, 0, 1))
     twins = doubled(gmsh, tags)
     if twins:
         model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
     model.tags = [tag for tag in tags if tag not in {twin for twin, _ in twins}]
+    model.solid = set(model.tags) <= in_solids
     others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]
     owner = {tag: name for name, faces in model.parts for tag in faces}
     model.names = [f"face {tag} ({gmsh.model.getType(2, tag)}"
@@ -453,16 +468,12 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     gmsh.model.removeEntities(others)
     tolerance = max(options.tolerance, options.sew or 0.0)
     around = {tag: planes for tag in model.tags if (planes := planes_through_pole(gmsh, tag))}
-    if around:
-        cut_closed(gmsh, path, model, list(around), list(chain.from_iterable(around.values())))
+    closed = [tag for tag in model.tags if tag not in around and is_closed(gmsh, tag)]
+    boxes = [np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3)) for tag in closed]
+    if around or closed:
+        cut_closed(gmsh, path, model, [*around, *closed], [*chain.from_iterable(around.values()),
+                                                           *planes_through(boxes)])
     mesh_within(gmsh, path, model, tolerance, progress)
-    # The worst faces: the others gain from the same cuts.
-    limit = max(tolerance, WORST * model.distance.max())
-    closed = [tag for tag, distance in zip(model.tags, model.distance) if distance > limit and is_closed(gmsh, tag)]
-    if closed:
-        boxes = [np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3)) for tag in closed]
-        cut_closed(gmsh, path, model, closed, planes_through(boxes))
-        mesh_within(gmsh, path, model, tolerance, progress)
     return model
 
 
@@ -473,9 +484,9 @@ def cut_closed(gmsh: Any, path: Path, model: Model, closed: list[int], planes: l
     with silence(), limited(allowed(SEW_TIME, path), f"{path}: faces that close in themselves are not cut in "
                             f"{allowed(SEW_TIME, path):.0f} s of processor time; cut them in the CAD program"):
         parts = cut(gmsh, model.tags, planes)
+    model.solid = False  # the parts have sides of their own
     model.notes.append("faces that close in themselves were cut: "
-                       + ", ".join(model.names[model.tags.index(tag)] for tag in closed[:MOST_NAMES])
-                       + (f" and {len(closed) - MOST_NAMES} more" if len(closed) > MOST_NAMES else ""))
+                       + named(model, [model.tags.index(tag) for tag in closed]))
     model.names = [name for name, part in zip(model.names, parts) for _ in part]
     model.tags = [tag for part in parts for tag in part]
 
@@ -483,3 +494,45 @@ def cut_closed(gmsh: Any, path: Path, model: Model, closed: list[int], planes: l
 def surface_of(model: Model, nodes: np.ndarray | None = None) -> Surface:
     """Return the surface of a model, or with its nodes moved."""
     return Surface(from_nodes(model.nodes if nodes is None else nodes), model.face, model.names, list(model.notes))
+
+
+def outward(gmsh: Any, model: Model) -> np.ndarray | None:
+    """Return the signs that turn the patches of solids outwards; None if faces belong to no solid."""
+    if not model.solid:
+        return None
+    return np.where((middle_normals(model) * normals(gmsh, model)[:, 1, 1]).sum(axis=1) < 0, -1, 1)
+
+
+def at_distance(gmsh: Any, model: Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float
+               ) -> tuple[np.ndarray, np.ndarray]:
+    """Return the patches that are kept, turned by their signs and moved along their normals, and the largest distance
+    of each face from the surface at that distance of the CAD, mm.
+
+    Where the CAD is too sharply curved for it the surface has at least `radius`, see `rolling_ball`; a note tells the
+    faces.
+    """
+    part = replace(model, nodes=model.nodes[kept], uv=model.uv[kept], labels=model.labels[kept], face=model.face[kept])
+    normal = normals(gmsh, part)
+    # The normals of the CAD get the sides of the patches.
+    side = np.sign((middle_normals(part) * normal[:, 1, 1]).sum(axis=1)) * sign[kept]
+    normal *= side[:, None, None, None]
+    shift = moved.shift_of(part.labels.ravel(), normal.reshape(-1, 3), distance).reshape(part.nodes.shape)
+    net = from_nodes(part.nodes + shift)
+    off = distances(gmsh, part, net, distance * sign[kept]).max(axis=1)
+    # From here on the patches face the side to which they move.
+    flip = sign[kept] * np.sign(distance) < 0
+    nodes, ahead, labels = part.nodes.copy(), normal * np.sign(distance), part.labels.copy()
+    for array in (nodes, ahead, labels):
+        array[flip] = array[flip][:, :, ::-1]
+    ball = rolling_ball.rolled(nodes, ahead, labels, part.face, abs(distance), radius)
+    if ball is not None:
+        small = np.unique(part.face[ball.fillet])
+        model.notes.append((f"least radius {radius:g} mm in place of smaller ones: " if ball.rests else
+                            f"radii smaller than {radius:g} mm are left, as a ball finds no rest there: ")
+                           + named(model, small))
+        if ball.changed.any():
+            changed = from_nodes(ball.nodes[ball.changed])
+            off[ball.changed] = rolling_ball.deviation(changed, nodes, PLACES, abs(distance), radius).max(axis=1)
+            ball.nodes[flip] = ball.nodes[flip][:, :, ::-1]
+            net[ball.changed] = from_nodes(ball.nodes)[ball.changed]
+    return turn(net, sign[kept]), by_face(part, off)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picture of a tool's patches with their normals. No display is needed."""
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from dd3.tools.joints import EDGES, Joints, box_of
 from dd3.tools.surface import Surface, areas_at, grid, points_at
 
 MOST_ARROWS = 1500
+MOST_LABELS = 300
 POINTS = 5  # on a side of a patch
 COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6", "#a68d93", "#8da6a1"]
 MULTIPLE, FREE, JOINED = "#d62728", "#1f3fb4", "#555555"
@@ -47,6 +49,21 @@ def arrows(pv: Any, net: np.ndarray, size: float) -> Any:
     return cloud.glyph(orient="normal", scale=False, factor=0.03 * size, geom=arrow)
 
 
+def labels(surface: Surface) -> tuple[np.ndarray, list[str]]:
+    """Return the numbers of the CAD's faces and places on them, in the patches nearest to their middles."""
+    half = np.array([0.5])
+    middle = points_at(surface.net, half, half)[:, 0]
+    places, numbers = [], []
+    for face in np.unique(surface.face):
+        number = re.match(r"face (\d+)", surface.names[face])
+        chosen = middle[surface.face == face]
+        if number:
+            away = np.linalg.norm(chosen - chosen.mean(axis=0), axis=1)
+            places.append(chosen[away.argmin()])
+            numbers.append(number[1])
+    return np.array(places), numbers
+
+
 def draw(surface: Surface, joints: Joints, path: Path) -> None:
     """Write the picture: faces in colours, free edges blue, those of more than two patches red, normals as arrows."""
     import pyvista as pv
@@ -66,6 +83,10 @@ def draw(surface: Surface, joints: Joints, path: Path) -> None:
             plotter.add_mesh(lines(pv, surface.net, edges), color=paint, line_width=width)
     low, high = box_of(surface.net)
     plotter.add_mesh(arrows(pv, surface.net, float(np.linalg.norm(high - low))), color="#e07b00")
+    places, numbers = labels(surface)
+    if 1 < len(numbers) <= MOST_LABELS:
+        plotter.add_point_labels(places, numbers, font_size=15, bold=False, shape_color="white", shape_opacity=0.7,
+                                 show_points=False, always_visible=True, margin=1)
     # The camera looks at the side of the normals.
     half = np.array([0.5])
     above = areas_at(surface.net, half, half)[:, 0, 2].sum() >= 0

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -14,6 +15,12 @@ REACH = 1.0  # largest distance of free edges that count as a near miss, mm
 SHARP = 5.0  # kinks above this are edges of the tool, degrees
 CREASE = 0.3  # kinks above this are no smooth joints for the program, degrees
 MOST_NAMES = 6
+
+
+class Named(Protocol):
+    """What has names of faces."""
+
+    names: list
 
 
 @dataclass
@@ -35,8 +42,8 @@ def plural(count: int, word: str) -> str:
     return f"{count} {word if count == 1 else many}"
 
 
-def named(surface: Surface, faces: Iterable[int]) -> str:
-    """Return the names of faces, the first few of many."""
+def named(surface: Named, faces: Iterable[int]) -> str:
+    """Return the names of faces of a surface or a model, the first few of many."""
     names = list(dict.fromkeys(surface.names[face] for face in faces))
     return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
 

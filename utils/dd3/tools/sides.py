@@ -58,17 +58,22 @@ def settle(area: np.ndarray, centre: np.ndarray, face: np.ndarray, sign: np.ndar
     return sign, kept, sorted(turned_faces), notes
 
 
-def faced(surface: Surface, joints: Joints, toward: np.ndarray | None
+def faced(surface: Surface, joints: Joints, toward: np.ndarray | None, outward: np.ndarray | None = None
           ) -> tuple[np.ndarray, np.ndarray, list[int], list[str], np.ndarray, np.ndarray]:
-    """Return signs, kept patches, turned faces, notes, bodies and twisted joints of a surface."""
+    """Return signs, kept patches, turned faces, notes, bodies and twisted joints of a surface.
+
+    The signs `outward` of the patches of a solid, where they are known, count for more than the joints.
+    """
     sign, body, twisted = orient(surface.net, joints)
+    if outward is not None:
+        sign, twisted = outward, twisted[:0]
     is_open = np.zeros(body.max() + 1, bool)
     is_open[body[joints.free // 4]] = True
     is_open[body[joints.multiple // 4]] = True
     centre = points_at(surface.net, np.array([0.5]), np.array([0.5]))[:, 0]
     sign, kept, turned_faces, notes = settle(area_vectors(surface.net), centre, surface.face, sign, body, is_open,
                                              toward)
-    return sign, kept, turned_faces, notes, body, twisted
+    return sign, kept, turned_faces if outward is None else [], notes, body, twisted
 
 
 def apply(surface: Surface, sign: np.ndarray, kept: np.ndarray) -> Surface:

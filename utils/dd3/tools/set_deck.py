@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Input file that draws a part with the tools that were made of it, and releases it."""
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from dd3.errors import Problem
+from dd3.tools.blocks import read_blocks
+
+# Elements along the shorter side of the blank; length of an element over the thickness at least.
+ELEMENTS, SHORTEST = 40, 2.0
+# Pressure of the holder, MPa.
+PRESSURE = 2.0
+# Distance of the blank from the border of the flange, over the thickness.
+INSET = 2.0
+STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
+*MATERIAL steel
+  young = 2.1e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = swift K=530 Y0=150 n=0.22"""
+DECK = """# Draws {part} and releases it: tools of dd3 tool {words}
+# The flange of the die is at z = 0; the punch starts at the blank and moves down.
+*TITLE
+  {part}
+
+*PARAMETER
+  tools = .             # folder of the tools
+  thickness = {thickness}
+  divisions = {divisions}
+  points = 5            # through the thickness
+  depth = {travel}
+  holder = {holder}     # N, {pressure:g} MPa on the flange
+  friction = 0.1
+
+{material}
+
+*BLANK sheet
+  origin = {origin} 0
+  size = {size} ${{thickness}}
+  divisions = ${{divisions}}
+  element = solid_shell
+  thickness_points = ${{points}}
+  material = {name}
+
+*TOOL punch
+  patches = "${{tools}}/punch.bez"
+  friction = ${{friction}}
+  contact = z_max
+
+*TOOL die
+  patches = "${{tools}}/die.bez"
+  friction = ${{friction}}
+  contact = z_min
+
+*TOOL holder
+  patches = "${{tools}}/holder.bez"
+  friction = ${{friction}}
+  contact = z_max
+
+*CONTACT
+
+# The middle of the blank does not move sideways.
+*SET middle
+  near = {middle} 0
+
+*BOUNDARY middle
+  set = middle
+  fix = x y
+
+*PHASE clamp
+  control = load
+  trial = 1.0
+  hold = die
+  hold = punch
+  press = holder 0 0 ${{holder}}
+
+*PHASE draw
+  control = punch
+  trial = 1.0
+  move = punch 0 0 -${{depth}}
+
+*PHASE springback
+  unload = on
+
+*OUTPUT
+  fields = every 5 mm
+"""
+
+
+def deck(options: argparse.Namespace, plan: np.ndarray, travel: float, area: float, words: list[str]) -> str:
+    """Return the input file: box of the flange in plan (2, 2), travel of the punch (mm), area of the flange (mm2)."""
+    low, high = plan[0] + INSET * options.thickness, plan[1] - INSET * options.thickness
+    length = max(SHORTEST * options.thickness, float((high - low).min()) / ELEMENTS)
+    divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
+    material, name = STEEL, "steel"
+    if options.material:
+        name = material_in(options.material)
+        material = f"*INCLUDE {options.material.resolve()}"
+    return DECK.format(part=options.source.stem, words=" ".join(words), thickness=f"{options.thickness:g}",
+                       divisions=f"{divisions[0]} {divisions[1]} 1", travel=f"{travel:.6g}",
+                       holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=material, name=name,
+                       origin=pair(low), size=pair(high - low), middle=pair((low + high) / 2))
+
+
+def pair(values: np.ndarray) -> str:
+    """Return two numbers as words."""
+    return " ".join(f"{value + 0.0:.6g}" for value in np.round(values, 9))
+
+
+def material_in(path: Path) -> str:
+    """Return the name of the material of a file."""
+    if not path.is_file():
+        raise Problem(f"{path}: no such file")
+    names = [block.name for block in read_blocks(path) if block.keyword == "material"]
+    if len(names) != 1:
+        raise Problem(f"{path}: expected one *MATERIAL, found {len(names)}")
+    return names[0]
