@@ -27,7 +27,7 @@ from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
-from dd3.tools.joints import Joints, find_joints, turn
+from dd3.tools.joints import Joints, find_joints
 from dd3.tools.limits import supervised
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
@@ -184,14 +184,14 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--offset", type=float, default=0.0, metavar="mm",
                         help="move the surface along its normals, towards the sheet if positive")
     parser.add_argument("--radius", type=float, metavar="mm",
-                        help="least radius of an offset of CAD where that of the CAD is too small for it (a fifth of the "
-                             "offset; with --thickness, the thickness)")
+                        help="least radius of an offset of CAD where that of the CAD is too small for it (a fifth of "
+                             "the offset; with --thickness, the thickness)")
     parser.add_argument("--turn", action="store_true", help="turn the normals at the end: a die from a punch")
     parser.add_argument("--part", action="append", metavar="NAME",
                         help="name or number of a part to take; may be repeated (default: all)")
     parser.add_argument("--faces", nargs="+", metavar="N", help="numbers of the CAD's faces to take, such as 3 5-8")
     parser.add_argument("--smooth", action="store_true", help="take all faces too that join those smoothly")
-    parser.add_argument("--picture", type=Path, metavar="PNG", 
+    parser.add_argument("--picture", type=Path, metavar="PNG",
                         help="draw the patches with their normals and the numbers of the CAD's faces")
     whole = parser.add_argument_group("punch, die and holder of a part of CAD, and an input file that draws it")
     whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet: makes the tools")
@@ -297,6 +297,7 @@ def say(title: str, source: Path, result: report.Report) -> None:
 def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
     """Write punch, die, holder and the input file of a part; return the reports by the names of the files. Nothing is
     written if one has errors."""
+    material = set_deck.material_in(options.material)
     progress = Progress(options.source.name)
     with session() as gmsh:
         tools = tool_set.made(gmsh, options, progress)
@@ -318,7 +319,8 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         for name, surface in tools.surfaces.items():
             write(folder / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
         target = folder / DRAW
-        target.write_text(set_deck.deck(options, tools.plan, tools.travel, tools.area, command), encoding="utf-8")
+        text = set_deck.deck(options, material, tools.plan, tools.travel, tools.area, command)
+        target.write_text(text, encoding="utf-8")
         reports[str(target)] = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm"])
     return reports
 

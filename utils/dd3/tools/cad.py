@@ -59,8 +59,8 @@ PLACES = grid(5)
 @dataclass
 class Model:
     """What was meshed: patches' nodes (patch, v, u, 3), their parameters on the CAD's face (patch, v, u, 2; NaN where
-    unknown), node numbers and faces, and the edge of its face that u runs along (see `directions`); per face its tag, its
-    name and its largest distance from the CAD, mm."""
+    unknown), node numbers and faces, and the edge of its face that u runs along (see `directions`); per face its tag,
+    its name and its largest distance from the CAD, mm."""
 
     nodes: np.ndarray = field(default_factory=lambda: np.empty(0))
     uv: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -433,7 +433,8 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
 
 
 def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
-    """Return the largest kinks inside each face (face, 2), degrees, 0 after the first rounds; and the faces with folds."""
+    """Return the largest kinks inside each face (face, 2), degrees, 0 after the first rounds; and the faces with
+    folds."""
     net = from_nodes(model.nodes)
     kink = worst_kinks(model, net) if rounds < KINK_ROUNDS else np.zeros((len(model.tags), 2))
     return kink, set(model.face[folded(net)].tolist())
@@ -453,8 +454,9 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     in_solids = {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False,
                                                                oriented=False)}
     if options.thickness and not options.faces and set(tags) <= in_solids:
-        # The side of a sheet that the punch touches, which comes from above.
-        tags = faces.upper_side(gmsh, tags, moved.rotation(options.rotate).T @ (0, 0, 1))
+        # The punch touches a sheet from above.
+        up = (0, 0, -1 if options.side == "die" else 1)
+        tags = faces.side_of_sheet(gmsh, tags, moved.rotation(options.rotate).T @ up)
     twins = doubled(gmsh, tags)
     if twins:
         model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
@@ -469,10 +471,9 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     tolerance = max(options.tolerance, options.sew or 0.0)
     around = {tag: planes for tag in model.tags if (planes := planes_through_pole(gmsh, tag))}
     closed = [tag for tag in model.tags if tag not in around and is_closed(gmsh, tag)]
-    boxes = [np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3)) for tag in closed]
     if around or closed:
-        cut_closed(gmsh, path, model, [*around, *closed], [*chain.from_iterable(around.values()),
-                                                           *planes_through(boxes)])
+        through = [*around.values(), *(planes_through(gmsh, tag) for tag in closed)]
+        cut_closed(gmsh, path, model, [*around, *closed], list(chain.from_iterable(through)))
     mesh_within(gmsh, path, model, tolerance, progress)
     return model
 

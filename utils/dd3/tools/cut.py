@@ -14,12 +14,14 @@ CIRCLE_POINTS = 16
 
 
 def is_closed(gmsh: Any, tag: int) -> bool:
-    """Tell whether a curved face has an edge that ends where it begins."""
+    """Tell whether a curved face has an edge that ends where it begins, and others than seams: Gmsh fails on the parts
+    of a whole torus."""
     if gmsh.model.getType(2, tag) == "Plane":
         return False
-    edges = {abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False)}
-    return any(len({point for _, point in gmsh.model.getBoundary([(1, edge)], combined=False)}) < 2
-               and gmsh.model.occ.getMass(1, edge) > 1e-9 for edge in edges)
+    edges = [abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
+    edges = [edge for edge in edges if gmsh.model.occ.getMass(1, edge) > 1e-9]
+    return any(edges.count(edge) == 1 for edge in edges) and any(
+        len({point for _, point in gmsh.model.getBoundary([(1, edge)], combined=False)}) < 2 for edge in edges)
 
 
 def planes_through_pole(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -44,10 +46,10 @@ def planes_through_pole(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarra
     return [(point, normal / np.linalg.norm(normal)) for normal in (first, np.cross(axis, first))]
 
 
-def planes_through(boxes: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return planes as (point, normal): two through the middle of each box along its shortest side."""
-    return [((low + high) / 2, np.eye(3)[axis]) for low, high in boxes
-            for axis in range(3) if axis != int(np.argmin(high - low))]
+def planes_through(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return two planes as (point, normal) through the middle of the box of a face along its shortest side."""
+    low, high = np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3))
+    return [((low + high) / 2, np.eye(3)[axis]) for axis in range(3) if axis != int(np.argmin(high - low))]
 
 
 def different(planes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -2,6 +2,7 @@
 """Choice of faces of a CAD model: by number, with those that join them smoothly, or the side of a sheet."""
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from dd3.tools.nagata import groups
 
 # Angle between the normals of two faces along their edge below which they join smoothly, degrees.
 SMOOTH = 5.0
+# Part of the largest height above which a side has walls.
+WALLS = 0.5
 # Parts of an edge at which its faces are compared.
 PLACES = np.array([0.2, 0.5, 0.8])
 
@@ -46,7 +49,7 @@ def spans(tags: Sequence[int]) -> str:
     """Return numbers as ranges."""
     ordered = sorted(tags)
     breaks = [0, *(i for i in range(1, len(ordered)) if ordered[i] != ordered[i - 1] + 1), len(ordered)]
-    pairs = [(ordered[a], ordered[b - 1]) for a, b in zip(breaks, breaks[1:])]
+    pairs = [(ordered[a], ordered[b - 1]) for a, b in pairwise(breaks)]
     return " ".join(f"{a}-{b}" if b > a else f"{a}" for a, b in pairs)
 
 
@@ -77,12 +80,22 @@ def joins_smoothly(gmsh: Any, edge: int, first: int, second: int) -> bool:
     return bool((np.abs((a * b).sum(axis=1)) > np.cos(np.radians(SMOOTH))).all())
 
 
-def upper_side(gmsh: Any, tags: list[int], up: np.ndarray) -> list[int]:
-    """Return, of the faces of a solid, the smoothly connected ones that look most in a direction."""
-    def looks(group: set[int]) -> float:
-        return sum(projected(gmsh, tag, up) for tag in group)
+def side_of_sheet(gmsh: Any, tags: list[int], up: np.ndarray) -> list[int]:
+    """Return, of the faces of a solid, the smoothly connected ones that look most in a direction, of those that have
+    walls: of a sheet one of its sides, of a block the side that is not flat."""
+    found = smooth_groups(gmsh, tags)
+    height = [extent(gmsh, group, up) for group in found]
+    with_walls = [group for group, value in zip(found, height) if value > WALLS * max(height)]
+    return sorted(max(with_walls, key=lambda group: sum(projected(gmsh, tag, up) for tag in group)))
 
-    return sorted(max(smooth_groups(gmsh, tags), key=looks))
+
+def extent(gmsh: Any, group: set[int], axis: np.ndarray) -> float:
+    """Return the size of the boxes of faces along an axis, mm."""
+    ends = np.array([gmsh.model.getBoundingBox(2, tag) for tag in group]).reshape(-1, 2, 3)
+    corners = np.stack([ends[:, k, i] for i in range(3) for k in (0, 1)]).reshape(3, 2, -1)
+    low, high = np.minimum(*(corners[:, k] * axis[:, None] for k in (0, 1))), np.maximum(
+        *(corners[:, k] * axis[:, None] for k in (0, 1)))
+    return float(high.sum(axis=0).max() - low.sum(axis=0).min())
 
 
 def projected(gmsh: Any, tag: int, up: np.ndarray) -> float:

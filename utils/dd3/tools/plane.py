@@ -7,7 +7,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools.cad import NINE
 from dd3.tools.division import OPTIONS
 
 # Elements along an outer straight side at least.

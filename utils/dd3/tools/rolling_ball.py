@@ -225,7 +225,8 @@ def extreme(surface: Distance, point: np.ndarray, normal: np.ndarray, reach: flo
 def harmonic(point: np.ndarray, number: np.ndarray, held: np.ndarray, still: np.ndarray, given: np.ndarray
              ) -> np.ndarray:
     """Return displacements of all nodes: those given at the nodes that are held, none at those that are still, far from
-    them and at corners of the border, harmonic between along the lines of nodes of the patches; on the border along it."""
+    them and at corners of the border, harmonic between along the lines of nodes of the patches; on the border along
+    it."""
     pairs = np.concatenate([np.stack([number[:, :, :-1].ravel(), number[:, :, 1:].ravel()], axis=1),
                             np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], axis=1)])
     length = np.linalg.norm(point[pairs[:, 0]] - point[pairs[:, 1]], axis=1)

@@ -8,8 +8,8 @@ import numpy as np
 from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
 
-# Elements along the shorter side of the blank; length of an element over the thickness at least.
-ELEMENTS, SHORTEST = 40, 2.0
+# Elements of the blank at most; length of an element over the thickness, and over the radius of the shoulder, at least.
+ELEMENTS, OF_THICKNESS, OF_SHOULDER = 4000, 2.0, 0.5
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
 # Distance of the blank from the border of the flange, over the thickness.
@@ -20,7 +20,7 @@ STEEL = """# Replace this by your material; dd3 identify makes one from measurem
   poisson = 0.3
   yield = von_mises
   hardening = swift K=530 Y0=150 n=0.22"""
-DECK = """# Draws {part} and releases it: tools of dd3 tool {words}
+DECK = """# Draws {part} and releases it: tools of {command}
 # The flange of the die is at z = 0; the punch starts at the blank and moves down.
 *TITLE
   {part}
@@ -28,7 +28,7 @@ DECK = """# Draws {part} and releases it: tools of dd3 tool {words}
 *PARAMETER
   tools = .             # folder of the tools
   thickness = {thickness}
-  divisions = {divisions}
+  divisions = {divisions}     # elements of {length:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
   holder = {holder}     # N, {pressure:g} MPa on the flange
@@ -89,18 +89,17 @@ DECK = """# Draws {part} and releases it: tools of dd3 tool {words}
 """
 
 
-def deck(options: argparse.Namespace, plan: np.ndarray, travel: float, area: float, words: list[str]) -> str:
-    """Return the input file: box of the flange in plan (2, 2), travel of the punch (mm), area of the flange (mm2)."""
+def deck(options: argparse.Namespace, material: str, plan: np.ndarray, travel: float, area: float, command: str) -> str:
+    """Return the input file: name of the material, box of the flange in plan (2, 2), travel of the punch (mm), area of
+    the flange (mm2), the command that made the tools."""
     low, high = plan[0] + INSET * options.thickness, plan[1] - INSET * options.thickness
-    length = max(SHORTEST * options.thickness, float((high - low).min()) / ELEMENTS)
+    length = max(OF_THICKNESS * options.thickness, OF_SHOULDER * options.shoulder,
+                 float(np.prod(high - low) / ELEMENTS)**0.5)
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
-    material, name = STEEL, "steel"
-    if options.material:
-        name = material_in(options.material)
-        material = f"*INCLUDE {options.material.resolve()}"
-    return DECK.format(part=options.source.stem, words=" ".join(words), thickness=f"{options.thickness:g}",
-                       divisions=f"{divisions[0]} {divisions[1]} 1", travel=f"{travel:.6g}",
-                       holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=material, name=name,
+    include = f"*INCLUDE {options.material.resolve()}" if options.material else STEEL
+    return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
+                       divisions=f"{divisions[0]} {divisions[1]} 1", length=length, travel=f"{travel:.6g}",
+                       holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=include, name=material,
                        origin=pair(low), size=pair(high - low), middle=pair((low + high) / 2))
 
 
@@ -109,8 +108,10 @@ def pair(values: np.ndarray) -> str:
     return " ".join(f"{value + 0.0:.6g}" for value in np.round(values, 9))
 
 
-def material_in(path: Path) -> str:
-    """Return the name of the material of a file."""
+def material_in(path: Path | None) -> str:
+    """Return the name of the material of a file, or of the one that stands in for it."""
+    if path is None:
+        return "steel"
     if not path.is_file():
         raise Problem(f"{path}: no such file")
     names = [block.name for block in read_blocks(path) if block.keyword == "material"]
