@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 from test_tool_surfaces import MESHES, box_distance, convert, die_triangles, make_cad, points_of, read, write_stl
 
-from dd3.tools import nagata
+from dd3.tools import cad, nagata
 
 SIDE = (35, 25)
 

@@ -7,7 +7,7 @@ import gmsh
 import numpy as np
 import pytest
 from helpers import ROOT, call
-from test_tool_surfaces import points_of, read
+from test_tool_surfaces import box_distance, points_of, read
 
 from dd3.tools import cad, faces, plane
 from dd3.tools.joints import find_joints, folded, kinks
@@ -19,7 +19,7 @@ THICKNESS, CLEARANCE, SHOULDER, FLANGE = 1.0, 0.2, 4.0, 15.0
 @pytest.fixture(scope="module")
 def parts(tmp_path_factory):
     """Write the parts: a cup as a sheet, hat profiles, one with a groove, one with a slanted edge, one led along an S
-    by sections."""
+    by sections, a box."""
     folder = tmp_path_factory.mktemp("parts")
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
@@ -61,6 +61,8 @@ def parts(tmp_path_factory):
             sections.append(occ.addWire([curve for _, curve in profile]))
         occ.addThruSections(sections, makeSolid=False)
         save("led")
+        occ.addBox(-30, -20, 0, 60, 40, 20)
+        save("box")
     gmsh.finalize()
     return folder
 
@@ -135,6 +137,34 @@ def test_least_radius(parts, tmp_path):
     planes = (np.abs(y) > 0.8 / np.sqrt(2)) & (np.abs(y) < 4) & (z > 0)
     assert arc.any() and np.abs(np.hypot(y, z - top) - 0.8)[arc].max() < 0.002
     assert planes.any() and np.abs((8 - np.abs(y) - z) / np.sqrt(2) - 1.8)[planes].max() < 0.002
+
+
+def test_sharp_edges(parts, tmp_path):
+    """Check the rounding of a box: arcs at the edges, parts of spheres at the corners; faces of a solid know their
+    sides, and the length of a direction does not matter."""
+    said = call("tool", parts / "box.step", tmp_path / "punch.bez", "--toward", 0, 0, -0.01, "--radius", 4)
+    assert "sharp edges rounded by 4 mm" in said and "turned" not in said and "left out: 1 face" in said, said
+    net = read(tmp_path / "punch.bez")
+    assert not len(folded(net)) and kinks(net, find_joints(net)).max() < 0.5
+    point, normal = points_of(net, 5)
+    distance = box_distance(point, (30, 20), 4, 4, "punch")
+    inner = point[..., 2] < 18
+    assert np.abs(distance[inner]).max() < 0.002, np.abs(distance[inner]).max()
+    ahead = box_distance(point + 1e-3 * normal, (30, 20), 4, 4, "punch")
+    assert (ahead - distance)[inner].min() > 0.99e-3
+    target = tmp_path / "tools"
+    assert "choose those that one tool touches by --faces" in made(parts, "box", target, expect=2)
+    floor = next(number for number in range(1, 7)
+                 if "z 0 to 0 mm" in call("tool", parts / "box.step", "--faces", number))
+    lid = next(number for number in range(1, 7)
+               if "z 20 to 20 mm" in call("tool", parts / "box.step", "--faces", number))
+    chosen = [number for number in range(1, 7) if number not in (floor, lid)]
+    made(parts, "box", target, "--radius", 3, "--faces", floor, *chosen)
+    point, _ = points_of(read(target / "punch.bez"), 5)
+    point[..., 2] -= THICKNESS
+    inner = point[..., 2] < 18
+    assert np.abs(box_distance(point, (30, 20), 3, 3, "punch")[inner]).max() < 0.002
+    assert not len(folded(read(target / "die.bez")))
 
 
 def test_patches(parts, tmp_path):

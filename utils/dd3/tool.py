@@ -65,10 +65,14 @@ def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, 
         surface = sides.apply(surface, sign, kept)
         surface.notes += found
         distance = model.distance
-        if options.offset:
-            known = len(model.notes)
-            surface.net, distance = cad.at_distance(gmsh, model, sign, kept, options.offset, options.radius)
-            surface.notes += model.notes[known:]
+        if options.offset or options.radius:
+            notes = surface.notes
+            # An edge that is sharp for the sheet is concave on the other side of the surface.
+            ahead = int(np.sign(options.offset)) or (1 if options.turn else -1)
+            surface, distance = cad.at_distance(gmsh, model, sign, kept, options.offset,
+                                                options.radius or RADIUS * abs(options.offset), ahead,
+                                                options.tolerance)
+            surface.notes = notes + surface.notes
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
@@ -184,8 +188,8 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--offset", type=float, default=0.0, metavar="mm",
                         help="move the surface along its normals, towards the sheet if positive")
     parser.add_argument("--radius", type=float, metavar="mm",
-                        help="least radius of an offset of CAD where that of the CAD is too small for it (a fifth of "
-                             "the offset; with --thickness, the thickness)")
+                        help="radius of convex sharp edges of CAD, and least radius of its offset where that of the "
+                             "CAD is too small for it (a fifth of the offset; with --thickness, the thickness)")
     parser.add_argument("--turn", action="store_true", help="turn the normals at the end: a die from a punch")
     parser.add_argument("--part", action="append", metavar="NAME",
                         help="name or number of a part to take; may be repeated (default: all)")
@@ -228,7 +232,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     options.kind, options.reader = reader_of(options.source)
     if options.kind != "cad" and (options.thickness or options.faces):
         parser.error(f"--{'thickness' if options.thickness else 'faces'} takes CAD: {' '.join(CAD)}")
-    options.radius = options.radius or options.thickness or RADIUS * abs(options.offset)
+    options.radius = options.radius or options.thickness
     if options.thickness:
         settle_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]

@@ -33,7 +33,7 @@ from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.report import REACH, named, up
-from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
+from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at, turned
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
@@ -456,7 +456,7 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     if options.thickness and not options.faces and set(tags) <= in_solids:
         # The punch touches a sheet from above.
         up = (0, 0, -1 if options.side == "die" else 1)
-        tags = faces.side_of_sheet(gmsh, tags, moved.rotation(options.rotate).T @ up)
+        tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)
     twins = doubled(gmsh, tags)
     if twins:
         model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
@@ -504,13 +504,13 @@ def outward(gmsh: Any, model: Model) -> np.ndarray | None:
     return np.where((middle_normals(model) * normals(gmsh, model)[:, 1, 1]).sum(axis=1) < 0, -1, 1)
 
 
-def at_distance(gmsh: Any, model: Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float
-               ) -> tuple[np.ndarray, np.ndarray]:
+def at_distance(gmsh: Any, model: Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float,
+                ahead: int, tolerance: float) -> tuple[Surface, np.ndarray]:
     """Return the patches that are kept, turned by their signs and moved along their normals, and the largest distance
     of each face from the surface at that distance of the CAD, mm.
 
-    Where the CAD is too sharply curved for it the surface has at least `radius`, see `rolling_ball`; a note tells the
-    faces.
+    Concave radii and sharp edges on one side are at least `radius` then, see `rolling_ball`: on that of the normals
+    with `ahead` = 1, behind them with -1. Sharp edges become a face of their own; notes tell what was changed.
     """
     part = replace(model, nodes=model.nodes[kept], uv=model.uv[kept], labels=model.labels[kept], face=model.face[kept])
     normal = normals(gmsh, part)
@@ -519,21 +519,33 @@ def at_distance(gmsh: Any, model: Model, sign: np.ndarray, kept: np.ndarray, dis
     normal *= side[:, None, None, None]
     shift = moved.shift_of(part.labels.ravel(), normal.reshape(-1, 3), distance).reshape(part.nodes.shape)
     net = from_nodes(part.nodes + shift)
-    off = distances(gmsh, part, net, distance * sign[kept]).max(axis=1)
-    # From here on the patches face the side to which they move.
-    flip = sign[kept] * np.sign(distance) < 0
-    nodes, ahead, labels = part.nodes.copy(), normal * np.sign(distance), part.labels.copy()
-    for array in (nodes, ahead, labels):
+    off = distances(gmsh, part, net, distance * sign[kept] if distance else None).max(axis=1)
+    result = Surface(turn(net, sign[kept]), part.face, list(model.names))
+    # From here on the patches face the side of the ball.
+    flip = sign[kept] * ahead < 0
+    patches = rolling_ball.Patches(part.nodes.copy(), normal * ahead, shift, part.labels.copy())
+    for array in (patches.nodes, patches.normals, patches.shift, patches.labels):
         array[flip] = array[flip][:, :, ::-1]
-    ball = rolling_ball.rolled(nodes, ahead, labels, part.face, abs(distance), radius)
-    if ball is not None:
-        small = np.unique(part.face[ball.fillet])
-        model.notes.append((f"least radius {radius:g} mm in place of smaller ones: " if ball.rests else
-                            f"radii smaller than {radius:g} mm are left, as a ball finds no rest there: ")
-                           + named(model, small))
-        if ball.changed.any():
-            changed = from_nodes(ball.nodes[ball.changed])
-            off[ball.changed] = rolling_ball.deviation(changed, nodes, PLACES, abs(distance), radius).max(axis=1)
-            ball.nodes[flip] = ball.nodes[flip][:, :, ::-1]
-            net[ball.changed] = from_nodes(ball.nodes)[ball.changed]
-    return turn(net, sign[kept]), by_face(part, off)
+    ball = rolling_ball.rolled(patches, part.face, abs(distance), radius, tolerance / 2)
+    if ball is None:
+        return result, by_face(part, off)
+    if ball.fillet.any():
+        result.notes.append((f"least radius {radius:g} mm in place of smaller ones: " if ball.rests else
+                             f"radii smaller than {radius:g} mm are left, as a ball finds no rest there: ")
+                            + named(model, np.unique(part.face[ball.fillet])))
+    if not ball.changed.any():
+        return result, by_face(part, off)
+    new = from_nodes(np.concatenate([ball.nodes[ball.changed], ball.rounding]))
+    away = rolling_ball.deviation(new, patches.nodes, PLACES, abs(distance), radius).max(axis=1)
+    new = new if ahead > 0 else turned(new)
+    changed = int(ball.changed.sum())
+    off[ball.changed] = away[:changed]
+    result.net[ball.changed] = new[:changed]
+    largest = by_face(part, off)
+    if len(ball.rounding):
+        result.notes.append(f"sharp edges rounded by {radius:g} mm: {len(ball.rounding)} patches")
+        result.net = np.concatenate([result.net, new[changed:]])
+        result.face = np.concatenate([result.face, np.full(len(ball.rounding), len(result.names))])
+        result.names.append("rounded edges")
+        largest = np.append(largest, away[changed:].max())
+    return result, largest

@@ -13,8 +13,8 @@ from dd3.tools.nagata import groups
 
 # Angle between the normals of two faces along their edge below which they join smoothly, degrees.
 SMOOTH = 5.0
-# Part of the largest height above which a side has walls.
-WALLS = 0.5
+# Part of the largest height above which a side has walls; part of its area, projected, above which it has a floor.
+WALLS, FLOOR = 0.5, 0.1
 # Parts of an edge at which its faces are compared.
 PLACES = np.array([0.2, 0.5, 0.8])
 
@@ -80,13 +80,18 @@ def joins_smoothly(gmsh: Any, edge: int, first: int, second: int) -> bool:
     return bool((np.abs((a * b).sum(axis=1)) > np.cos(np.radians(SMOOTH))).all())
 
 
-def side_of_sheet(gmsh: Any, tags: list[int], up: np.ndarray) -> list[int]:
-    """Return, of the faces of a solid, the smoothly connected ones that look most in a direction, of those that have
-    walls: of a sheet one of its sides, of a block the side that is not flat."""
+def side_of_sheet(gmsh: Any, path: Path, tags: list[int], up: np.ndarray) -> list[int]:
+    """Return, of the faces of a solid, the smoothly connected ones that look most in a direction, of those with walls
+    and a floor: of a sheet one of its sides, of a block the side that is not flat."""
     found = smooth_groups(gmsh, tags)
     height = [extent(gmsh, group, up) for group in found]
-    with_walls = [group for group, value in zip(found, height) if value > WALLS * max(height)]
-    return sorted(max(with_walls, key=lambda group: sum(projected(gmsh, tag, up) for tag in group)))
+    looks = [sum(projected(gmsh, tag, up) for tag in group) for group in found]
+    area = [sum(gmsh.model.occ.getMass(2, tag) for tag in group) for group in found]
+    sides = [i for i in range(len(found)) if height[i] > WALLS * max(height) and abs(looks[i]) > FLOOR * area[i]]
+    if not sides:
+        raise Problem(f"{path}: no faces that join smoothly have walls and a floor: choose those that one tool touches "
+                      "by --faces; --picture shows their numbers")
+    return sorted(found[max(sides, key=lambda i: looks[i])])
 
 
 def extent(gmsh: Any, group: set[int], axis: np.ndarray) -> float:

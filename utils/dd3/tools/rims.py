@@ -63,7 +63,14 @@ def chained(points: np.ndarray, tolerance: float) -> list[tuple[list[int], bool]
             left.remove(here)
             chain.append(here)
             here = int(following[here])
-        chains.append((chain, here == first))
+        closed = here == first
+        if closed:
+            # From the sharpest corner on, so that pairs of edges have none between them.
+            along = points[chain, 2] - points[chain, 0]
+            along /= np.linalg.norm(along, axis=1, keepdims=True)
+            sharpest = int((along * np.roll(along, 1, axis=0)).sum(axis=1).argmin())
+            chain = chain[sharpest:] + chain[:sharpest]
+        chains.append((chain, closed))
     return chains
 
 

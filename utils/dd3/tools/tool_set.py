@@ -40,8 +40,9 @@ class ToolSet:
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[Surface, Surface, cad.Model]:
-    """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity."""
+def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[Surface, Surface, np.ndarray]:
+    """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, and
+    the largest distances of their faces from the CAD, mm."""
     model = cad.read_cad(gmsh, options.source, options, progress)
     surface = cad.surface_of(model)
     matrix = rotation(options.rotate)
@@ -49,25 +50,26 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[S
     sign, kept, _, notes, _, twisted = sides.faced(surface, find_joints(surface.net), up, cad.outward(gmsh, model))
     if len(twisted) or not kept.any():
         raise Problem(f"{options.source}: the faces have no common upper side; choose them by --faces")
-    surface = sides.apply(surface, sign, kept)
-    surface.notes += notes
-    away = model.face[~kept]
-    if len(away):
-        surface.notes.append("left out: faces that look downwards: " + report.named(surface, away))
+    notes = model.notes + notes
+    if not kept.all():
+        notes.append("left out: faces that look downwards: " + report.named(surface, np.unique(model.face[~kept])))
     gap = options.thickness + options.clearance
-    known = len(model.notes)
-    net, distance = cad.at_distance(gmsh, model, sign, kept, gap if options.side == "die" else -gap, options.radius)
-    surface.notes += model.notes[known:]
-    model.distance = np.maximum(model.distance, distance)
-    given = Surface(placed(surface.net, matrix, options.move), surface.face, surface.names, surface.notes)
-    other = Surface(placed(net, matrix, options.move), surface.face, surface.names, [])
-    return (other, given, model) if options.side == "die" else (given, other, model)
+    found, distance = [], np.zeros(0)
+    for ahead, shift in ((1, gap if options.side == "die" else 0.0), (-1, 0.0 if options.side == "die" else -gap)):
+        tool, off = cad.at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
+        tool.net = placed(tool.net, matrix, options.move)
+        tool.notes = notes + tool.notes
+        notes = []
+        found.append(tool)
+        size = max(len(distance), len(off))
+        distance = np.maximum(np.pad(distance, (0, size - len(distance))), np.pad(off, (0, size - len(off))))
+    return found[0], found[1], distance
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     """Return the tools of a part."""
-    punch, die, model = both_sides(gmsh, options, progress)
-    result = ToolSet(distance=model.distance, lines=[("", note) for note in punch.notes + die.notes])
+    punch, die, distance = both_sides(gmsh, options, progress)
+    result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
     rims, _ = find_rims(die, find_joints(die.net))
     if not rims:
         raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees: the "
