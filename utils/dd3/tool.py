@@ -5,6 +5,7 @@
     dd3 tool die.stl die.bez --toward 0 0 1              STL, .msh, .inp, LS-DYNA .k, VTK
     dd3 tool die.shape die.bez                           a profile of lines and arcs, a box with rounded corners
     dd3 tool punch.step die.bez --toward 0 0 -1 --offset 1.1 --turn     a die from a punch
+    dd3 tool part.step folder --thickness 0.8            punch, die, holder and an input file of a part
 
 CAD faces become quadrilateral patches whose nodes lie on the CAD, finer until the measured distance is below
 --tolerance. Facets become curved patches (Nagata) with normals estimated at their nodes; their distance is an
@@ -230,8 +231,9 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     if any(not np.any(axis) for *axis, _ in options.rotate):
         parser.error("--rotate takes an axis and an angle")
     options.kind, options.reader = reader_of(options.source)
-    if options.kind != "cad" and (options.thickness or options.faces):
-        parser.error(f"--{'thickness' if options.thickness else 'faces'} takes CAD: {' '.join(CAD)}")
+    for name in ("thickness", "faces", "radius"):
+        if getattr(options, name) and options.kind != "cad":
+            parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
     options.radius = options.radius or options.thickness
     if options.thickness:
         settle_set(parser, options)
