@@ -2,6 +2,8 @@
 """Studies: parameters of an input file varied, their table and pictures, indices, and wrong input."""
 
 import csv
+import importlib.util
+import itertools
 import math
 import time
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from helpers import call
 
+from dd3.study.response import Parameter, fit
 from dd3.study.vary import indices
 
 DECK = """*PARAMETER
@@ -84,6 +87,43 @@ def test_study(program):
     deck.write_text(DECK.replace("size = 4 2 1", "size = 4 4 1"))
     call(*words)
     assert abs(float(rows_of(Path("bar.study"))[0]["right_rx"]) / float(rows[0]["right_rx"]) - 2) < 0.01
+
+
+def test_surface(program):
+    """Check the response surface of a polynomial, exact where it has its terms, and of a study."""
+    values = {"a": ["1", "2", "3"], "b": ["0", "4"], "c": ["x", "y"]}
+    parameters = [Parameter(name, words, None if name == "c" else np.array(words, float))
+                  for name, words in values.items()]
+    cases = [dict(zip(values, row)) for row in itertools.product(*values.values())]
+
+    def polynomial(case):
+        a, b, y = float(case["a"]), float(case["b"]), case["c"] == "y"
+        return 2 + 3 * a - a * a + 0.5 * a * b + y * (7 - b)
+
+    surface = fit(parameters, cases, [polynomial(case) for case in cases])
+    assert abs(surface.predicted - 1) < 1e-12 and abs(surface.explained - 1) < 1e-12
+    assert abs(surface.at({"a": 1.5, "b": 1.0, "c": "y"}) - polynomial({"a": "1.5", "b": "1", "c": "y"})) < 1e-10
+    cubic = fit(parameters[:1] + parameters[2:], cases, [float(case["b"])**3 for case in cases])
+    assert cubic.explained < 1e-12 and cubic.predicted < 0
+    Path("bar.dat").write_text(DECK)
+    words = ("study", "bar.dat", "--program", program, "--vary", "strain=0.02:0.06:3", "stop=1:2:2", "--result",
+             "right_rx", "--surface")
+    said = call(*words)
+    assert "right_rx: quadratic surface, explains 1.0000" in said and "strain from -1 at 0.02 to 1 at 0.06" in said
+    assert Path("bar.study", "right_rx_surface.png").read_bytes()[:4] == b"\x89PNG"
+    assert "takes more results than that" in call(*words[:5], "strain=0.02,0.04", *words[-3:], expect=2)
+
+
+def test_snakemake(program):
+    """Check a study by snakemake, where it is installed, and the step of its workflow."""
+    Path("bar.dat").write_text(DECK)
+    words = ("study", "bar.dat", "--program", program, "--vary", "strain=0.02,0.04", "--result", "right_rx", "--",
+             "--nolock")
+    if importlib.util.find_spec("snakemake") is None:
+        assert "snakemake is missing" in call(*words, expect=2)
+    else:
+        assert "strain" in call(*words) and len(list(Path("bar.study").glob("*/ended"))) == 2
+    assert "no such file; call the command in the folder of a study" in call("study", "combination", "x", expect=2)
 
 
 def test_indices():

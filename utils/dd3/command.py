@@ -28,6 +28,7 @@ COMMANDS = {
     "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
     "study": ("vary parameters of an input file; the bending study", "dd3 study job.dat --vary friction=0.1,0.14", {
         ANY: ("dd3.study.vary", "vary parameters of this input file, with a table and pictures of results"),
+        "combination": ("dd3.study.vary:run_combination", "run one of these combinations in the folder of the study"),
         "run": ("dd3.study.run", "the bending study: run all cases, gather the table and draw the figures"),
         "command": ("dd3.study.cases:print_command", "print the command of a case"),
         "case": ("dd3.study.cases:run_case", "run a case unless it is done"),

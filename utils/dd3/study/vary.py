@@ -12,12 +12,21 @@ older than the input file are made anew.
 
 --indices prints for each result which part of its variance over the combinations belongs to each parameter: alone
 (first order) and with all its interactions (total), after Sobol (1993), exact for combinations of equal weight.
+--surface fits a quadratic polynomial to each result, prints how well it predicts, and draws it over two parameters.
+
+On a cluster, snakemake makes the runs, with its options after --:
+
+    dd3 study rail.dat --vary friction=0.05:0.15:11 holder=-15000:-25000:5 -- --profile utils/dd3/study/slurm
 """
 
 import argparse
 import csv
+import importlib.util
 import itertools
+import json
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -32,11 +41,13 @@ from dd3.plot.figures import new_figure, save
 from dd3.programs import command, find_program, launch, made_folder
 from dd3.progress import counter
 from dd3.run import read_frame, read_job
+from dd3.study import response
 from dd3.tables import read_table, totals
 
 FOLDS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max, "min": np.min, "mean": np.mean, "last": lambda values: values[-1]}
 MOST = 10000  # combinations
+STUDY = "combinations.json"  # program, input file and combinations for the workflow of snakemake
 
 
 @dataclass
@@ -153,6 +164,41 @@ def run_all(cases: list[Case], options: argparse.Namespace) -> None:
             bar.close()
 
 
+def run_by_snakemake(cases: list[Case], options: argparse.Namespace, work: Path, words: Sequence[str]) -> None:
+    """Run the cases by snakemake, with further options of it."""
+    if importlib.util.find_spec("snakemake") is None:
+        raise Problem('snakemake is missing: pip install "./utils[study]"')
+    study = {"program": str(options.program), "deck": str(options.deck.resolve()),
+             "cases": {case.folder.name: case.values for case in cases}}
+    (work / STUDY).write_text(json.dumps(study, indent=1), encoding="utf-8")
+    cores = [] if "--profile" in words else ["--cores", str(options.cores)]
+    done = subprocess.run([sys.executable, "-m", "snakemake", "--snakefile",
+                           str(Path(__file__).with_name("combinations.smk")), "--directory", str(work), "--keep-going",
+                           "--rerun-incomplete", "--rerun-triggers", "mtime", "--quiet", "all", *cores, *words],
+                          check=False)
+    for case in cases:
+        case.state = state_of(case.folder)
+    missing = [case.folder.name for case in cases if not case.state]
+    if done.returncode or missing:
+        raise Problem(f"snakemake ended with exit code {done.returncode}; {len(missing)} of {len(cases)} runs are "
+                      "missing" + (f", the first: {missing[0]}" if missing else ""))
+
+
+def run_combination(words: Sequence[str]) -> None:
+    """Run a combination in the folder of a study: a step of combinations.smk."""
+    parser = new_parser("study combination", __doc__)
+    parser.add_argument("case", help="name of its folder")
+    options = parser.parse_args(words)
+    path = Path(STUDY)
+    if not path.is_file():
+        raise Problem(f"{STUDY}: no such file; call the command in the folder of a study")
+    study = json.loads(path.read_text(encoding="utf-8"))
+    if options.case not in study["cases"]:
+        raise Problem(f"{STUDY}: no combination '{options.case}'")
+    make(Case(study["cases"][options.case], path.resolve().parent / options.case), Path(study["program"]),
+         Path(study["deck"]))
+
+
 def write_table(path: Path, cases: list[Case], names: list[str]) -> list[list[str]]:
     """Write results.csv and return its rows, the heading first."""
     rows = [[*cases[0].values, *names, "state", "increments", "iterations", "seconds"]]
@@ -224,8 +270,22 @@ def print_indices(cases: list[Case], parameters: list[tuple[str, list[str]]], na
             print(f"  {key:<20} {alone:6.3f} {total:6.3f}")
 
 
+def fit_surfaces(work: Path, cases: list[Case], parameters: list[tuple[str, list[str]]], names: list[str],
+                 labels: list[str]) -> None:
+    """Print and draw the response surface of each result."""
+    described = [response.Parameter(name, values, numbers_of(values)) for name, values in parameters]
+    ended = [case for case in cases if case.results]
+    for i, (name, label) in enumerate(zip(names, labels)):
+        places = [case.values for case in ended]
+        surface = response.fit(described, places, [case.results[i] for case in ended if case.results])
+        print(f"{name}: ", "\n".join(response.describe(surface)), sep="")
+        response.draw(work / f"{name.replace(':', '_')}_surface.png", surface, places, label)
+
+
 def main(words: Sequence[str] | None = None) -> None:
     """Make the study of the command line."""
+    words = sys.argv[1:] if words is None else list(words)
+    words, further = (words[:words.index("--")], words[words.index("--") + 1:]) if "--" in words else (words, [])
     parser = new_parser("study", __doc__)
     parser.add_argument("deck", type=Path, help="input file")
     parser.add_argument("--vary", nargs="+", type=parameter, required=True, metavar="NAME=VALUES",
@@ -237,6 +297,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--cores", type=int, default=os.cpu_count() or 1, metavar="N",
                         help="runs at a time, each with one thread (default: the number of cores)")
     parser.add_argument("--indices", action="store_true", help="print the indices of Sobol")
+    parser.add_argument("--surface", action="store_true", help="fit and draw a quadratic response surface")
     options = parser.parse_args(words)
     if options.cores < 1:
         parser.error("--cores takes a positive number")
@@ -244,7 +305,10 @@ def main(words: Sequence[str] | None = None) -> None:
         raise Problem(f"{options.deck}: no such file")
     work = made_folder(options.work or options.deck.with_suffix(".study"))
     cases = combinations(options.vary, work)
-    run_all(cases, options)
+    if further:
+        run_by_snakemake(cases, options, work, further)
+    else:
+        run_all(cases, options)
     labels: list[str] = [""] * len(options.result)
     for case in cases:
         if case.state == "reached":
@@ -258,6 +322,8 @@ def main(words: Sequence[str] | None = None) -> None:
         draw(work / f"{name.replace(':', '_')}.png", cases, options.vary, i, label)
     if options.indices:
         print_indices(cases, options.vary, names)
+    if options.surface:
+        fit_surfaces(work, cases, options.vary, names, labels)
     stopped = [case for case in cases if case.state != "reached"]
     if stopped:
         raise Problem(f"{len(stopped)} of {len(cases)} runs did not reach their end; the first: {stopped[0].folder}")
