@@ -186,7 +186,8 @@ def run_by_snakemake(cases: list[Case], options: argparse.Namespace, work: Path,
 
 def run_combination(words: Sequence[str]) -> None:
     """Run a combination in the folder of a study: a step of combinations.smk."""
-    parser = new_parser("study combination", __doc__)
+    parser = new_parser("study combination", "Run one combination of a study in the folder that snakemake works in.\n\n"
+                        "    dd3 study combination friction=0.1\n")
     parser.add_argument("case", help="name of its folder")
     options = parser.parse_args(words)
     path = Path(STUDY)
