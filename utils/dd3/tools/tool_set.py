@@ -70,11 +70,13 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     """Return the tools of a part."""
     punch, die, distance = both_sides(gmsh, options, progress)
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
-    rims, _ = find_rims(die, find_joints(die.net))
+    rims, others = find_rims(die, find_joints(die.net))
     if not rims:
         raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees: the "
                       "punch moves along -z into the part. Turn it, e.g. by --rotate 1 0 0 180, or choose its faces "
                       "by --faces")
+    if others:
+        result.lines.append(("edges", f"{others} free edges of the part's patches stay open, as it does not climb there"))
     radius = options.shoulder
     face = max(float((rim.points[:, 2] + rise(rim, radius)).max()) for rim in rims)
     missing = max(float((face - rim.points[:, 2] - rise(rim, radius)).max()) for rim in rims)
