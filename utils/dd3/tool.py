@@ -30,6 +30,7 @@ from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
 from dd3.tools.joints import Joints, find_joints
 from dd3.tools.limits import supervised
+from dd3.tools.offset import at_distance
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
 
@@ -70,7 +71,7 @@ def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, 
             notes = surface.notes
             # An edge that is sharp for the sheet is concave on the other side of the surface.
             ahead = int(np.sign(options.offset)) or (1 if options.turn else -1)
-            surface, distance = cad.at_distance(gmsh, model, sign, kept, options.offset,
+            surface, distance = at_distance(gmsh, model, sign, kept, options.offset,
                                                 options.radius or RADIUS * abs(options.offset), ahead,
                                                 options.tolerance)
             surface.notes = notes + surface.notes

@@ -14,7 +14,7 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -24,16 +24,16 @@ from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
 from dd3.progress import Progress
-from dd3.tools import faces, moved, rolling_ball
+from dd3.tools import faces, moved
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
 from dd3.tools.division import Division
-from dd3.tools.joints import find_joints, folded, kinks, to_chords, turn
+from dd3.tools.joints import find_joints, folded, kinks, to_chords
 from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.report import REACH, named, up
-from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at, turned
+from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
@@ -502,50 +502,3 @@ def outward(gmsh: Any, model: Model) -> np.ndarray | None:
     if not model.solid:
         return None
     return np.where((middle_normals(model) * normals(gmsh, model)[:, 1, 1]).sum(axis=1) < 0, -1, 1)
-
-
-def at_distance(gmsh: Any, model: Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float,
-                ahead: int, tolerance: float) -> tuple[Surface, np.ndarray]:
-    """Return the patches that are kept, turned by their signs and moved along their normals, and the largest distance
-    of each face from the surface at that distance of the CAD, mm.
-
-    Concave radii and sharp edges on one side are at least `radius` then, see `rolling_ball`: on that of the normals
-    with `ahead` = 1, behind them with -1. Sharp edges become a face of their own; notes tell what was changed.
-    """
-    part = replace(model, nodes=model.nodes[kept], uv=model.uv[kept], labels=model.labels[kept], face=model.face[kept])
-    normal = normals(gmsh, part)
-    # The normals of the CAD get the sides of the patches.
-    side = np.sign((middle_normals(part) * normal[:, 1, 1]).sum(axis=1)) * sign[kept]
-    normal *= side[:, None, None, None]
-    shift = moved.shift_of(part.labels.ravel(), normal.reshape(-1, 3), distance).reshape(part.nodes.shape)
-    net = from_nodes(part.nodes + shift)
-    off = distances(gmsh, part, net, distance * sign[kept] if distance else None).max(axis=1)
-    result = Surface(turn(net, sign[kept]), part.face, list(model.names))
-    # From here on the patches face the side of the ball.
-    flip = sign[kept] * ahead < 0
-    patches = rolling_ball.Patches(part.nodes.copy(), normal * ahead, shift, part.labels.copy())
-    for array in (patches.nodes, patches.normals, patches.shift, patches.labels):
-        array[flip] = array[flip][:, :, ::-1]
-    ball = rolling_ball.rolled(patches, part.face, abs(distance), radius, tolerance / 2)
-    if ball is None:
-        return result, by_face(part, off)
-    if ball.fillet.any():
-        result.notes.append((f"least radius {radius:g} mm in place of smaller ones: " if ball.rests else
-                             f"radii smaller than {radius:g} mm are left, as a ball finds no rest there: ")
-                            + named(model, np.unique(part.face[ball.fillet])))
-    if not ball.changed.any():
-        return result, by_face(part, off)
-    new = from_nodes(np.concatenate([ball.nodes[ball.changed], ball.rounding]))
-    away = rolling_ball.deviation(new, patches.nodes, PLACES, abs(distance), radius).max(axis=1)
-    new = new if ahead > 0 else turned(new)
-    changed = int(ball.changed.sum())
-    off[ball.changed] = away[:changed]
-    result.net[ball.changed] = new[:changed]
-    largest = by_face(part, off)
-    if len(ball.rounding):
-        result.notes.append(f"sharp edges rounded by {radius:g} mm: {len(ball.rounding)} patches")
-        result.net = np.concatenate([result.net, new[changed:]])
-        result.face = np.concatenate([result.face, np.full(len(ball.rounding), len(result.names))])
-        result.names.append("rounded edges")
-        largest = np.append(largest, away[changed:].max())
-    return result, largest

@@ -15,6 +15,7 @@ from dd3.errors import Problem
 from dd3.tools import cad, report, sides
 from dd3.tools.joints import box_of, find_joints, orient, turn
 from dd3.tools.moved import placed, rotation
+from dd3.tools.offset import at_distance
 from dd3.tools.plane import Side, box, flat, straight
 from dd3.tools.rims import Rim, find_rims, patches, rise, shoulder, wall
 from dd3.tools.surface import Surface, area_vectors, from_nodes, turned
@@ -56,7 +57,7 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[S
     gap = options.thickness + options.clearance
     found, distance = [], np.zeros(0)
     for ahead, shift in ((1, gap if options.side == "die" else 0.0), (-1, 0.0 if options.side == "die" else -gap)):
-        tool, off = cad.at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
+        tool, off = at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
         tool.net = placed(tool.net, matrix, options.move)
         tool.notes = notes + tool.notes
         notes = []
@@ -76,29 +77,15 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
                       "punch moves along -z into the part. Turn it, e.g. by --rotate 1 0 0 180, or choose its faces "
                       "by --faces")
     if others:
-        result.lines.append(("edges", f"{others} free edges of the part's patches stay open, as it does not climb there"))
-    radius = options.shoulder
-    face = max(float((rim.points[:, 2] + rise(rim, radius)).max()) for rim in rims)
-    missing = max(float((face - rim.points[:, 2] - rise(rim, radius)).max()) for rim in rims)
-    if missing > options.tolerance:
+        result.lines.append(("edges", f"{others} free edges of patches stay open, as the part does not climb there"))
+    face = max(float((rim.points[:, 2] + rise(rim, options.shoulder)).max()) for rim in rims)
+    missing = max(float((face - rim.points[:, 2] - rise(rim, options.shoulder)).max()) for rim in rims)
+    level = missing <= options.tolerance
+    if not level:
         face += SHORTEST * options.thickness
         result.lines.append(("walls", f"continued up to {missing + SHORTEST * options.thickness:.3g} mm to the "
                              "shoulder"))
-    nets, inner, outer = [die.net], [], []
-    for rim in rims:
-        rows = []
-        if missing > options.tolerance:
-            rows = wall(rim, (face - rim.points[:, 2] - rise(rim, radius)) / rim.climb[:, 2])
-        start = rows[-1] if rows else rim.points
-        rows += shoulder(rim, start, radius, options.tolerance / 2)
-        rows[-1][:, 2] = face
-        nets.append(patches([rim.points, *rows]))
-        inner.append(start)
-        outer.append(rows[-1])
-    nets.append(from_nodes(flange(gmsh, rims, outer, face, options.flange)))
-    added = len(die.names)
-    labels = np.concatenate([die.face, np.repeat([added, added + 1], [sum(map(len, nets[1:-1])), len(nets[-1])])])
-    die = consistent(Surface(np.concatenate(nets), labels, [*die.names, "shoulder", "flange"]))
+    die, inner = with_flange(gmsh, die, rims, face, level, options)
     top = face + options.thickness
     over = flange(gmsh, rims, inner, top, options.flange)
     holder = Surface(turned(from_nodes(over)), np.zeros(len(over), int), ["holder"])
@@ -112,6 +99,25 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, height))
         result.surfaces[name] = surface
     return result
+
+
+def with_flange(gmsh: Any, die: Surface, rims: list[Rim], face: float, level: bool, options: argparse.Namespace
+                ) -> tuple[Surface, list[np.ndarray]]:
+    """Return the die with shoulder and flange, which is at the height `face`, and the nodes of the rims at which the
+    shoulder begins; with ruled walls up to there unless the rims are level."""
+    radius = options.shoulder
+    nets, inner, outer = [die.net], [], []
+    for rim in rims:
+        rows = [] if level else wall(rim, (face - rim.points[:, 2] - rise(rim, radius)) / rim.climb[:, 2])
+        inner.append(rows[-1] if rows else rim.points)
+        rows += shoulder(rim, inner[-1], radius, options.tolerance / 2)
+        rows[-1][:, 2] = face
+        nets.append(patches([rim.points, *rows]))
+        outer.append(rows[-1])
+    nets.append(from_nodes(flange(gmsh, rims, outer, face, options.flange)))
+    added = len(die.names)
+    labels = np.concatenate([die.face, np.repeat([added, added + 1], [sum(map(len, nets[1:-1])), len(nets[-1])])])
+    return consistent(Surface(np.concatenate(nets), labels, [*die.names, "shoulder", "flange"])), inner
 
 
 def with_walls(punch: Surface, top: float) -> Surface:
