@@ -103,6 +103,9 @@ def test_cup(parts, tmp_path, program):
         # At the end of the travel the gap is left between punch and die.
         travel = float(said.split("travel")[1].split()[0])
         assert abs(THICKNESS - travel - 1.2 - bottom_z) < 1e-3 and height > 0, (side, travel, bottom_z)
+        (tmp_path / "my material.dat").write_text("*MATERIAL own\n  young = 2e5\n  poisson = 0.3\n  yield = von_mises\n"
+                                                  "  hardening = perfect Y0=200\n")
+        made(parts, "cup", target, "--side", side, "--material", tmp_path / "my material.dat")
         done = subprocess.run([program, "--check", target / "draw.dat"], capture_output=True, text=True, check=False)
         assert done.returncode == 0 and done.stdout.count(" 0 near misses, 0 T-junctions") == 3, done.stdout
 

@@ -12,7 +12,7 @@ from dd3.errors import Problem, run
 ANY = "<file>"  # stands for the words that are no command of a group
 # Name: module and summary. A group has the summary, an example and the table of its own.
 COMMANDS = {
-    "tool": ("dd3.tool", "make a tool surface from CAD, STL, a mesh or a profile"),
+    "tool": ("dd3.tool", "make tool surfaces from CAD, STL, a mesh or a profile"),
     "import": ("dd3.dyna.command", "import a forming deck of LS-DYNA"),
     "mesh": ("dd3.mesh", "bring a mesh of hexahedra into the form that *MESH reads"),
     "report": ("dd3.report", "make a page about a forming run"),

@@ -13,6 +13,7 @@ estimate. Shapes are exact; docs/tools.md describes their file. The report tells
 edges of more than two patches, free edges that nearly coincide, or a missed tolerance is refused: exit code 2.
 """
 import argparse
+import shlex
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -275,7 +276,7 @@ def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
 def convert(words: Sequence[str]) -> None:
     """Read, judge, write, report."""
     options = arguments(words)
-    command = f"dd3 tool {' '.join(words)}"
+    command = f"dd3 tool {shlex.join(words)}"
     if options.thickness:
         reports = make_set(options, command)
     else:

@@ -14,7 +14,7 @@ from dd3.tools.nagata import groups
 # Angle between the normals of two faces along their edge below which they join smoothly, degrees.
 SMOOTH = 5.0
 # Part of the largest height above which a side has walls; part of its area, projected, above which it has a floor.
-WALLS, FLOOR = 0.5, 0.1
+WALLS, FLOOR = 0.5, 0.02
 # Parts of an edge at which its faces are compared.
 PLACES = np.array([0.2, 0.5, 0.8])
 

@@ -38,10 +38,12 @@ def at_distance(gmsh: Any, model: cad.Model, sign: np.ndarray, kept: np.ndarray,
     ball = rolling_ball.rolled(patches, part.face, abs(distance), radius, tolerance / 2)
     if ball is None:
         return result, cad.by_face(part, off)
-    if ball.fillet.any():
-        result.notes.append((f"least radius {radius:g} mm in place of smaller ones: " if ball.rests else
-                             f"radii smaller than {radius:g} mm are left, as a ball finds no rest there: ")
-                            + named(model, np.unique(part.face[ball.fillet])))
+    small = np.unique(part.face[ball.fillet])
+    if not ball.touches:
+        result.notes.append(f"no least radius of {radius:g} mm, as a ball does not touch two sides somewhere: "
+                            + (named(model, small) if len(small) else "sharp edges"))
+    elif len(small):
+        result.notes.append(f"least radius {radius:g} mm in place of smaller ones: {named(model, small)}")
     if not ball.changed.any():
         return result, cad.by_face(part, off)
     new = from_nodes(np.concatenate([ball.nodes[ball.changed], ball.rounding]))

@@ -22,7 +22,8 @@ from dd3.tools.surface import from_nodes, points_at
 NEAR = 1e-4
 # Ratio of the eigenvalues of `border` above which a node is at a corner.
 CORNER = 0.05
-# Displacement over the distance of the centres, of a node of a fillet, above which the ball has found no rest.
+# Displacement over the distance of the centres, of a node of a fillet, above which the ball does not touch two
+# sides.
 FARTHEST = 3.0
 # Reach of the harmonic displacement over its largest value.
 REACH = 8.0
@@ -38,14 +39,14 @@ class Rolled:
     fillet: np.ndarray
     changed: np.ndarray
     rounding: np.ndarray
-    rests: bool = True
+    touches: bool = True
 
 
 def rolled(patches: Patches, face: np.ndarray, distance: float, radius: float, tolerance: float) -> Rolled | None:
     """Return the offset of patches of faces; None if no fillet is too small for it and no sharp edge concave. The
     rounding of sharp edges is within the tolerance, mm.
 
-    The faces beside the fillets make room alone if they are wide enough.
+    Only the faces beside the fillets are changed if they are wide enough.
     """
     reach = distance + radius
     nodes = patches.nodes
@@ -67,7 +68,7 @@ def rolled(patches: Patches, face: np.ndarray, distance: float, radius: float, t
     foot = point + along_valleys(surface, valley, point, normal, reach)
     given = surface.extreme(foot[held], normal[held], reach) - radius * normal[held] - moved[held]
     if np.linalg.norm(given, axis=1).max() > FARTHEST * reach:
-        return Rolled(nodes + patches.shift, fillet, np.zeros(len(nodes), bool), np.zeros((0, 3, 3, 3)), rests=False)
+        return Rolled(nodes + patches.shift, fillet, np.zeros(len(nodes), bool), np.zeros((0, 3, 3, 3)), touches=False)
     beside = np.isin(face, face[held[number].any(axis=(1, 2)) & ~fillet])
     elsewhere = np.zeros(count, bool)
     elsewhere[number[~beside & ~fillet].ravel()] = True

@@ -20,7 +20,7 @@ STEEL = """# Replace this by your material; dd3 identify makes one from measurem
   poisson = 0.3
   yield = von_mises
   hardening = swift K=530 Y0=150 n=0.22"""
-DECK = """# Draws {part} and releases it: tools of {command}
+DECK = """# Draws {part} and releases it; tools by {command}
 # The flange of the die is at z = 0; the punch starts at the blank and moves down.
 *TITLE
   {part}
@@ -96,7 +96,7 @@ def deck(options: argparse.Namespace, material: str, plan: np.ndarray, travel: f
     length = max(OF_THICKNESS * options.thickness, OF_SHOULDER * options.shoulder,
                  float(np.prod(high - low) / ELEMENTS)**0.5)
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
-    include = f"*INCLUDE {options.material.resolve()}" if options.material else STEEL
+    include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length, travel=f"{travel:.6g}",
                        holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=include, name=material,
