@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "forming_step_parts", "labels": ["slow"], "timeout": 1800, "cost": 300}
+#: {"name": "forming_step_parts", "labels": ["slow"], "timeout": 1800, "cost": 420}
 """Draw parts that are given by STEP files alone: tools and input file by dd3 tool, then the run to its end.
 
-  step_parts.py --program build/release/dd3imp --work build/step_parts
+  step_parts.py --program build/release/dd3imp --work build/step_parts [--defaults]
 
-It prints patches, seconds, increments, iterations and the largest thinning of each.
+With --defaults the elements are those of the input files that dd3 tool writes, without it fewer. It prints patches, seconds, increments, iterations and the largest thinning of each.
 """
 import re
 import subprocess
@@ -18,6 +18,7 @@ from dd3.programs import parser_of_runs
 from dd3.run import read_job
 
 ROOT = Path(__file__).resolve().parents[2]
+DIVISIONS = {"rail": "56 40 1", "cup": "38 38 1", "panel": "54 40 1"}
 # Thickness, shoulder, flange, mm; most patches of punch and die; travel of the punch, mm: height of the part,
 # shoulder, and half a millimetre of wall where the edge of the part is not level.
 PARTS = {"rail": (0.8, 5, 35, 500, 700, 20 + 5 + 0.8), "cup": (1.0, 6, 20, 500, 800, 24 + 6 + 1.0),
@@ -37,7 +38,9 @@ def made(folder, name):
 
 def main():
     """Make, run, and check the parts."""
-    options = parser_of_runs(__doc__).parse_args()
+    parser = parser_of_runs(__doc__)
+    parser.add_argument("--defaults", action="store_true", help="the elements of the written input files")
+    options = parser.parse_args()
     folder = options.work
     subprocess.run([sys.executable, ROOT / "input_files" / "parts" / "step_files.py", folder], check=True)
     failed = 0
@@ -50,7 +53,8 @@ def main():
             failed += 1
             print(f"{name}: {punch} and {die} patches, travel {found}; expected {most_punch}, {most_die}, {travel}")
         start = time.perf_counter()
-        done = subprocess.run([options.program, folder / name / "draw.dat"], capture_output=True, text=True, check=False)
+        settings = [] if options.defaults else ["--set", f"divisions={DIVISIONS[name]}"]
+        done = subprocess.run([options.program, *settings, folder / name / "draw.dat"], capture_output=True, text=True, check=False)
         job = read_job(folder / name / "draw.out")
         if done.returncode or job["outcome"]["state"] != "reached":
             failed += 1
