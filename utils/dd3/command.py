@@ -24,6 +24,7 @@ COMMANDS = {
     }),
     "section": ("dd3.section", "write and draw fields along a section; measure springback"),
     "fld": ("dd3.forming_limit", "draw the forming limit diagram of a run"),
+    "export": ("dd3.export", "write the drawn sheet as a mesh, for ParaView, or for LS-DYNA"),
     "identify": ("dd3.identify.command", "identify a yield criterion, with a hardening law, from measured values"),
     "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
     "study": ("vary parameters of an input file; the bending study", "dd3 study job.dat --vary friction=0.1,0.14", {

@@ -3,7 +3,7 @@
 
     dd3 mesh part.msh sheet.inp                Gmsh, VTK, UNV, MED, Nastran: what Gmsh reads; a .geo file is meshed
     dd3 mesh job.inp sheet.inp                 a model of Abaqus or CalculiX: its mesh and sets, nothing else
-    dd3 mesh job.out/fields.vtkhdf sheet.inp   the initial mesh of a run
+    dd3 mesh job.out/fields.vtkhdf sheet.inp   the initial mesh of a run; dd3 export has others
 
 Elements other than hexahedra, such as the faces and edges of a Gmsh mesh, and nodes without elements are left out;
 nodes and elements are numbered from 1. Physical groups of volumes become element sets, those of surfaces, curves and
@@ -83,10 +83,10 @@ def read_gmsh(path: Path) -> Mesh:
         return mesh
 
 
-def read_run(path: Path) -> Mesh:
-    """Read the initial mesh of a run."""
+def read_run(path: Path, step: int = 0) -> Mesh:
+    """Read the mesh of a run in its shape at a step, by default the initial one."""
     fields = Fields(path)
-    points, cells, offsets = fields.points(0), fields.grid["Connectivity"][:], fields.grid["Offsets"][:]
+    points, cells, offsets = fields.points(step), fields.grid["Connectivity"][:], fields.grid["Offsets"][:]
     kind = int(fields.grid["Types"][0])
     if kind not in VTK_HEXAHEDRA:
         raise Problem(f"{path}: cells of type {kind}, expected hexahedra")

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Export of the sheet: a stretched bar in all forms, its shape, thickness, stress and strain, and refusals."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+import pytest
+from helpers import call
+from test_study import DECK
+
+import dd3
+from dd3.mesh import read_inp
+from dd3.tools.facet_files import dyna_mesh
+
+
+@pytest.fixture
+def bar(program):
+    """Run the stretched bar; return its last step."""
+    Path("bar.dat").write_text(DECK)
+    subprocess.run([program, "--quiet", "bar.dat"], check=True, capture_output=True)
+    return dd3.open("bar.out").fields[-1]
+
+
+def cards(path, keyword):
+    """Return the lines of a keyword."""
+    text = Path(path).read_text()
+    return text.split(f"*{keyword}\n")[1].split("\n*")[0].splitlines()
+
+
+def test_export(bar):
+    """Check the files against the last step of the run."""
+    call("export", "bar.out", "last.inp")
+    mesh = read_inp(Path("last.inp"), None)
+    assert np.allclose(list(mesh.nodes.values()), bar.points) and len(mesh.elements) == 2
+    call("export", "bar.out", "first.inp", "--at", "pull:0")
+    first = np.array(list(read_inp(Path("first.inp"), None).nodes.values()))
+    assert np.allclose(first.max(axis=0), [4, 2, 1])
+    call("export", "bar.out", "last.vtu")
+    grid = pv.read("last.vtu")
+    assert np.allclose(grid.points, bar.points) and np.allclose(grid.cell_data["stress"], bar.cell_data["stress"])
+    said = call("export", "bar.out", "solids.k")
+    assert "pull" in said and "2 elements" in said
+    nodes, cells, _ = dyna_mesh(Path("solids.k"))
+    assert np.allclose([nodes[i] for i in sorted(nodes)], bar.points) and len(cells) == 2
+    rows = cards("solids.k", "INITIAL_STRESS_SOLID")
+    values = np.array([[float(line[10 * k:10 * k + 10]) for k in range(7)] for line in rows[1::2]])
+    assert np.allclose(values[:, :6], bar.cell_data["stress"], rtol=1e-3, atol=1e-3 * values[0, 0])
+    assert np.allclose(values[:, 6], bar.cell_data["equivalent_plastic_strain"], rtol=1e-3)
+
+
+def test_shells(bar):
+    """Check the mid-surface: its place, and the thickness that the fields have."""
+    call("export", "bar.out", "shells.k", "--shells")
+    nodes, cells, _ = dyna_mesh(Path("shells.k"))
+    place = np.array([nodes[i] for i in sorted(nodes)])
+    assert len(nodes) == 6 and len(cells) == 2
+    assert np.allclose(place[:, 2], bar.points[:, 2].max() / 2) and np.isclose(place[:, 0].max(), bar.points[:, 0].max())
+    rows = cards("shells.k", "ELEMENT_SHELL_THICKNESS")
+    thickness = np.array([[float(line[16 * k:16 * k + 16]) for k in range(4)] for line in rows[1::2]])
+    assert np.allclose(thickness, bar.cell_data["thickness"][:, None])
+    strain = [float(line[70:80]) for line in cards("shells.k", "INITIAL_STRESS_SHELL")[1::2]]
+    assert np.allclose(strain, bar.cell_data["equivalent_plastic_strain"], rtol=1e-3)
+
+
+def test_refusals(program):
+    """Check requests that cannot be met."""
+    Path("two.dat").write_text(DECK.replace("divisions = 2 1 1", "divisions = 2 1 2").replace("solid_shell", "hex8"))
+    subprocess.run([program, "--quiet", "two.dat"], check=True, capture_output=True)
+    assert "one layer" in call("export", "two.out", "x.k", "--shells", expect=2)
+    assert "unknown kind of file" in call("export", "two.out", "x.stl", expect=2)
+    assert "--shells takes a file of LS-DYNA" in call("export", "two.out", "x.inp", "--shells", expect=2)
+    assert "no travel 3 mm" in call("export", "two.out", "x.inp", "--at", "3", expect=2)
+    assert "No such" in call("export", "none.out", "x.inp", expect=2)

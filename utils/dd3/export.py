@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Write the sheet of a run at one of its steps for other programs, or as a mesh.
+
+    dd3 export cup.out drawn.inp --at draw       the drawn mesh, which *MESH reads
+    dd3 export cup.out part.vtu                  the last step with all fields: ParaView
+    dd3 export cup.out dynain.k                  LS-DYNA: solids with stresses and plastic strains
+    dd3 export cup.out dynain.k --shells         its mid-surface: shells with thicknesses and plastic strains
+
+Lengths are in mm, stresses in MPa. Stresses are those in the middle of the elements: bending moments are lost.
+"""
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from dd3.command import new_parser
+from dd3.errors import Problem
+from dd3.fields import AT, Fields
+from dd3.mesh import read_run, write_inp
+
+MOST = 99_999_999  # a label in 8 columns
+# Corners of the faces of a hexahedron that are opposite along each natural axis.
+FACES = (((0, 3, 7, 4), (1, 2, 6, 5)), ((0, 1, 5, 4), (3, 2, 6, 7)), ((0, 1, 2, 3), (4, 5, 6, 7)))
+HEXAHEDRON = 12  # type of VTK
+
+
+def to_inp(fields: Fields, step: int, target: Path, _: bool) -> None:
+    """Write the mesh in its shape at a step."""
+    write_inp(target, read_run(fields.path, step), fields.path)
+
+
+def to_vtu(fields: Fields, step: int, target: Path, _: bool) -> None:
+    """Write the grid of a step with all fields."""
+    fields[step].save(target)
+
+
+def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
+    """Write the sheet as a keyword file of LS-DYNA."""
+    if set(fields.grid["Types"][...]) != {HEXAHEDRON}:
+        raise Problem(f"{fields.path}: expected hexahedra of 8 nodes; write .inp or .vtu")
+    cells = fields.grid["Connectivity"][...].reshape(-1, 8)
+    points = fields.points(step)
+    stress = fields.values(step, "stress", at_cells=True)[0]
+    plastic = fields.values(step, "equivalent_plastic_strain", at_cells=True)[0]
+    if shells:
+        thickness = fields.values(step, "thickness")[0]
+        lines = shell_lines(fields.path, points, cells, thickness, stress, plastic)
+    else:
+        lines = [*node_lines(points), "*ELEMENT_SOLID",
+                 *("".join(f"{value:8d}" for value in (i, 1, *(cell + 1))) for i, cell in enumerate(cells, 1)),
+                 "*INITIAL_STRESS_SOLID"]
+        for i, (tensor, strain) in enumerate(zip(stress, plastic), 1):
+            lines += [f"{i:10d}{1:10d}", row((*tensor, strain))]
+    if max(len(cells), len(points)) > MOST:
+        raise Problem(f"{fields.path}: more than {MOST} nodes or elements")
+    title = f"{fields.state(step)} of {fields.path.parent.name}"
+    target.write_text("\n".join(["*KEYWORD", "*TITLE", title[:80], *lines, "*END", ""]), encoding="utf-8")
+
+
+def node_lines(points: np.ndarray) -> list[str]:
+    """Return the nodes."""
+    return ["*NODE", *(f"{i:8d}" + "".join(f"{value:16.9e}" for value in point) for i, point in enumerate(points, 1))]
+
+
+def row(values: Iterable[float]) -> str:
+    """Return numbers in columns of 10."""
+    return "".join(f"{value:10.3e}" for value in values)
+
+
+def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np.ndarray, stress: np.ndarray,
+                plastic: np.ndarray) -> list[str]:
+    """Return the mid-surface of a sheet of one layer, its thickness given at the nodes: nodes, shells with their
+    thicknesses, stresses and strains."""
+    lower, upper = sides(path, points, cells)
+    ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
+    number = np.zeros(len(points), int)
+    number[ends[:, 0]] = np.arange(1, len(ends) + 1)
+    thickness = thickness[ends].mean(axis=1)
+    lines = [*node_lines(points[ends].mean(axis=1)), "*ELEMENT_SHELL_THICKNESS"]
+    for i, corners in enumerate(number[lower], 1):
+        lines += ["".join(f"{value:8d}" for value in (i, 1, *corners)),
+                  "".join(f"{thickness[corner - 1]:16.9e}" for corner in corners)]
+    lines.append("*INITIAL_STRESS_SHELL")
+    for i, (tensor, strain) in enumerate(zip(stress, plastic), 1):
+        lines += [f"{i:10d}{1:10d}{1:10d}", row((0.0, *tensor, strain))]
+    return lines
+
+
+def sides(path: Path, points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes of the elements on the two faces of a sheet of one layer (n, 4): along the shortest edges, whose
+    faces no two elements share."""
+    length = [np.linalg.norm(points[cells[:, b]] - points[cells[:, a]], axis=2).mean() for a, b in FACES]
+    lower, upper = FACES[int(np.argmin(length))]
+    faces = np.sort(np.concatenate([cells[:, lower], cells[:, upper]]), axis=1)
+    if len(np.unique(faces, axis=0)) < len(faces):
+        raise Problem(f"{path}: --shells takes a sheet of one layer of elements")
+    return cells[:, lower], cells[:, upper]
+
+
+WRITERS: dict[str, Callable[[Fields, int, Path, bool], None]] = {
+    ".inp": to_inp, ".vtu": to_vtu, ".k": to_dyna, ".key": to_dyna, ".dyn": to_dyna}
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Export the run of the command line."""
+    parser = new_parser("export", __doc__)
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of results, or its fields.vtkhdf")
+    parser.add_argument("target", type=Path, help=f"file to write: {' '.join(WRITERS)}")
+    parser.add_argument("--at", metavar="PLACE", help=AT)
+    parser.add_argument("--shells", action="store_true", help="LS-DYNA: the mid-surface of a sheet of one layer")
+    options = parser.parse_args(words)
+    writer = WRITERS.get(options.target.suffix.lower())
+    if writer is None:
+        raise Problem(f"{options.target}: unknown kind of file; expected {' '.join(WRITERS)}")
+    if options.shells and writer is not to_dyna:
+        parser.error("--shells takes a file of LS-DYNA: .k .key .dyn")
+    fields = Fields(options.run)
+    step = fields.last if options.at is None else fields.step_at(options.at)
+    options.target.parent.mkdir(parents=True, exist_ok=True)
+    writer(fields, step, options.target, options.shells)
+    print(f"{options.target}: {fields.state(step)}, {len(fields.grid['Types'])} elements")
