@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from dd3.tools.solids import edges, gmsh, wire, write
+from dd3.tools.solids import along_s, edges, gmsh, write
 
 CURVE, ANGLE, END = 75.0, math.radians(30), 52.5  # radius and angle of the rail's arcs; its straight ends, mm
 RADIUS, HEIGHT, THICKNESS = 30.0, 25.0, 1.0  # of the cup, inside, mm
@@ -19,17 +19,7 @@ RADIUS, HEIGHT, THICKNESS = 30.0, 25.0, 1.0  # of the cup, inside, mm
 
 def rail():
     """Make a hat section along an S."""
-    occ = gmsh.model.occ
-    for side in (1, -1):
-        profile = wire([(-15, 20), (-15, 0), (15, 0), (15, 20)], 5)
-        occ.rotate(profile, 0, 0, 0, 0, 0, 1, ANGLE)
-        centre = side * CURVE * math.sin(ANGLE), -side * CURVE * math.cos(ANGLE)
-        occ.revolve(profile, *centre, 0, 0, 0, 1, -ANGLE)
-        end = occ.copy(profile)
-        occ.rotate(end, *centre, 0, 0, 0, 1, -ANGLE)
-        occ.extrude(end, side * END, 0, 0)
-        occ.remove(profile + end, recursive=True)
-    occ.removeAllDuplicates()
+    along_s([(-15, 20), (-15, 0), (15, 0), (15, 20)], 5, CURVE, ANGLE, END)
 
 
 def pot(radius, bottom, fillet):

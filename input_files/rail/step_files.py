@@ -9,7 +9,7 @@ docs/tools.md. The shape files of this folder describe the same surfaces.
 """
 import math
 
-from dd3.tools.solids import gmsh, wire, write
+from dd3.tools.solids import along_s, write
 
 THICKNESS = 0.8  # of the blank, whose lower face is at z = 0, mm
 PUNCH, OPENING, FACE = 15.0, 16.0, 60.0  # half widths, mm
@@ -19,17 +19,7 @@ CURVE, ANGLE = 75.0, math.radians(30)  # radius and angle of the arcs of the cen
 
 def lead(corners):
     """Lead a profile from the middle to both ends of the centre line."""
-    occ = gmsh.model.occ
-    for side in (1, -1):
-        profile = wire(corners, RADIUS)
-        occ.rotate(profile, 0, 0, 0, 0, 0, 1, ANGLE)
-        centre = side * CURVE * math.sin(ANGLE), -side * CURVE * math.cos(ANGLE)
-        occ.revolve(profile, *centre, 0, 0, 0, 1, -ANGLE)
-        end = occ.copy(profile)
-        occ.rotate(end, *centre, 0, 0, 0, 1, -ANGLE)
-        occ.extrude(end, side * END, 0, 0)
-        occ.remove(profile + end, recursive=True)
-    occ.removeAllDuplicates()
+    along_s(corners, RADIUS, CURVE, ANGLE, END)
 
 
 def punch():

@@ -80,8 +80,7 @@ def test_cup(parts, tmp_path, program):
         said = made(parts, "cup", target, "--side", side)
         # The sheet of the part is 1 mm thick, the gap 1.2 mm.
         inner, bottom = (20, 5) if side == "punch" else (19.8, 4.8)
-        outer, round_off, depth = inner + 1.2, bottom + 1.2, 20 + (0 if side == "punch" else 1)
-        height = depth - 1 + (1.2 if side == "punch" else -1) + SHOULDER + (1 if side == "die" else 0)
+        outer, round_off = inner + 1.2, bottom + 1.2
         point, normal = points_of(read(target / "die.bez"), 5)
         r, z = np.hypot(point[..., 0], point[..., 1]), point[..., 2]
         bottom_z = z.min()
@@ -102,7 +101,7 @@ def test_cup(parts, tmp_path, program):
         assert np.hypot(point[..., 0], point[..., 1]).min() > outer - 0.002
         # At the end of the travel the gap is left between punch and die.
         travel = float(said.split("travel")[1].split()[0])
-        assert abs(THICKNESS - travel - 1.2 - bottom_z) < 1e-3 and height > 0, (side, travel, bottom_z)
+        assert abs(THICKNESS - travel - 1.2 - bottom_z) < 1e-3, (side, travel, bottom_z)
         (tmp_path / "my material.dat").write_text("*MATERIAL own\n  young = 2e5\n  poisson = 0.3\n  yield = von_mises\n"
                                                   "  hardening = perfect Y0=200\n")
         made(parts, "cup", target, "--side", side, "--material", tmp_path / "my material.dat")
@@ -179,13 +178,11 @@ def test_patches(parts, tmp_path):
 
 def test_faces(parts, tmp_path):
     """Check the choice of faces."""
-    whole = call("tool", parts / "cup.step")
-    assert "7 faces" in whole or "faces that close in themselves were cut" in whole, whole
     # The floor inside the cup is the last face that OpenCASCADE makes.
     floor = 7
     assert "z 1 to 1 mm" in call("tool", parts / "cup.step", "--faces", floor)
     side = call("tool", parts / "cup.step", "--faces", floor, "--smooth")
-    assert "z 1 to 21 mm" in side or "z 1 to 20 mm" in side, side
+    assert "x -20 to 20" in side and "z 1 to 20 mm" in side, side
     assert "there are 1-7" in call("tool", parts / "cup.step", "--faces", "8-9", expect=2)
     assert "numbers and ranges" in call("tool", parts / "cup.step", "--faces", "x", expect=2)
     assert faces.numbers_of(["3", "5-7,9"]) == [3, 5, 6, 7, 9] and faces.spans([1, 2, 3, 7]) == "1-3 7"
@@ -202,6 +199,8 @@ def test_refusals(parts, tmp_path):
     assert "no such file" in made(parts, "hat", target, "--material", "none.dat", expect=2)
     assert "--thickness takes CAD" in call("tool", ROOT / "input_files" / "rail" / "die.shape", "--thickness", 1,
                                            expect=2)
+    for words in (("--smooth",), ("--side", "die"), ("--clearance", 0.1)):
+        assert "goes with" in call("tool", parts / "hat.step", *words, expect=2)
     assert not target.exists()
     square = np.array([[0, 0], [1, 1], [1, 0], [0, 1]], float)
     assert plane.crosses(square) and not plane.crosses(square[[0, 2, 1, 3]])

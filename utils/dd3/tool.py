@@ -73,8 +73,7 @@ def from_cad(options: argparse.Namespace, progress: Progress) -> tuple[Surface, 
             # An edge that is sharp for the sheet is concave on the other side of the surface.
             ahead = int(np.sign(options.offset)) or (1 if options.turn else -1)
             surface, distance = at_distance(gmsh, model, sign, kept, options.offset,
-                                                options.radius or RADIUS * abs(options.offset), ahead,
-                                                options.tolerance)
+                                            options.radius or RADIUS * abs(options.offset), ahead, options.tolerance)
             surface.notes = notes + surface.notes
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
@@ -191,8 +190,8 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--offset", type=float, default=0.0, metavar="mm",
                         help="move the surface along its normals, towards the sheet if positive")
     parser.add_argument("--radius", type=float, metavar="mm",
-                        help="radius of convex sharp edges of CAD, and least radius of its offset where that of the "
-                             "CAD is too small for it (a fifth of the offset; with --thickness, the thickness)")
+                        help="least convex radius of the tool, of CAD: of sharp edges, of smaller fillets, of offsets "
+                             "(a fifth of the offset; with --thickness, the thickness)")
     parser.add_argument("--turn", action="store_true", help="turn the normals at the end: a die from a punch")
     parser.add_argument("--part", action="append", metavar="NAME",
                         help="name or number of a part to take; may be repeated (default: all)")
@@ -208,7 +207,7 @@ def command_line() -> argparse.ArgumentParser:
                        help=f"radius of the die's shoulder ({tool_set.SHOULDER:g} thicknesses)")
     whole.add_argument("--flange", type=float, metavar="mm",
                        help=f"width of the flange beyond the shoulder ({tool_set.FLANGE:g} thicknesses)")
-    whole.add_argument("--side", choices=("punch", "die"), default="punch", help="the tool that touches the faces")
+    whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
     whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
     return parser
 
@@ -236,7 +235,13 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     for name in ("thickness", "faces", "radius"):
         if getattr(options, name) and options.kind != "cad":
             parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
+    if options.smooth and not options.faces:
+        parser.error("--smooth goes with --faces")
+    for name in ("clearance", "shoulder", "flange", "side", "material"):
+        if getattr(options, name) is not None and not options.thickness:
+            parser.error(f"--{name} goes with --thickness")
     options.radius = options.radius or options.thickness
+    options.side = options.side or "punch"
     if options.thickness:
         settle_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
@@ -317,11 +322,12 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         reports[str(folder / f"{name}.bez")] = result
         if options.picture:
             picture.draw(surface, joints, options.picture.with_stem(f"{options.picture.stem}_{name}"))
-    lines, errors = judge_distance(tools.surfaces["punch"], tools.distance, options, "measured")
-    first = next(iter(reports.values()))
-    first.errors += errors
-    for line in lines + tools.lines:
-        first.add(*line)
+    for name, distance in tools.distance.items():
+        lines, errors = judge_distance(tools.surfaces[name], distance, options, "measured")
+        result = reports[str(folder / f"{name}.bez")]
+        result.errors += errors
+        for line in lines + (tools.lines if name == "die" else []):
+            result.add(*line)
     if options.target and not any(result.errors for result in reports.values()):
         folder.mkdir(parents=True, exist_ok=True)
         for name, surface in tools.surfaces.items():

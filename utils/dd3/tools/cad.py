@@ -51,7 +51,7 @@ READ_TIME, SEW_TIME, TIME_PER_MB, MESH_TIME = 60.0, 60.0, 20.0, 300.0
 # Part of a patch's largest area of a parameter square below which it has no normal.
 FLAT_CORNER = 1e-3
 # Part of the largest distance below which that between nodes of a line says nothing of the direction.
-SMALL_SHARE = 0.1
+LEAST_FRACTION = 0.1
 # Points of the distance: between the nodes.
 PLACES = grid(5)
 
@@ -314,16 +314,16 @@ def by_direction(model: Model, in_u: np.ndarray, in_v: np.ndarray) -> np.ndarray
 
 
 def directional(model: Model, distance: np.ndarray) -> np.ndarray:
-    """Return the largest distance of each face, divided between its first and its second edge (face, 2), mm: the larger
-    share is the whole of it.
+    """Return the largest distance of each face, by the direction of its first and its second edge (face, 2), mm: the
+    larger one is the largest of all.
 
     The distance between nodes of a line along u is due to the divisions along u.
     """
     square = distance.reshape(-1, 5, 5)
-    share = by_direction(model, square[:, ::2, 1::2].max(axis=(1, 2)), square[:, 1::2, ::2].max(axis=(1, 2)))
-    larger = share.max(axis=1)
-    share[larger < SMALL_SHARE * model.distance] = 1.0
-    return share * (model.distance / np.maximum(share.max(axis=1), 1e-300))[:, None]
+    found = by_direction(model, square[:, ::2, 1::2].max(axis=(1, 2)), square[:, 1::2, ::2].max(axis=(1, 2)))
+    larger = found.max(axis=1)
+    found[larger < LEAST_FRACTION * model.distance] = 1.0
+    return found * (model.distance / np.maximum(found.max(axis=1), 1e-300))[:, None]
 
 
 def normals(gmsh: Any, model: Model) -> np.ndarray:
@@ -405,7 +405,7 @@ def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, progress:
             if not any(score):
                 break
             full = np.bincount(model.face, minlength=len(model.tags)) > MOST_PATCHES
-            if not division.refine(np.where(full[:, None], 0.0, division.share / tolerance),
+            if not division.refine(np.where(full[:, None], 0.0, division.distance / tolerance),
                                    np.where(full[:, None], 0.0, kink / KINK),
                                    bent - set(np.flatnonzero(full).tolist())):
                 break
@@ -428,7 +428,7 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
             model.along = directions(gmsh, model, division.regular, division.loops)
             distance = distances(gmsh, model, from_nodes(model.nodes))
             model.distance = by_face(model, distance.max(axis=1))
-            division.share = directional(model, distance)
+            division.distance = directional(model, distance)
     return failed
 
 

@@ -36,7 +36,7 @@ class Division:
         self.factor = {tag: np.ones(2) for tag in tags}
         self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
-        self.share = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
+        self.distance = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
         self.bent: defaultdict[Any, int] = defaultdict(int)
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}

@@ -8,7 +8,8 @@ import numpy as np
 from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
 
-# Elements of the blank at most; length of an element over the thickness, and over the radius of the shoulder, at least.
+# Elements of the blank at most, about; least length of an element over the thickness, and over the radius of the
+# shoulder.
 ELEMENTS, OF_THICKNESS, OF_SHOULDER = 4000, 2.0, 0.5
 # Pressure of the holder, MPa.
 PRESSURE = 2.0

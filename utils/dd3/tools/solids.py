@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tools as CAD by Gmsh: profiles with fillets, and STEP files of parts."""
 import argparse
+import math
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +32,22 @@ def wire(corners: list[tuple[float, float]], radius: float) -> list[tuple[int, i
         arc = occ.fillet2D(curves[-1], line, radius)
         curves += [arc, line]
     return [(1, curve) for curve in curves]
+
+
+def along_s(corners: list[tuple[float, float]], radius: float, curve: float, angle: float, end: float) -> None:
+    """Make a profile, as of `wire`, led along an S: two arcs of a radius and an angle (radian) between straight ends of
+    a length, from the middle outwards."""
+    occ = gmsh.model.occ
+    for side in (1, -1):
+        profile = wire(corners, radius)
+        occ.rotate(profile, 0, 0, 0, 0, 0, 1, angle)
+        centre = side * curve * math.sin(angle), -side * curve * math.cos(angle)
+        occ.revolve(profile, *centre, 0, 0, 0, 1, -angle)
+        straight = occ.copy(profile)
+        occ.rotate(straight, *centre, 0, 0, 0, 1, -angle)
+        occ.extrude(straight, side * end, 0, 0)
+        occ.remove(profile + straight, recursive=True)
+    occ.removeAllDuplicates()
 
 
 def write(parts: dict[str, Callable[[], None]], description: str | None) -> None:

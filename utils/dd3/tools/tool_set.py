@@ -30,20 +30,20 @@ DOWN = np.array([0.0, 0.0, -1.0])
 @dataclass
 class ToolSet:
     """Surfaces by the names of the tools, with the die's flange at z = 0 and the punch at the start of its travel; the
-    travel, mm; the box of the flange in plan (2, 2) and the area of the holder, mm2; the largest distance of each face
-    from the CAD, mm; lines of the report."""
+    travel, mm; the box of the flange in plan (2, 2) and the area of the holder, mm2; the largest distances of
+    the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
     plan: np.ndarray = field(default_factory=lambda: np.zeros((2, 2)))
     area: float = 0.0
-    distance: np.ndarray = field(default_factory=lambda: np.empty(0))
+    distance: dict[str, np.ndarray] = field(default_factory=dict)
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[Surface, Surface, np.ndarray]:
+def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[Surface, Surface, dict[str, np.ndarray]]:
     """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, and
-    the largest distances of their faces from the CAD, mm."""
+    the largest distances of their faces from the CAD by the names of the tools, mm."""
     model = cad.read_cad(gmsh, options.source, options, progress)
     surface = cad.surface_of(model)
     matrix = rotation(options.rotate)
@@ -55,15 +55,14 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[S
     if not kept.all():
         notes.append("left out: faces that look downwards: " + report.named(surface, np.unique(model.face[~kept])))
     gap = options.thickness + options.clearance
-    found, distance = [], np.zeros(0)
-    for ahead, shift in ((1, gap if options.side == "die" else 0.0), (-1, 0.0 if options.side == "die" else -gap)):
-        tool, off = at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
+    found, distance = [], {}
+    for name, ahead in (("punch", 1), ("die", -1)):
+        shift = 0.0 if options.side == name else ahead * gap
+        tool, distance[name] = at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
         tool.net = placed(tool.net, matrix, options.move)
         tool.notes = notes + tool.notes
         notes = []
         found.append(tool)
-        size = max(len(distance), len(off))
-        distance = np.maximum(np.pad(distance, (0, size - len(distance))), np.pad(off, (0, size - len(off))))
     return found[0], found[1], distance
 
 
@@ -143,6 +142,10 @@ def consistent(surface: Surface) -> Surface:
 def flange(gmsh: Any, rims: list[Rim], curves: list[np.ndarray], height: float, width: float) -> np.ndarray:
     """Return the nodes (patch, 3, 3, 3) of a flat flange around closed rims and beside open ones, from curves that
     belong to these; normals upwards."""
+    for curve in curves:
+        if len(curve) % 4 != 1:  # an odd number of patches, beside which the mesh of the flange cannot be
+            raise Problem("an edge climbs by more than 10 degrees along a part of it only, up to near x y z = "
+                          + report.where(curve[-1]) + ": divide it there in the CAD program")
     nodes = []
     closed = [curve for rim, curve in zip(rims, curves) if rim.closed]
     if closed:
