@@ -19,7 +19,7 @@ THICKNESS, CLEARANCE, SHOULDER, FLANGE = 1.0, 0.2, 4.0, 15.0
 @pytest.fixture(scope="module")
 def parts(tmp_path_factory):
     """Write the parts: a cup as a sheet, hat profiles, one with a groove, one with a slanted edge, one led along an S
-    by sections, a box."""
+    by sections, a box, a thin plate."""
     folder = tmp_path_factory.mktemp("parts")
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
@@ -63,6 +63,8 @@ def parts(tmp_path_factory):
         save("led")
         occ.addBox(-30, -20, 0, 60, 40, 20)
         save("box")
+        occ.addBox(0, 0, 0, 20, 20, 0.5)
+        save("plate")
     gmsh.finalize()
     return folder
 
@@ -183,6 +185,9 @@ def test_faces(parts, tmp_path):
     assert "z 1 to 1 mm" in call("tool", parts / "cup.step", "--faces", floor)
     side = call("tool", parts / "cup.step", "--faces", floor, "--smooth")
     assert "x -20 to 20" in side and "z 1 to 20 mm" in side, side
+    # Edges that are near each other because the faces between them were left out are no gaps.
+    assert "left out: 2 faces" in call("tool", parts / "plate.step", tmp_path / "plate.bez", "--toward", 1, 1, 0)
+    assert (tmp_path / "plate.bez").exists()
     assert "there are 1-7" in call("tool", parts / "cup.step", "--faces", "8-9", expect=2)
     assert "numbers and ranges" in call("tool", parts / "cup.step", "--faces", "x", expect=2)
     assert faces.numbers_of(["3", "5-7,9"]) == [3, 5, 6, 7, 9] and faces.spans([1, 2, 3, 7]) == "1-3 7"
