@@ -28,10 +28,12 @@ module dd3_app_job
   use dd3_model_tool_report, only : tool_report
   use dd3_output_fields, only : field_record_t
   use dd3_output_restart, only : read_restart
+  use dd3_output_sheet_file, only : read_sheet
   use dd3_process_job_size, only : find_job_size, job_size_t, memory_warning, size_report
   use dd3_output_run_summary, only : run_summary_t
   use dd3_process_run, only : run_start_t, solver_options
   use dd3_run_file_writer, only : run_file_t
+  use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
   public :: run_job
@@ -52,10 +54,15 @@ contains
     type(run_start_t) :: start
     type(error_list_t) :: errors
     type(error_t), allocatable :: error
+    type(sheet_t) :: sheet
     logical :: wrong
+    integer :: i
 
     call read_case(case, options%file, options%overrides, errors)
-    call new_model(model, case, errors)
+    do i = 1, size(case%start)
+      if (case%start(i)%source%valid) call read_sheet(sheet, case%start(i), errors)
+    end do
+    call new_model(model, case, errors, sheet)
     if (errors%count == 0) call check_overwrite(case, results_directory(options, case), &
         options%restart, errors)
     call share_errors(errors, options%file, wrong)
@@ -63,12 +70,12 @@ contains
       exit_code = exit_input
       ! The picture shows what is wrong about the place of a tool.
       if (options%initial == "" .or. .not. allocated(model%history)) return
-      call set_start(start, options, case, model, error)
+      call set_start(start, options, case, model, sheet, error)
       if (.not. allocated(error)) call write_initial(options, case, model, start, errors, error)
       if (allocated(error)) call write_line("dd3imp: "//message_of(error, "error"))
       return
     end if
-    call set_start(start, options, case, model, error)
+    call set_start(start, options, case, model, sheet, error)
     if (allocated(error)) then
       call write_line("dd3imp: "//message_of(error, "error"))
       exit_code = exit_input
@@ -99,11 +106,12 @@ contains
   end subroutine share_errors
 
   !> Set what a run starts from: the initial state, or that of a restart file.
-  subroutine set_start(start, options, case, model, error)
+  subroutine set_start(start, options, case, model, sheet, error)
     type(run_start_t), intent(out) :: start
     type(options_t), intent(in) :: options
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
+    type(sheet_t), intent(in) :: sheet
     !> Set if the restart file cannot be used.
     type(error_t), allocatable, intent(out) :: error
 
@@ -115,7 +123,7 @@ contains
       if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &
           "has no restart", "E205")
     else if (options%restart == "") then
-      call new_state(start%state, model)
+      call new_state(start%state, model, sheet)
     else
       start%restart = options%restart
       start%source = folder_of(options%restart)

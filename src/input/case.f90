@@ -11,7 +11,8 @@ module dd3_input_case
   use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
   implicit none
   private
-  public :: case_t, blank_spec_t, mesh_spec_t, material_of_t, node_set_spec_t
+  public :: case_t, blank_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
+  public :: material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
   public :: limits_spec_t, limit_spec_t, newton_spec_t
@@ -83,6 +84,33 @@ module dd3_input_case
     type(material_of_t), allocatable :: material_of(:)
     type(block_t) :: source
   end type mesh_spec_t
+
+  !> A sheet taken over from another run.
+  type :: start_spec_t
+    !> Folder of the run, relative to the working directory.
+    character(len=:), allocatable :: from
+    !> Whether the run must have reached its end; otherwise its last state is taken.
+    logical :: at_end = .true.
+    !> Turns of the sheet one after another, `(7, n)`: point and direction of the axis, mm, and the
+    !> angle, degrees; then its displacement, mm.
+    real(wp), allocatable :: turn(:, :)
+    real(wp) :: move(3) = 0.0_wp
+    type(block_t) :: source
+  end type start_spec_t
+
+  !> A cut of the sheet along closed curves.
+  type :: trim_spec_t
+    character(len=:), allocatable :: name
+    !> Vertices of one curve, x y z in turn, mm; size 0 if they are in a file.
+    real(wp), allocatable :: point(:)
+    !> Path of the file of curves, relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Direction along which the curves are projected on the sheet; zero: normal to the sheet.
+    real(wp) :: along(3) = 0.0_wp
+    !> Whether the part inside the curves stays; the part outside otherwise.
+    logical :: keeps_inside = .true.
+    type(block_t) :: source
+  end type trim_spec_t
 
   !> A node set, selected by the initial coordinates.
   type :: node_set_spec_t
@@ -418,6 +446,8 @@ module dd3_input_case
     type(text_t), allocatable :: title(:)
     type(blank_spec_t), allocatable :: blank(:)
     type(mesh_spec_t), allocatable :: mesh(:)
+    type(start_spec_t), allocatable :: start(:)
+    type(trim_spec_t), allocatable :: trim(:)
     !> Node sets of the input file, in its order.
     type(node_set_spec_t), allocatable :: set(:)
     type(material_spec_t), allocatable :: material(:)

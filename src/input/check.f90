@@ -17,6 +17,8 @@ module dd3_input_check
 
   !> Longest name of a block.
   integer, parameter :: longest_name = 60
+  !> Blocks that define the sheet.
+  character(len=5), parameter :: sheet_blocks(3) = [character(len=5) :: "blank", "mesh", "start"]
 
 contains
 
@@ -218,6 +220,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(location_t) :: whole_file
+    character(len=:), allocatable :: first
     integer :: i
 
     whole_file%file = file
@@ -228,19 +231,22 @@ contains
           " is missing", "*"//upper_case(trim(table(i)%keyword))//" name: "//trim(table(i)%help), &
           code="E121")
     end do
-    if (.not. (has_block(deck, "blank") .or. has_block(deck, "mesh") .or. &
-        has_block(deck, "point"))) then
+    if (.not. (has_block(deck, "point") .or. &
+        any([(has_block(deck, trim(sheet_blocks(i))), i=1, size(sheet_blocks))]))) then
       call errors%push_input(whole_file, "the block *BLANK is missing", &
-          "*BLANK name for a sheet, *MESH name for one from a mesh file, or *POINT name for a "// &
-          "single material point", code="E121")
+          "*BLANK name for a sheet, *MESH name for one from a mesh file, *START for that of "// &
+          "another run, or *POINT name for a single material point", code="E121")
     end if
-    if (has_block(deck, "blank") .and. has_block(deck, "mesh")) then
-      do i = 1, deck%n_block
-        if (deck%block(i)%keyword /= "mesh") cycle
-        call errors%push_input(deck%block(i)%opened, "there is a *BLANK as well", &
-            "one sheet, by *BLANK or by *MESH", code="E122")
-      end do
-    end if
+    first = ""
+    do i = 1, deck%n_block
+      associate (keyword => deck%block(i)%keyword)
+        if (all(sheet_blocks /= keyword)) cycle
+        if (first == "") first = keyword
+        if (first /= keyword) call errors%push_input(deck%block(i)%opened, "there is a *"// &
+            upper_case(first)//" as well", "one sheet, by *BLANK, by *MESH or by *START", &
+            code="E122")
+      end associate
+    end do
   end subroutine check_presence
 
   pure logical function has_block(deck, keyword)

@@ -7,7 +7,7 @@ module dd3_input_fill
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, &
       output_spec_t, solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
-  use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set
+  use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set, fill_start, fill_trim
   use dd3_input_fill_material, only : fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
@@ -76,6 +76,16 @@ contains
       case%blank(i)%material = position(deck, "material", deck%block(at(i))%word("material"))
     end do
     call fill_meshes(case, deck)
+    at = positions(deck, "start")
+    allocate (case%start(size(at)))
+    do i = 1, size(at)
+      call fill_start(case%start(i), deck%block(at(i)))
+    end do
+    at = positions(deck, "trim")
+    allocate (case%trim(size(at)))
+    do i = 1, size(at)
+      call fill_trim(case%trim(i), deck%block(at(i)))
+    end do
     at = positions(deck, "set")
     allocate (case%set(size(at)))
     do i = 1, size(at)

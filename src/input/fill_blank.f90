@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Fills the blank, the mesh and the node sets of the case.
+!> Fills the blank, the mesh, the sheet of another run, the cuts and the node sets of the case.
 module dd3_input_fill_blank
   use dd3_base_kinds, only : wp
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : blank_spec_t, mesh_spec_t, node_set_spec_t, set_plane, set_box, &
-      set_nodes, set_near
+  use dd3_input_case, only : blank_spec_t, mesh_spec_t, node_set_spec_t, start_spec_t, &
+      trim_spec_t, set_plane, set_box, set_nodes, set_near
   use dd3_input_text_file, only : resolve_path
   implicit none
   private
-  public :: fill_blank, fill_mesh, fill_set
+  public :: fill_blank, fill_mesh, fill_start, fill_trim, fill_set
 
 contains
 
@@ -54,6 +54,46 @@ contains
       mesh%material_of(n)%at = block%entry(i)%value(1)%at
     end do
   end subroutine fill_mesh
+
+  subroutine fill_start(start, block)
+    type(start_spec_t), intent(inout) :: start
+    type(block_t), intent(in) :: block
+
+    integer :: i, n
+
+    start%source = block
+    start%from = resolve_path(block%folder, block%word("from"))
+    start%at_end = block%word("at") /= "last"
+    if (block%has("move")) start%move = block%numbers("move")
+    allocate (start%turn(7, count([(is_turn(block, i), i=1, block%n_entry)])))
+    n = 0
+    do i = 1, block%n_entry
+      if (.not. is_turn(block, i)) cycle
+      n = n + 1
+      start%turn(:, n) = block%entry(i)%number(:7)
+    end do
+  end subroutine fill_start
+
+  !> Whether an entry of a block turns the sheet.
+  pure logical function is_turn(block, i)
+    type(block_t), intent(in) :: block
+    integer, intent(in) :: i
+
+    is_turn = block%entry(i)%key == "turn" .and. block%entry(i)%valid
+  end function is_turn
+
+  subroutine fill_trim(trim, block)
+    type(trim_spec_t), intent(inout) :: trim
+    type(block_t), intent(in) :: block
+
+    trim%name = block%name
+    trim%source = block
+    trim%point = block%numbers("points")
+    trim%file = ""
+    if (block%has("file")) trim%file = resolve_path(block%folder, block%word("file"))
+    if (block%has("along")) trim%along = block%numbers("along")
+    trim%keeps_inside = block%word("keep") /= "outside"
+  end subroutine fill_trim
 
   !> Whether an entry of a block assigns a material to a set.
   pure logical function is_material_of(block, i)

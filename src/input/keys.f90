@@ -7,7 +7,7 @@ module dd3_input_keys
   use dd3_input_accuracy, only : accuracy_names, default_by_accuracy
   implicit none
   private
-  public :: blank_keys, mesh_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
+  public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
       contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
       history_keys, output_keys, point_keys
 
@@ -63,6 +63,34 @@ contains
       row("material_of", kind_other, "", "-", "material of the elements of a set", &
           repeatable=.true., form="set material")]
   end function mesh_keys
+
+  function start_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("from", kind_text, "", "", "folder of the results of the run whose sheet goes on"), &
+      row("at", kind_name, "", "end", "end: the run must have reached its end; last: its last "// &
+          "state, where a phase or the run ended", choices="end last"), &
+      row("turn", kind_other, "mm, degrees", "-", "turn of the sheet into its new place: point "// &
+          "and direction of the axis, angle; several follow one another", repeatable=.true., &
+          form="number number number number number number number"), &
+      row("move", kind_reals, "mm", "0 0 0", "displacement of the sheet into its new place, "// &
+          "after the turns", count=3)]
+  end function start_keys
+
+  function trim_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("file", kind_text, "", "-", "file of one or more closed curves: a line x y z for each "// &
+          "vertex, an empty line between curves; dd3 curve makes one of CAD files"), &
+      row("points", kind_reals, "mm", "-", "vertices of one closed curve, x y z in turn", &
+          count=0), &
+      row("along", kind_reals, "", "0 0 1", "direction along which the curves are projected on "// &
+          "the sheet; 0 0 0: normal to the sheet, for curves on it", count=3), &
+      row("keep", kind_name, "", "inside", "part of the sheet that stays; inside: within an odd "// &
+          "number of curves", choices="inside outside")]
+  end function trim_keys
 
   function set_keys() result(key)
     type(parameter_t), allocatable :: key(:)

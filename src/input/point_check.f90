@@ -13,7 +13,8 @@ module dd3_input_point_check
   !> Components in the order of the input.
   character(len=2), parameter :: component(6) = ["11", "22", "33", "12", "23", "13"]
   !> Blocks that cannot be combined with a point.
-  character(len=5), parameter :: of_a_sheet(3) = [character(len=5) :: "blank", "mesh", "phase"]
+  character(len=5), parameter :: of_a_sheet(5) = [character(len=5) :: "blank", "mesh", "start", &
+      "trim", "phase"]
   !> Blocks that have an effect on a point.
   character(len=9), parameter :: of_a_point(6) = [character(len=9) :: "title", "include", &
       "parameter", "material", "point", "output"]

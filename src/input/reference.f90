@@ -29,7 +29,7 @@ module dd3_input_reference
     type(name_index_t) :: index
     !> Sets of the sheet.
     character(len=name_length), allocatable :: sheet_set(:)
-    !> Whether the sheet is a mesh from a file.
+    !> Whether the sheet has sets that are known only when its mesh is made.
     logical :: of_mesh = .false.
   end type known_t
 
@@ -65,7 +65,7 @@ contains
     end do
   end subroutine check_references
 
-  !> List the sheet's sets and all blocks with a name; of equal names the first one counts.
+  !> List the sheet's sets, those of its cuts among them, and all blocks with a name; of equal names the first one counts.
   subroutine new_known(known, deck, mesh_sets)
     type(known_t), intent(out) :: known
     type(deck_t), intent(in) :: deck
@@ -80,12 +80,16 @@ contains
         known%sheet_set = [character(len=name_length) :: known%sheet_set, mesh_sets(i)%s]
       end do
     end if
+    do i = 1, deck%n_block
+      if (deck%block(i)%keyword /= "trim" .or. any(known%sheet_set == deck%block(i)%name)) cycle
+      known%sheet_set = [character(len=name_length) :: known%sheet_set, deck%block(i)%name]
+    end do
     do i = 1, size(known%sheet_set)
       call known%index%add("set "//trim(known%sheet_set(i)), of_sheet)
     end do
     do i = 1, deck%n_block
       call known%index%add(deck%block(i)%keyword//" "//deck%block(i)%name, i)
-      if (deck%block(i)%keyword /= "mesh") cycle
+      if (deck%block(i)%keyword /= "mesh" .and. deck%block(i)%keyword /= "start") cycle
       known%of_mesh = .true.
       if (.not. present(mesh_sets)) call known%index%add(any_mesh, i)
     end do

@@ -8,7 +8,7 @@ module dd3_input_sheet_sets
   public :: sheet_sets, round_sets, n_quarters, set_name_length
 
   integer, parameter :: set_name_length = 5
-  !> Sets of a mesh from a file besides its own.
+  !> Sets of a mesh from a file, and of the sheet of another run, besides its own.
   character(len=set_name_length), parameter :: mesh_sets(3) = &
       [character(len=set_name_length) :: "z_min", "z_max", "all"]
 
@@ -45,7 +45,7 @@ contains
     name = blank_sets
     do i = 1, deck%n_block
       associate (block => deck%block(i))
-        if (block%keyword == "mesh") name = mesh_sets
+        if (block%keyword == "mesh" .or. block%keyword == "start") name = mesh_sets
         if (block%keyword /= "blank" .or. block%find("radius") == 0) cycle
         name = round_sets(block%word("portion"))
       end associate

@@ -13,7 +13,7 @@ module dd3_linalg_tensor
   public :: identity, kelvin_identity, kelvin_deviator_projector
   public :: kelvin_from_tensor, tensor_from_kelvin, kelvin_rotation, kelvin_deviator
   public :: determinant, inverse, symmetric_eigen
-  public :: cross, solve_small
+  public :: cross, rotation_about, solve_small
 
   !> Ratio of Kelvin to tensor components, for any order with the shears last.
   real(wp), parameter :: kelvin_factor(6) = [1.0_wp, 1.0_wp, 1.0_wp, sqrt2, sqrt2, sqrt2]
@@ -203,6 +203,21 @@ contains
     c(2) = a(3)*b(1) - a(1)*b(3)
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross
+
+  !> Return the matrix of a rotation about an axis.
+  !> Source: Rodrigues, J. Math. Pures Appl. 5 (1840) 380-440.
+  pure function rotation_about(axis, angle) result(rotation)
+    !> Unit vector, and the angle, rad.
+    real(wp), intent(in) :: axis(3), angle
+    real(wp) :: rotation(3, 3)
+
+    integer :: j
+
+    do j = 1, 3
+      rotation(:, j) = cos(angle)*identity(:, j) + sin(angle)*cross(axis, identity(:, j)) &
+          + (1.0_wp - cos(angle))*axis(j)*axis
+    end do
+  end function rotation_about
 
   !> Solve a small dense system for several right-hand sides, in place, by elimination with partial
   !> pivoting.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Builds the mesh of a case: nodes, elements and node sets; checks the prescribed displacements and
-!> the directions that are free again.
+!> Builds the mesh of a case: nodes and elements of the blank or of the mesh file, then the node sets
+!> of the input; checks the prescribed displacements and the directions that are free again.
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
@@ -16,14 +16,14 @@ module dd3_mesh_build
   use dd3_mesh_select, only : add_set
   implicit none
   private
-  public :: new_mesh
+  public :: new_mesh, add_sets
 
   character(len=*), parameter :: directions_led = &
       "directions that `displace` led in an earlier phase"
 
 contains
 
-  !> Build the mesh. It is complete only if no error was added.
+  !> Build the mesh of the blank or of the mesh file. It is complete only if no error was added.
   subroutine new_mesh(mesh, case, natural, errors)
     type(mesh_t), intent(out) :: mesh
     !> Without errors.
@@ -32,19 +32,28 @@ contains
     real(wp), intent(in) :: natural(:, :)
     type(error_list_t), intent(inout) :: errors
 
-    logical, allocatable :: held(:, :), led(:, :)
-    integer :: i, before
-
-    before = errors%count
     if (size(case%mesh) > 0) then
       call new_inp_mesh(mesh, case%mesh(1), natural, errors)
-      if (errors%count == before) call check_sets(mesh, case, errors)
-      if (errors%count > before) return
     else if (case%blank(1)%radius > 0.0_wp) then
       call new_round_mesh(mesh, case%blank(1), natural)
     else
       call new_blank_mesh(mesh, case%blank(1), natural)
     end if
+  end subroutine new_mesh
+
+  !> Add the node sets of the input to a mesh, and check what is prescribed for them.
+  subroutine add_sets(mesh, case, errors)
+    type(mesh_t), intent(inout) :: mesh
+    !> Without errors.
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    logical, allocatable :: held(:, :), led(:, :)
+    integer :: i, before
+
+    before = errors%count
+    if (size(case%blank) == 0) call check_sets(mesh, case, errors)
+    if (errors%count > before) return
     do i = 1, size(case%set)
       call add_set(mesh, case%set(i), errors)
     end do
@@ -57,9 +66,9 @@ contains
       call check_freed(mesh, case%phase(i), held, led, errors)
       call check_displacements(mesh, case%phase(i), held, led, errors)
     end do
-  end subroutine new_mesh
+  end subroutine add_sets
 
-  !> Check the names of sets in the input, now that those of the mesh file are known.
+  !> Check the names of sets in the input, now that those of the sheet are known.
   subroutine check_sets(mesh, case, errors)
     type(mesh_t), intent(in) :: mesh
     type(case_t), intent(in) :: case

@@ -4,7 +4,7 @@
 module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, error_t, location_t
-  use dd3_base_text, only : text_buffer_t, to_text
+  use dd3_base_text, only : same_name, text_buffer_t, to_text
   use dd3_contact_closest, only : hit_t
   use dd3_contact_placement, only : placement_t
   use dd3_element_kinematics, only : element_gradients
@@ -15,7 +15,7 @@ module dd3_model_build
   use dd3_input_case, only : case_t
   use dd3_input_known_name, only : check_known_name
   use dd3_linalg_solver_registry, only : missing_package, solver_names
-  use dd3_mesh_build, only : new_mesh
+  use dd3_mesh_build, only : add_sets, new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_model_contact_points, only : set_contact_points
@@ -33,6 +33,7 @@ module dd3_model_build
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
+  use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   implicit none
   private
   public :: new_model
@@ -42,17 +43,21 @@ contains
   !> Build the model. It may be used if the list holds no error. Of a case with errors only the laws
   !> and the tool files are checked, to report their errors with the others. A case of material
   !> points has no mesh; its model holds the materials.
-  subroutine new_model(model, case, errors)
+  subroutine new_model(model, case, errors, start)
     type(model_t), intent(out) :: model
     type(case_t), intent(in) :: case
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
+    !> The sheet of another run where the case starts from one; on return the sheet of the model.
+    type(sheet_t), intent(inout), optional :: start
 
+    type(sheet_t) :: sheet
     type(mesh_t) :: mesh
     integer :: i
 
+    if (present(start)) sheet = start
     call set_title(model, case)
-    call set_element(model, case, errors)
+    call set_element(model, case, sheet, errors)
     call check_solver(case, errors)
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
@@ -65,7 +70,12 @@ contains
     end if
     call new_variables(model%internal_variable, model%material)
     if (size(case%point) > 0) return
-    call new_mesh(mesh, case, model%element%node, errors)
+    call new_sheet(sheet, model, case, errors)
+    if (errors%count > 0) return
+    mesh = sheet%mesh
+    model%x_start = sheet%x
+    model%n_sheet_set = size(mesh%set)
+    call add_sets(mesh, case, errors)
     if (errors%count > 0) return
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
@@ -83,16 +93,76 @@ contains
     call set_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
+    if (present(start)) start = sheet
   end subroutine new_model
 
-  !> Set the element's table, or report a name that is not in the registry.
-  subroutine set_element(model, case, errors)
-    type(model_t), intent(inout) :: model
+  !> Make the sheet: that of the blank, of the mesh file or of another run.
+  subroutine new_sheet(sheet, model, case, errors)
+    !> The sheet of another run on entry, if the case starts from one.
+    type(sheet_t), intent(inout) :: sheet
+    !> With its element and its materials.
+    type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
+    !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
+    type(mesh_t) :: mesh
+
+    if (size(case%start) > 0) then
+      call match_materials(sheet, model, case, errors)
+    else
+      call new_mesh(mesh, case, model%element%node, errors)
+      if (errors%count == 0) call new_flat_sheet(sheet, mesh)
+    end if
+  end subroutine new_sheet
+
+  !> Find the materials of the sheet of another run among those of the case, by their names; they
+  !> must have the same laws.
+  subroutine match_materials(sheet, model, case, errors)
+    !> Its elements get the positions in `case%material`.
+    type(sheet_t), intent(inout) :: sheet
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: position(size(sheet%material)), i, m
+
+    position = 0
+    do i = 1, size(position)
+      if (.not. any(sheet%mesh%material == i)) cycle
+      associate (name => sheet%material(i)%s)
+        do m = size(model%material), 1, -1
+          if (same_name(trim(model%material_name(m)), name)) exit
+        end do
+        position(i) = m
+        if (m == 0) then
+          call errors%push_input(case%start(1)%source%at("from"), "the sheet is of material '"// &
+              name//"', which this input does not define", "*MATERIAL "//name// &
+              " as in the input of that run", code="E152")
+        else if (model%material_digest(m) /= sheet%digest(i)) then
+          call errors%push_input(case%material(m)%source%opened, "material '"//name// &
+              "' differs from that of the sheet, of '"//case%start(1)%from//"'", &
+              "*MATERIAL "//name//" as in the input of that run", code="E152")
+        end if
+      end associate
+    end do
+    if (errors%count == 0) sheet%mesh%material = position(sheet%mesh%material)
+  end subroutine match_materials
+
+  !> Set the element's table, or report a name that is not in the registry.
+  subroutine set_element(model, case, sheet, errors)
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> The sheet of another run, if the case starts from one.
+    type(sheet_t), intent(in) :: sheet
+    type(error_list_t), intent(inout) :: errors
+
+    type(error_t), allocatable :: error
     integer :: i
 
+    if (size(case%start) > 0 .and. allocated(sheet%element)) &
+        call new_element(model%element, sheet%element, error, sheet%thickness_points)
     do i = 1, size(case%blank)
       associate (blank => case%blank(i))
         call set_from(blank%source, blank%element, blank%thickness_points)
@@ -211,7 +281,7 @@ contains
     allocate (model%set(size(mesh%set)))
     do i = 1, size(mesh%set)
       model%set(i)%name = mesh%set(i)%name
-      model%set(i)%n_node = size(mesh%set(i)%node)
+      model%set(i)%node = mesh%set(i)%node
     end do
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
@@ -229,6 +299,7 @@ contains
       if (verdict%outcome == verdict_converged) cycle
       if (size(case%blank) > 0) at = case%blank(1)%source%opened
       if (size(case%mesh) > 0) at = case%mesh(1)%source%opened
+      if (size(case%start) > 0) at = case%start(1)%source%opened
       call errors%push_input(at, "element "//to_text(e)// &
           " has no volume", "a sheet whose node lines do not cross", code="E148")
       return
@@ -314,7 +385,7 @@ contains
 
     do t = 1, model%n_tool
       associate (distance => model%tolerance%start_search)
-        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), model%x0, &
+        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), model%x_start, &
             distance, distance)
       end associate
       nearest = minloc(abs(hit%distance), dim=1, mask=hit%found)
@@ -355,7 +426,7 @@ contains
     do i = 1, size(model%phase)
       if (any(model%phase(i)%active)) cycle
       do k = 1, maxval(part)
-        call new_supported_part(body, model%x0, model%phase(i)%prescribed, part == k)
+        call new_supported_part(body, model%x_start, model%phase(i)%prescribed, part == k)
         motion = body%free_motion()
         if (len(motion) == 0) cycle
         call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &

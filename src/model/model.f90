@@ -25,7 +25,7 @@ module dd3_model_model
   !> Node set by its name.
   type :: node_set_t
     character(len=:), allocatable :: name
-    integer :: n_node = 0
+    integer, allocatable :: node(:)
   end type node_set_t
 
   !> Node set with quantities in history.csv; its name is the prefix of their columns.
@@ -39,10 +39,14 @@ module dd3_model_model
     integer :: n_node = 0, n_element = 0, n_contact = 0, n_tool = 0, n_internal = 0
     !> Initial positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x0(:, :)
+    !> Positions at the start of the job, `(3, n_node)`, mm: the initial ones, or those in which
+    !> another run has left the sheet.
+    real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
-    !> Node sets of the blank or the mesh file, then those of the input.
+    !> Node sets of the sheet itself, of which there are `n_sheet_set`, then those of the input.
     type(node_set_t), allocatable :: set(:)
+    integer :: n_sheet_set = 0
     !> Element type of the sheet.
     type(element_t) :: element
     !> Faces on the boundary of the sheet.

@@ -48,6 +48,7 @@ contains
       call set_turns(case%phase(i), model%phase(i))
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
+      model%phase(i)%unloaded = unloaded
       call set_supports(model, unloaded, led, model%phase(i))
       call set_drawbeads(model, unloaded, before%bead_active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
@@ -234,7 +235,7 @@ contains
     phase%prescribed = led
     phase%support = reshape([integer ::], [2, 0])
     if (.not. unloaded) return
-    call choose_supports(model%x0, led, phase%support)
+    call choose_supports(model%x_start, led, phase%support)
     do k = 1, size(phase%support, 2)
       phase%prescribed(phase%support(2, k), phase%support(1, k)) = .true.
     end do

@@ -163,7 +163,7 @@ contains
     end do
   end function drawbead_report
 
-  !> Return the lengths of the draw-beads on the initial sheet, mm.
+  !> Return the lengths of the draw-beads on the sheet at the start, mm.
   function initial_bead_lengths(model) result(length)
     type(model_t), intent(in) :: model
     real(wp), allocatable :: length(:)
@@ -173,7 +173,7 @@ contains
 
     allocate (length(0))
     if (.not. allocated(model%drawbead)) return
-    call find_bead_points(model, [(.true., b=1, size(model%drawbead))], model%x0, point)
+    call find_bead_points(model, [(.true., b=1, size(model%drawbead))], model%x_start, point)
     length = [(covered_length(point, b), b=1, size(model%drawbead))]
   end function initial_bead_lengths
 

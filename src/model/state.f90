@@ -10,6 +10,7 @@ module dd3_model_state
   use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
+  use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
   public :: state_t, phase_start_t, new_state
@@ -161,10 +162,13 @@ contains
     touches = any(self%contact_tool == tool .and. self%status /= status_gap)
   end function touches
 
-  !> Make the initial state: an unstressed sheet on the mesh, the tools at their initial positions.
-  subroutine new_state(self, model)
+  !> Make the initial state: the sheet as it is at the start of the job, unstressed or with the state
+  !> that another run has left in it, and the tools at their initial positions.
+  subroutine new_state(self, model, sheet)
     type(state_t), intent(out) :: self
     type(model_t), intent(in) :: model
+    !> The sheet of the model; unstressed if it is left out.
+    type(sheet_t), intent(in), optional :: sheet
 
     integer :: e, p, t
 
@@ -186,12 +190,21 @@ contains
       allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     call new_beads(self, model)
-    self%x(:, :) = model%x0
+    self%x(:, :) = model%x_start
     do e = 1, model%n_element
       do p = 1, model%element%n_point
         self%orientation(:, :, p, e) = model%axes(:, :, model%material_of(e))
       end do
     end do
+    if (present(sheet)) then
+      if (sheet%has_state) then
+        self%stress(:, :, :) = sheet%stress
+        self%orientation(:, :, :, :) = sheet%orientation
+        associate (n => min(model%n_internal, size(sheet%internal_variables, 1)))
+          self%internal_variables(:n, :, :) = sheet%internal_variables(:n, :, :)
+        end associate
+      end if
+    end if
     do t = 1, model%n_tool
       self%tool_displacement(:, t) = model%tool(t)%position
     end do

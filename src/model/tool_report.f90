@@ -169,7 +169,7 @@ contains
       if (.not. all(model%candidate(tool, candidate))) cycle
       n = n + 1
       if (mod(n, model%face%n/most_faces + 1) > 0) cycle
-      x = model%x0(:, model%face%corner(:, f))
+      x = model%x_start(:, model%face%corner(:, f))
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, 0.25_wp*sum(x, dim=2) &
           - model%tool(tool)%position, hint, model%tolerance%start_search, start_depth, hit)

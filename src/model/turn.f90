@@ -4,13 +4,11 @@
 !>     x = c + u + R (X - c),    R = exp(theta [R_0 a]) R_0,
 !> with the point c and the direction a of the axis in the frame of the surface, the displacement u
 !> of that point, the angle theta since the start of the phase and the rotation R_0 there.
-!> Source: Rodrigues, J. Math. Pures Appl. 5 (1840) 380-440 (rotation about an axis).
 module dd3_model_turn
   use dd3_base_kinds, only : pi, wp
-  use dd3_linalg_tensor, only : cross, identity
   implicit none
   private
-  public :: turn_t, new_turn, rotation_about
+  public :: turn_t, new_turn
 
   !> Turn of a tool over a phase.
   type :: turn_t
@@ -32,19 +30,5 @@ contains
     self%axis = values(4:6)/norm2(values(4:6))
     self%angle = pi/180.0_wp*values(7)
   end function new_turn
-
-  !> Return the matrix of a rotation about an axis.
-  pure function rotation_about(axis, angle) result(rotation)
-    !> Unit vector, and the angle, rad.
-    real(wp), intent(in) :: axis(3), angle
-    real(wp) :: rotation(3, 3)
-
-    integer :: j
-
-    do j = 1, 3
-      rotation(:, j) = cos(angle)*identity(:, j) + sin(angle)*cross(axis, identity(:, j)) &
-          + (1.0_wp - cos(angle))*axis(j)*axis
-    end do
-  end function rotation_about
 
 end module dd3_model_turn

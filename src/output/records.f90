@@ -22,6 +22,8 @@ module dd3_output_records
     character(len=:), allocatable, private :: directory
     !> Increment of the last restart file, and of the last fields that it knows of.
     integer, private :: restart_increment = 0, restart_fields = 0
+    !> Whether the last phase has ended.
+    logical, private :: ended = .false.
   contains
     procedure :: open => records_open
     procedure :: resume => records_resume
@@ -107,7 +109,7 @@ contains
       call write_fields(self, model, state, error)
     end if
     ! In another folder, or from another file, a restart file there would not fit the records.
-    if (.not. allocated(error)) call write_restart(self%directory, model, state, error)
+    if (.not. allocated(error)) call write_restart(self%directory, model, state, .false., error)
   end subroutine resume_files
 
   !> Add the row of an attempt to status.csv.
@@ -177,6 +179,8 @@ contains
 
     if (this_rank() == 0) then
       call write_fields(self, model, state, error)
+      self%ended = state%phase == size(model%phase)
+      if (self%ended) self%restart_increment = -1
       if (.not. allocated(error)) call save(self, model, state, error)
     end if
     call share_error(error)
@@ -203,10 +207,10 @@ contains
 
     if (.not. model%output%restart) return
     if (state%increment == self%restart_increment .and. &
-      state%fields_increment == self%restart_fields) return
+        state%fields_increment == self%restart_fields) return
     call self%history%flush(error)
     if (.not. allocated(error)) call self%status%flush(error)
-    if (.not. allocated(error)) call write_restart(self%directory, model, state, error)
+    if (.not. allocated(error)) call write_restart(self%directory, model, state, self%ended, error)
     if (allocated(error)) return
     self%restart_increment = state%increment
     self%restart_fields = state%fields_increment

@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> restart.h5: the committed state of a run and the fingerprint of its model. The file is written
-!> aside, synced and renamed, so that a run that is killed leaves the last whole one.
+!> restart.h5: the committed state of a run, the fingerprint of its model, and its mesh, from which
+!> another run can take the sheet over (dd3_output_sheet_file). The file is written aside, synced and
+!> renamed, so that a run that is killed leaves the last whole one.
 module dd3_output_restart
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : part_of, replace_file, sync_file
   use dd3_base_kinds, only : wp, i8
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : join, newline, to_text
   use dd3_base_version, only : program_version
   use dd3_model_fingerprint, only : changed_parts, fingerprint_t, model_fingerprint
   use dd3_model_model, only : model_t
@@ -19,7 +20,9 @@ module dd3_output_restart
   use hdf5, only : hid_t, h5aclose_f, h5fclose_f, h5fcreate_f, h5gclose_f, H5F_ACC_TRUNC_F
   implicit none
   private
-  public :: write_restart, read_restart, restart_name
+  public :: write_restart, read_restart, restart_name, check_origin
+  public :: at_node, at_element, at_element_node, at_point, at_internal, at_thickness_point, &
+      at_ended, n_sizes
 
   !> Name of the file in the folder of the results.
   character(len=*), parameter :: restart_name = "restart.h5"
@@ -29,6 +32,11 @@ module dd3_output_restart
   integer, parameter :: format_version = 1
   !> Room on the disk for what is not the values, bytes.
   integer(i8), parameter :: overhead = 300000_i8
+
+  !> Entries of `mesh/sizes`: numbers of nodes, of elements, of nodes and points of an element, of
+  !> internal variables, of points through the thickness (0: fixed); 1 if the run has ended.
+  integer, parameter :: at_node = 1, at_element = 2, at_element_node = 3, at_point = 4, &
+      at_internal = 5, at_thickness_point = 6, at_ended = 7, n_sizes = 7
 
   !> Visitor that writes the components into a group, a dataset each.
   type, extends(state_visitor_t) :: writer_t
@@ -55,11 +63,13 @@ module dd3_output_restart
 contains
 
   !> Write the committed state.
-  subroutine write_restart(directory, model, state, error)
+  subroutine write_restart(directory, model, state, ended, error)
     !> Folder of the results.
     character(len=*), intent(in) :: directory
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    !> Whether the state is the end of the last phase.
+    logical, intent(in) :: ended
     !> Set if the file cannot be written; an older one is left as it is.
     type(error_t), allocatable, intent(out) :: error
 
@@ -73,11 +83,12 @@ contains
     copy = state
     writer%counting = .true.
     call visit_state(copy, writer)
+    call visit_mesh(model, ended, writer)
     call guard%create(part_of(path), error)
     if (allocated(error)) return
     call guard%reserve(0_i8, writer%bytes + overhead, error)
     if (.not. allocated(error)) then
-      call write_content(part_of(path), model_fingerprint(model, state%phase), copy, writer%ok)
+      call write_content(part_of(path), model, ended, copy, writer%ok)
       if (writer%ok) then
         call sync_file(guard)
         call replace_file(path, guard, error)
@@ -90,9 +101,10 @@ contains
   end subroutine write_restart
 
   !> Write marks, fingerprint and state into a new file.
-  subroutine write_content(path, fingerprint, state, ok)
+  subroutine write_content(path, model, ended, state, ok)
     character(len=*), intent(in) :: path
-    type(fingerprint_t), intent(in) :: fingerprint(:)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: ended
     !> Only read, but handed to a visitor.
     type(state_t), intent(inout) :: state
     logical, intent(out) :: ok
@@ -114,7 +126,11 @@ contains
     call visit_state(state, writer)
     if (writer%group >= 0) call h5gclose_f(writer%group, status)
     call make_group(file, "model", writer%group, writer%ok)
-    call visit_fingerprint(fingerprint, writer)
+    call visit_fingerprint(model_fingerprint(model, state%phase), writer)
+    if (writer%group >= 0) call h5gclose_f(writer%group, status)
+    call make_group(file, "mesh", writer%group, writer%ok)
+    if (writer%ok) call text_attribute(writer%group, "element", trim(model%element%name), writer%ok)
+    call visit_mesh(model, ended, writer)
     if (writer%group >= 0) call h5gclose_f(writer%group, status)
     ok = writer%ok
     if (.not. ok) return
@@ -136,6 +152,57 @@ contains
     call writer%integers("part", size(code), code)
     call writer%integers("digest", size(digest), digest)
   end subroutine visit_fingerprint
+
+  !> Write the mesh: initial coordinates, elements, materials of the elements, and the node sets of
+  !> the sheet itself. Names are written as the character codes of a text, a line each.
+  subroutine visit_mesh(model, ended, writer)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: ended
+    type(writer_t), intent(inout) :: writer
+
+    integer :: sizes(n_sizes), i
+    real(wp) :: thickness(1)
+    real(wp), allocatable :: x0(:, :)
+    integer, allocatable :: connectivity(:, :), material_of(:), digest(:), n_member(:), member(:)
+    character(len=:), allocatable :: materials, sets
+
+    sizes = [model%n_node, model%n_element, model%element%n_node, model%element%n_point, &
+        model%n_internal, model%element%n_thickness_point, merge(1, 0, ended)]
+    thickness = merge(0.0_wp, model%thickness, allocated(model%node_thickness))
+    x0 = model%x0
+    connectivity = model%connectivity
+    material_of = model%material_of
+    digest = model%material_digest
+    materials = join(model%material_name, newline)//newline
+    sets = ""
+    allocate (n_member(model%n_sheet_set), member(0))
+    do i = 1, model%n_sheet_set
+      sets = sets//model%set(i)%name//newline
+      n_member(i) = size(model%set(i)%node)
+      member = [member, model%set(i)%node]
+    end do
+    call writer%integers("sizes", n_sizes, sizes)
+    call writer%reals("x0", size(x0), x0)
+    call writer%reals("thickness", 1, thickness)
+    call writer%integers("connectivity", size(connectivity), connectivity)
+    call writer%integers("material_of", size(material_of), material_of)
+    call writer%integers("material_digest", size(digest), digest)
+    call visit_text("materials", materials, writer)
+    call visit_text("sets", sets, writer)
+    call writer%integers("set_size", size(n_member), n_member)
+    call writer%integers("set_node", size(member), member)
+  end subroutine visit_mesh
+
+  !> Write a text as character codes.
+  subroutine visit_text(name, text, writer)
+    character(len=*), intent(in) :: name, text
+    type(writer_t), intent(inout) :: writer
+
+    integer :: code(len(text)), i
+
+    code = [(iachar(text(i:i)), i=1, len(text))]
+    call writer%integers(name, size(code), code)
+  end subroutine visit_text
 
   !> Write a component of real numbers.
   subroutine write_reals(self, name, n, values)

@@ -30,6 +30,7 @@ module dd3_process_run
   use dd3_process_phase_start, only : begin_phase, check_returns
   use dd3_process_phase_warnings, only : end_notes, start_notes
   use dd3_process_predictor, only : new_prediction
+  use dd3_process_taken_over, only : balance_sheet
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system
@@ -76,6 +77,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(run_t) :: run
+    character(len=:), allocatable :: note
     real(wp) :: began
     integer :: number
 
@@ -90,6 +92,11 @@ contains
     if (run%stepper%system%partition%divided) &
         call log%note(partition_report(run%stepper%system%partition))
     call new_prediction(run%stepper%prediction, model)
+    if (.not. run%committed%begun .and. any(abs(run%committed%stress) > 0.0_wp)) then
+      call balance_sheet(model, run%stepper%system, run%committed, note, error)
+      if (allocated(error)) return
+      call log%say(note)
+    end if
     call open_records(run, model, start, log, error)
     if (.not. allocated(error)) then
       call run%progress%start(model)

@@ -28,6 +28,8 @@ contains
     call json%begin_object("sheet")
     if (size(case%mesh) > 0) then
       call add_origin(json, "mesh", case%mesh(1)%name, case%mesh(1)%file, case%mesh(1)%source)
+    else if (size(case%start) > 0) then
+      call add_origin(json, "start", "", case%start(1)%from, case%start(1)%source)
     else if (case%blank(1)%radius > 0.0_wp) then
       call add_origin(json, "round", case%blank(1)%name, "", case%blank(1)%source)
     else
@@ -72,7 +74,7 @@ contains
       do i = 1, size(model%set)
         call json%begin_object("", flat=.true.)
         call json%add("name", model%set(i)%name)
-        call json%add("nodes", model%set(i)%n_node)
+        call json%add("nodes", size(model%set(i)%node))
         call json%end_object()
       end do
     end if

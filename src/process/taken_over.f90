@@ -1,0 +1,54 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Sheet that is taken over from another run: its forces out of balance, from tools and supports
+!> that are gone, from a cut and from its transfer to another mesh, fade over the first phase.
+module dd3_process_taken_over
+  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_system_internal, only : update_material
+  use dd3_system_system, only : system_t
+  implicit none
+  private
+  public :: balance_sheet
+
+contains
+
+  !> Turn the internal forces of the sheet at the start into fading forces, where the first phase
+  !> prescribes no displacement. A stress that lies outside the yield surface returns to it.
+  subroutine balance_sheet(model, system, state, note, error)
+    type(model_t), intent(in) :: model
+    type(system_t), intent(inout) :: system
+    !> Initial state.
+    type(state_t), intent(inout) :: state
+    !> What the log tells of it.
+    character(len=:), allocatable, intent(out) :: note
+    !> Set if an element is inverted.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(state_t) :: updated
+    type(verdict_t) :: verdict
+    real(wp) :: size_of(model%n_node)
+    integer :: i, node
+
+    updated = state
+    call update_material(system, model, state, updated, .false., verdict)
+    if (verdict%outcome /= verdict_converged) then
+      call fatal_error(error, "element "//to_text(verdict%element)// &
+          " of the sheet that is taken over is inverted or has no valid stress", "E211")
+      return
+    end if
+    state%stress = updated%stress
+    state%internal_variables = updated%internal_variables
+    state%internal_force = updated%internal_force
+    state%fading = -state%internal_force
+    where (model%phase(1)%prescribed) state%fading = 0.0_wp
+    size_of = [(norm2(state%fading(:, i)), i=1, model%n_node)]
+    node = maxloc(size_of, dim=1)
+    note = "sheet taken over: forces out of balance up to "//to_text(size_of(node), 3)// &
+        " N, at node "//to_text(node)//", fade over phase '"//model%phase(1)%name//"'"
+  end subroutine balance_sheet
+
+end module dd3_process_taken_over
