@@ -76,6 +76,7 @@ contains
       return
     end if
     call set_start(start, options, case, model, sheet, error)
+    sheet = sheet_t()
     if (allocated(error)) then
       call write_line("dd3imp: "//message_of(error, "error"))
       exit_code = exit_input
@@ -124,6 +125,7 @@ contains
           "has no restart", "E205")
     else if (options%restart == "") then
       call new_state(start%state, model, sheet)
+      start%sheet_report = sheet%report
     else
       start%restart = options%restart
       start%source = folder_of(options%restart)

@@ -16,7 +16,7 @@ module dd3_app_run
   use dd3_base_log, only : log_t
   use dd3_base_message, only : message_list_t
   use dd3_base_ranks, only : this_rank
-  use dd3_base_text, only : to_text
+  use dd3_base_text, only : newline, to_text
   use dd3_base_version, only : version => program_version
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
@@ -94,6 +94,7 @@ contains
     earlier = ""
     if (allocated(start%source)) call read_file(start%source//"/"//run_file_name, earlier, ignored)
     call introduce(log, case, model)
+    if (allocated(start%sheet_report)) call say_lines(log, start%sheet_report)
     if (.not. allocated(start%source)) call clear_directory(log, start%directory)
     if (size(case%point) == 0) then
       call log_size(log, model, start, solver, job)
@@ -269,6 +270,22 @@ contains
           ": its yield surface is taken though it may not be convex")
     end do
   end subroutine introduce
+
+  !> Log the lines of a text.
+  subroutine say_lines(log, text)
+    type(log_t), intent(inout) :: log
+    !> Each line with its end.
+    character(len=*), intent(in) :: text
+
+    integer :: first, length
+
+    first = 1
+    do while (first <= len(text))
+      length = index(text(first:), newline)
+      call log%say(text(first:first + length - 2))
+      first = first + length
+    end do
+  end subroutine say_lines
 
   !> Log the size of the job, and a warning if it needs too much memory.
   subroutine log_size(log, model, start, solver, job)

@@ -161,6 +161,8 @@ module dd3_input_case
     !> Young's modulus (MPa) and Poisson's ratio.
     real(wp) :: young = 0.0_wp, poisson = 0.0_wp
     type(law_spec_t) :: yield, hardening
+    !> t/mm3; 0 if not given.
+    real(wp) :: density = 0.0_wp
     !> Size 0 without a back-stress.
     type(law_spec_t), allocatable :: backstress(:)
     !> Rolling, transverse and normal direction at the start, in columns; zero if undefined.
@@ -398,6 +400,9 @@ module dd3_input_case
     type(load_spec_t), allocatable :: load(:)
     type(motion_spec_t), allocatable :: motion(:)
     type(pressure_spec_t), allocatable :: pressure(:)
+    !> Acceleration of gravity at the end of the phase, mm/s2, and whether it is given.
+    real(wp) :: gravity(3) = 0.0_wp
+    logical :: has_gravity = .false.
     !> Progress and factor on displacements and loads, on the motions and on the turns of tools, in
     !> pairs; size 0 if not given.
     real(wp), allocatable :: table(:), move_table(:), turn_table(:)

@@ -6,7 +6,7 @@ module dd3_input_cross_check
   use dd3_base_text, only : to_text
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
-      contact_spec_t, limits_spec_t, fields_every, fields_at
+      contact_spec_t, limits_spec_t, start_spec_t, fields_every, fields_at
   use dd3_input_sheet_sets, only : n_quarters
   implicit none
   private
@@ -29,6 +29,12 @@ contains
     end do
     do i = 1, size(case%material)
       if (case%material(i)%source%valid) call check_material(case%material(i), errors)
+    end do
+    do i = 1, size(case%start)
+      if (case%start(i)%source%valid) call check_start(case%start(i), errors)
+    end do
+    do i = 1, size(case%trim)
+      if (case%trim(i)%source%valid) call check_trim(case%trim(i)%source, errors)
     end do
     call check_history_names(case, errors)
     do i = 1, case%deck%n_block
@@ -114,6 +120,34 @@ contains
           "radius, thickness, portion and divisions", code="E124")
     end do
   end subroutine check_form
+
+  !> Check the axes of the turns of a sheet.
+  subroutine check_start(start, errors)
+    type(start_spec_t), intent(in) :: start
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, n
+
+    n = 0
+    do i = 1, start%source%n_entry
+      if (start%source%entry(i)%key /= "turn") cycle
+      n = n + 1
+      if (norm2(start%turn(4:6, n)) > 0.0_wp) cycle
+      call errors%push_input(start%source%entry(i)%value(4)%at, "the axis of the turn is zero", &
+          "turn = px py pz ax ay az angle with an axis a that is not zero", code="E135")
+    end do
+  end subroutine check_start
+
+  !> Check that a cut has its curves in one place.
+  subroutine check_trim(block, errors)
+    type(block_t), intent(in) :: block
+    type(error_list_t), intent(inout) :: errors
+
+    if (block%has("file") .neqv. block%has("points")) return
+    call errors%push_input(block%opened, "cut '"//block%called()//"' has "// &
+        trim(merge("both file and points", "no curve            ", block%has("file"))), &
+        "file = path, or points = x y z ...", code="E132")
+  end subroutine check_trim
 
   !> Check a grading of n elements: one number per node line, increasing from 0 to 1.
   subroutine check_grading(block, key, n, errors)

@@ -23,6 +23,7 @@ contains
     material%source = block
     material%young = block%number("young")
     material%poisson = block%number("poisson")
+    if (block%has("density")) material%density = block%number("density")
     material%yield%name = ""
     material%hardening%name = ""
     if (block%has("yield")) then

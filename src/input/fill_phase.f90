@@ -52,6 +52,8 @@ contains
     call fill_loads(phase%load, block)
     call fill_motions(phase%motion, block)
     call fill_pressures(phase%pressure, block)
+    phase%has_gravity = block%has("gravity")
+    if (phase%has_gravity) phase%gravity = block%numbers("gravity")
     phase%table = block%numbers("table")
     phase%move_table = block%numbers("move_table")
     phase%turn_table = block%numbers("turn_table")

@@ -118,6 +118,8 @@ contains
       row("hardening", kind_law, "", "", "hardening law and its parameters"), &
       row("backstress", kind_law, "", "none", &
           "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
+      row("density", kind_real, "t/mm3", "-", "density, for gravity; 7.85e-9 for steel", &
+          lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
           count=3), &
       row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3)]
@@ -290,6 +292,8 @@ contains
           repeatable=.true., form="set number number number"), &
       row("pressure", kind_other, "MPa", "-", "pressure at the end of the phase on the faces "// &
           "with all nodes in the set; follows the faces", repeatable=.true., form="set number"), &
+      row("gravity", kind_reals, "mm/s2", "-", "acceleration of gravity at the end of the phase; "// &
+          "a sheet that is free is laid down", count=3), &
       row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point "// &
           "and direction of the axis, angle", repeatable=.true., &
           form="set number number number number number number number"), &

@@ -191,14 +191,14 @@ contains
     integer :: i, n_actions
 
     n_actions = size(phase%gap) + size(phase%move) + size(phase%press) + size(phase%displace)
-    n_actions = n_actions + size(phase%load)
+    n_actions = n_actions + size(phase%load) + merge(1, 0, phase%has_gravity)
     n_actions = n_actions + size(phase%release) + size(phase%free) + merge(1, 0, phase%unload)
     n_actions = n_actions + size(phase%motion) + size(phase%pressure) + size(phase%turn)
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
             "at least one of move, turn, gap, press, displace, free, load, release, unload, "// &
-            "rotate, bend, pressure", code="E144")
+            "rotate, bend, pressure, gravity", code="E144")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &

@@ -34,6 +34,7 @@ module dd3_model_build
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
+  use dd3_sheet_trim, only : trim_sheet
   implicit none
   private
   public :: new_model
@@ -48,14 +49,30 @@ contains
     type(case_t), intent(in) :: case
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
-    !> The sheet of another run where the case starts from one; on return the sheet of the model.
+    !> The sheet of another run where the case starts from one; on return that of the model, without
+    !> its mesh.
     type(sheet_t), intent(inout), optional :: start
 
     type(sheet_t) :: sheet
+
+    if (present(start)) then
+      call build(model, case, start, errors)
+    else
+      call build(model, case, sheet, errors)
+    end if
+  end subroutine new_model
+
+  !> Build the model; see `new_model`.
+  subroutine build(model, case, sheet, errors)
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> The sheet of another run on entry, if the case starts from one; that of the model on return.
+    type(sheet_t), intent(inout) :: sheet
+    type(error_list_t), intent(inout) :: errors
+
     type(mesh_t) :: mesh
     integer :: i
 
-    if (present(start)) sheet = start
     call set_title(model, case)
     call set_element(model, case, sheet, errors)
     call check_solver(case, errors)
@@ -72,8 +89,9 @@ contains
     if (size(case%point) > 0) return
     call new_sheet(sheet, model, case, errors)
     if (errors%count > 0) return
+    if (size(case%start) > 0) model%x_start = sheet%x
     mesh = sheet%mesh
-    model%x_start = sheet%x
+    sheet%mesh = mesh_t()
     model%n_sheet_set = size(mesh%set)
     call add_sets(mesh, case, errors)
     if (errors%count > 0) return
@@ -93,10 +111,9 @@ contains
     call set_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
-    if (present(start)) start = sheet
-  end subroutine new_model
+  end subroutine build
 
-  !> Make the sheet: that of the blank, of the mesh file or of another run.
+  !> Make the sheet, that of the blank, of the mesh file or of another run, and cut it.
   subroutine new_sheet(sheet, model, case, errors)
     !> The sheet of another run on entry, if the case starts from one.
     type(sheet_t), intent(inout) :: sheet
@@ -107,6 +124,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
+    integer :: i
 
     if (size(case%start) > 0) then
       call match_materials(sheet, model, case, errors)
@@ -114,6 +132,9 @@ contains
       call new_mesh(mesh, case, model%element%node, errors)
       if (errors%count == 0) call new_flat_sheet(sheet, mesh)
     end if
+    do i = 1, size(case%trim)
+      if (errors%count == 0) call trim_sheet(sheet, case%trim(i), model%element, errors)
+    end do
   end subroutine new_sheet
 
   !> Find the materials of the sheet of another run among those of the case, by their names; they
@@ -385,7 +406,8 @@ contains
 
     do t = 1, model%n_tool
       associate (distance => model%tolerance%start_search)
-        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), model%x_start, &
+        hit = candidate_hits(model, t, placement_t(translation=model%tool(t)%position), &
+            model%start_positions(), &
             distance, distance)
       end associate
       nearest = minloc(abs(hit%distance), dim=1, mask=hit%found)
@@ -426,7 +448,7 @@ contains
     do i = 1, size(model%phase)
       if (any(model%phase(i)%active)) cycle
       do k = 1, maxval(part)
-        call new_supported_part(body, model%x_start, model%phase(i)%prescribed, part == k)
+        call new_supported_part(body, model%start_positions(), model%phase(i)%prescribed, part == k)
         motion = body%free_motion()
         if (len(motion) == 0) cycle
         call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &

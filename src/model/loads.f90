@@ -28,6 +28,8 @@ module dd3_model_loads
     integer, allocatable :: node(:)
     !> Fraction of the load on each node; not allocated for equal fractions.
     real(wp), allocatable :: weight(:)
+    !> Factor from the value of the input to the total force: 1, or the mass for a weight, t.
+    real(wp) :: scale = 1.0_wp
   end type load_set_t
 
   !> Set of faces that carries a pressure in some phase.

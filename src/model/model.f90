@@ -39,8 +39,8 @@ module dd3_model_model
     integer :: n_node = 0, n_element = 0, n_contact = 0, n_tool = 0, n_internal = 0
     !> Initial positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x0(:, :)
-    !> Positions at the start of the job, `(3, n_node)`, mm: the initial ones, or those in which
-    !> another run has left the sheet.
+    !> Positions in which another run has left the sheet, `(3, n_node)`, mm; not allocated if the
+    !> job starts from the initial ones.
     real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
@@ -109,6 +109,7 @@ module dd3_model_model
     !> What is written, and when.
     type(output_spec_t) :: output
   contains
+    procedure :: start_positions
     procedure :: thickness_at
     procedure :: nodal_contact_forces
     procedure :: turns
@@ -118,6 +119,15 @@ module dd3_model_model
   end type model_t
 
 contains
+
+  !> Return the positions of the nodes at the start of the job, `(3, n_node)`, mm.
+  pure function start_positions(self) result(x)
+    class(model_t), intent(in) :: self
+    real(wp) :: x(3, size(self%x0, 2))
+
+    x = self%x0
+    if (allocated(self%x_start)) x = self%x_start
+  end function start_positions
 
   !> Return the thickness of the sheet at a node at the start, mm.
   pure real(wp) function thickness_at(self, node)

@@ -42,6 +42,8 @@ module dd3_model_phase
     real(wp), allocatable :: direction(:, :)
     !> Tools with contact, `(n_tool)`.
     logical, allocatable :: active(:)
+    !> Whether the phase sets gravity.
+    logical :: has_gravity = .false.
     !> Whether this phase or an earlier one unloads the sheet, and no tool acts.
     logical :: unloaded = .false.
     !> Degrees of freedom with prescribed displacement, supports included, `(3, n_node)`.

@@ -9,6 +9,7 @@ module dd3_model_phases
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
   use dd3_model_loads, only : face_load_weights, load_set_t, pressure_set_t
+  use dd3_model_gravity, only : gravity_name, new_weight_set
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
@@ -35,6 +36,7 @@ contains
     logical :: led(3, model%n_node), unloaded
     integer :: i
 
+    call check_density(model, case, errors)
     call new_load_sets(model, case, mesh)
     call new_pressure_sets(model, case, mesh)
     call new_idle_phase(before, model)
@@ -49,6 +51,7 @@ contains
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
       model%phase(i)%unloaded = unloaded
+      model%phase(i)%has_gravity = case%phase(i)%has_gravity
       call set_supports(model, unloaded, led, model%phase(i))
       call set_drawbeads(model, unloaded, before%bead_active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
@@ -235,7 +238,7 @@ contains
     phase%prescribed = led
     phase%support = reshape([integer ::], [2, 0])
     if (.not. unloaded) return
-    call choose_supports(model%x_start, led, phase%support)
+    call choose_supports(model%start_positions(), led, phase%support)
     do k = 1, size(phase%support, 2)
       phase%prescribed(phase%support(2, k), phase%support(1, k)) = .true.
     end do
@@ -276,6 +279,11 @@ contains
         phase%keeps_load(s) = .false.
       end do
     end do
+    do s = 1, size(model%load_set)
+      if (.not. spec%has_gravity .or. model%load_set(s)%name /= gravity_name) cycle
+      phase%load_end(:, s) = model%load_set(s)%scale*spec%gravity
+      phase%keeps_load(s) = .false.
+    end do
     do i = 1, size(spec%pressure)
       do s = 1, size(model%pressure_set)
         if (model%pressure_set(s)%name /= spec%pressure(i)%set) cycle
@@ -284,6 +292,28 @@ contains
       end do
     end do
   end subroutine set_loads
+
+  !> Report the first phase with gravity if a material of the sheet has no density.
+  subroutine check_density(model, case, errors)
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, m
+
+    do i = 1, size(case%phase)
+      if (.not. case%phase(i)%has_gravity) cycle
+      do m = 1, size(case%material)
+        if (case%material(m)%density > 0.0_wp .or. .not. any(model%material_of == m)) cycle
+        call errors%push_input(case%phase(i)%source%at("gravity"), "material '"// &
+            case%material(m)%source%called()//"' has no density", &
+            "density = 7.85e-9 (t/mm3, steel) in *MATERIAL "//case%material(m)%source%called(), &
+            code="E121")
+      end do
+      return
+    end do
+  end subroutine check_density
 
   !> List the sets that carry a pressure in some phase, with their faces on the boundary.
   subroutine new_pressure_sets(model, case, mesh)
@@ -311,7 +341,7 @@ contains
     end do
   end subroutine new_pressure_sets
 
-  !> List the sets that carry a load in some phase, in the order of the phases.
+  !> List the sets that carry a load in some phase, in the order of the phases, then the weight.
   subroutine new_load_sets(model, case, mesh)
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
@@ -332,6 +362,9 @@ contains
         end associate
       end do
     end do
+    if (.not. any(case%phase%has_gravity)) return
+    call new_weight_set(set, model, case%material%density)
+    model%load_set = [model%load_set, set]
   end subroutine new_load_sets
 
   !> Set the displacements at which tools have the gaps of the input.

@@ -190,7 +190,7 @@ contains
       allocate (self%deepest_radius(n_tool), source=huge(1.0_wp))
     end associate
     call new_beads(self, model)
-    self%x(:, :) = model%x_start
+    self%x(:, :) = model%start_positions()
     do e = 1, model%n_element
       do p = 1, model%element%n_point
         self%orientation(:, :, p, e) = model%axes(:, :, model%material_of(e))

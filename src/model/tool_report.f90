@@ -156,9 +156,10 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: x(3, 4), cosine
+    real(wp) :: x(3, 4), position(3, model%n_node), cosine
     integer :: candidate(4), f, n
 
+    position = model%start_positions()
     n = 0
     n_facing = 0
     n_averted = 0
@@ -169,7 +170,7 @@ contains
       if (.not. all(model%candidate(tool, candidate))) cycle
       n = n + 1
       if (mod(n, model%face%n/most_faces + 1) > 0) cycle
-      x = model%x_start(:, model%face%corner(:, f))
+      x = position(:, model%face%corner(:, f))
       hint = hint_t()
       call find_contact(model%tool(tool)%surface, 0.25_wp*sum(x, dim=2) &
           - model%tool(tool)%position, hint, model%tolerance%start_search, start_depth, hit)

@@ -146,6 +146,7 @@ contains
         sheet%internal_variables, ok)
     call read_block(file, "state/orientation", size(sheet%orientation), sheet%orientation, ok)
     sheet%has_state = ok
+    sheet%report = ""
   end subroutine read_state
 
   !> Read an array of any rank.

@@ -69,7 +69,7 @@ contains
     type(phase_t), intent(in) :: phase
 
     tolerance = phase%newton%tolerance
-    if (phase%unloaded .or. (size(phase%active) > 0 .and. .not. any(phase%active))) &
+    if (phase%unloaded .or. phase%has_gravity .or. (size(phase%active) > 0 .and. .not. any(phase%active))) &
         tolerance = min(tolerance, free_tolerance)
   end function convergence_tolerance
 

@@ -11,6 +11,7 @@ module dd3_process_phase_start
   use dd3_model_contact_results, only : candidate_hits
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
+  use dd3_model_gravity, only : lay_down
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
@@ -70,6 +71,7 @@ contains
       start%pressure_end = phase%pressure_end
       where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
+      call lay_down(model, state)
       call begin_turns(phase, state)
       call set_tool_loads(phase, state)
       start%until_from_below = .true.

@@ -137,7 +137,7 @@ contains
   end function press_warning
 
   !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at
-  !> the start of a phase; empty otherwise.
+  !> the start of a phase; empty otherwise, and where fading forces with their springs hold all nodes.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.
@@ -148,6 +148,7 @@ contains
     integer :: part(model%n_node), k, tool
 
     text = ""
+    if (all(any(abs(state%fading) > 0.0_wp, dim=1))) return
     part = parts_of_nodes(model%connectivity, model%n_node)
     associate (phase => model%phase(state%phase))
       do k = 1, maxval(part)
@@ -178,19 +179,24 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: direction(3)
+    real(wp) :: direction(3), normal(3)
     integer :: c, d
 
     do c = 1, model%n_contact
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
       associate (x => model%contact_point(c)%position(state%x), phase => model%phase(state%phase))
-        hint = hint_t()
-        call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
-            model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
-            model%tolerance%committed_depth + state%layer_offset(tool), hit)
-        if (.not. hit%found) cycle
+        if (state%contact_tool(c) == tool .and. norm2(state%lambda(:, c)) > 0.0_wp) then
+          normal = state%lambda(:, c)/norm2(state%lambda(:, c))
+        else
+          hint = hint_t()
+          call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
+              model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
+              model%tolerance%committed_depth + state%layer_offset(tool), hit)
+          if (.not. hit%found) cycle
+          normal = hit%normal
+        end if
         do d = 0, 3
-          direction = hit%normal
+          direction = normal
           if (d > 0) direction = model%tool(tool)%friction*identity(:, d)
           if (phase%pressed(tool)) direction = direction &
               - dot_product(direction, phase%direction(:, tool))*phase%direction(:, tool)

@@ -47,6 +47,8 @@ module dd3_process_run
     !> Settings of the linear solver.
     type(solver_spec_t) :: solver
     integer :: threads = 1
+    !> What has been done to the sheet before, a line each.
+    character(len=:), allocatable :: sheet_report
     !> Folder of the results; it exists.
     character(len=:), allocatable :: directory
   end type run_start_t
@@ -95,7 +97,7 @@ contains
     if (.not. run%committed%begun .and. any(abs(run%committed%stress) > 0.0_wp)) then
       call balance_sheet(model, run%stepper%system, run%committed, note, error)
       if (allocated(error)) return
-      call log%say(note)
+      call log%report("N106", note)
     end if
     call open_records(run, model, start, log, error)
     if (.not. allocated(error)) then

@@ -196,6 +196,7 @@ contains
       call json%end_object()
     end do
     call json%end_array()
+    if (spec%has_gravity) call json%add("gravity", spec%gravity)
     call json%begin_array("pressures")
     do i = 1, size(spec%pressure)
       call json%begin_object("", flat=.true.)

@@ -29,6 +29,8 @@ module dd3_sheet_sheet
     !> `(6, n_point, n_element)`, MPa, and `(n_internal, n_point, n_element)`; orthotropy axes,
     !> `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: stress(:, :, :), internal_variables(:, :, :), orientation(:, :, :, :)
+    !> What has been done to it, for the log, a line each.
+    character(len=:), allocatable :: report
   contains
     procedure :: place
   end type sheet_t
@@ -42,6 +44,9 @@ contains
 
     self%mesh = mesh
     self%x = mesh%x
+    allocate (self%material(0), self%digest(0))
+    self%element = ""
+    self%report = ""
   end subroutine new_flat_sheet
 
   !> Move the sheet as a rigid body: turns one after another, then a displacement.

@@ -1,0 +1,92 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Weight of the sheet: a load on all nodes by their masses, which are those of the initial elements,
+!> consistent with the shape functions.
+!>
+!> A sheet whose supports leave it free, above the tools or on a few points of them, has no
+!> equilibrium under its weight until it lies on the tools. Forces and springs at the nodes carry it
+!> at the start of the phase, as those of lost constraints do, and fade: it is laid down.
+module dd3_model_gravity
+  use dd3_base_kinds, only : wp
+  use dd3_linalg_tensor, only : determinant
+  use dd3_model_loads, only : load_set_t
+  use dd3_model_model, only : model_t
+  use dd3_model_rigid_motion, only : new_supported_part, parts_of_nodes, rigid_motion_t
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: gravity_name, new_weight_set, lay_down
+
+  !> Name of the set of the weight, which no set of the input has.
+  character(len=*), parameter :: gravity_name = "*gravity"
+
+contains
+
+  !> Make the set of the weight; `scale` is the mass of the sheet, t.
+  pure subroutine new_weight_set(set, model, density)
+    type(load_set_t), intent(out) :: set
+    !> With its mesh.
+    type(model_t), intent(in) :: model
+    !> Of each material, t/mm3.
+    real(wp), intent(in) :: density(:)
+
+    real(wp) :: mass(model%n_node), jacobian(3, 3), volume
+    integer :: e, p, i
+
+    mass = 0.0_wp
+    associate (element => model%element)
+      do e = 1, model%n_element
+        associate (node => model%connectivity(:, e))
+          do p = 1, element%n_point
+            jacobian = matmul(model%x0(:, node), transpose(element%dshape(:, :, p)))
+            volume = element%weight(p)*determinant(jacobian)
+            mass(node) = mass(node) + density(model%material_of(e))*volume*element%shape(:, p)
+          end do
+        end associate
+      end do
+    end associate
+    set%name = gravity_name
+    set%scale = sum(mass)
+    set%node = [(i, i=1, model%n_node)]
+    set%weight = mass/sum(mass)
+  end subroutine new_weight_set
+
+  !> At the start of a phase, let the weight that it puts on a free sheet act at once, and forces that
+  !> fade carry it.
+  subroutine lay_down(model, state)
+    type(model_t), intent(in) :: model
+    !> With the loads at the start and at the end of the running phase.
+    type(state_t), intent(inout) :: state
+
+    integer :: i, s
+
+    do s = 1, size(model%load_set)
+      associate (set => model%load_set(s), from => state%start%load(:, s), &
+          to => state%start%load_end(:, s))
+        if (set%name /= gravity_name .or. norm2(from) > 0.0_wp .or. .not. norm2(to) > 0.0_wp) cycle
+        if (.not. is_free(model, state)) cycle
+        from = to
+        state%load(:, s) = to
+        do i = 1, size(set%node)
+          state%fading(:, set%node(i)) = state%fading(:, set%node(i)) + set%weight(i)*to
+        end do
+      end associate
+    end do
+  end subroutine lay_down
+
+  !> Whether the supports leave the sheet, or a part of it, free to move as a rigid body.
+  logical function is_free(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    type(rigid_motion_t) :: body
+    integer :: part(model%n_node), k
+
+    part = parts_of_nodes(model%connectivity, model%n_node)
+    is_free = .false.
+    do k = 1, maxval(part)
+      call new_supported_part(body, state%x, model%phase(state%phase)%prescribed, part == k)
+      is_free = is_free .or. len(body%free_motion()) > 0
+    end do
+  end function is_free
+
+end module dd3_model_gravity

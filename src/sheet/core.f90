@@ -1,0 +1,193 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> First step of a cut: the quadrilaterals that stay as they are, and the chains of their edges along
+!> the cut, between which and the curves a layer of new quadrilaterals is put. The border of what
+!> stays follows the grid in steps.
+!> Source: Schneiders, Finite Elem. Anal. Des. 25 (1997) 13-35 (grid-based meshes of hexahedra:
+!> a core of the grid and a layer that connects it with the boundary).
+module dd3_sheet_core
+  use dd3_base_kinds, only : wp
+  use dd3_sheet_grid, only : grid_t
+  use dd3_sheet_plane_curve, only : is_inside, loop_t
+  implicit none
+  private
+  public :: chain_t, mark_columns, select_core, find_chains, edge_length
+
+  !> Least distance of a corner of the core from the curves, over the mean length of the edges at it:
+  !> the new layer is at least as wide.
+  real(wp), parameter :: least_width = 0.35_wp
+
+  !> Edges along the cut that follow one another; what stays is on their left.
+  type :: chain_t
+    !> Columns in order; the first is not repeated at the end of a closed chain.
+    integer, allocatable :: column(:)
+    logical :: closed = .false.
+  end type chain_t
+
+contains
+
+  !> Mark the columns that stay.
+  pure subroutine mark_columns(loop, keeps_inside, plane, stays)
+    type(loop_t), intent(in) :: loop(:)
+    logical, intent(in) :: keeps_inside
+    !> `(2, n_column)`, mm.
+    real(wp), intent(in) :: plane(:, :)
+    logical, intent(out) :: stays(:)
+
+    integer :: c
+
+    do c = 1, size(stays)
+      stays(c) = is_inside(loop, plane(:, c)) .eqv. keeps_inside
+    end do
+  end subroutine mark_columns
+
+  !> Return the mean length of the edges at each column, mm.
+  pure function edge_length(grid, plane) result(length)
+    type(grid_t), intent(in) :: grid
+    !> `(2, n_column)`, mm.
+    real(wp), intent(in) :: plane(:, :)
+    real(wp) :: length(grid%n_column)
+
+    real(wp) :: total
+    integer :: number(grid%n_column), q, i
+
+    length = 0.0_wp
+    number = 0
+    do q = 1, grid%n_quad
+      do i = 1, 4
+        associate (ends => [grid%corner(i, q), grid%corner(mod(i, 4) + 1, q)])
+          total = norm2(plane(:, ends(2)) - plane(:, ends(1)))
+          length(ends) = length(ends) + total
+          number(ends) = number(ends) + 1
+        end associate
+      end do
+    end do
+    length = length/real(max(1, number), wp)
+  end function edge_length
+
+  !> Select the quadrilaterals whose corners stay and are not too close to the curves, without those
+  !> that hang on the others by a corner.
+  pure subroutine select_core(grid, loop, plane, stays, kept)
+    type(grid_t), intent(in) :: grid
+    type(loop_t), intent(in) :: loop(:)
+    !> `(2, n_column)`, mm.
+    real(wp), intent(in) :: plane(:, :)
+    logical, intent(in) :: stays(:)
+    logical, intent(out) :: kept(:)
+
+    real(wp) :: length(grid%n_column), distance, arc
+    logical :: far(grid%n_column), changed
+    integer :: c, k, q
+
+    length = edge_length(grid, plane)
+    far = stays
+    do c = 1, grid%n_column
+      if (.not. stays(c)) cycle
+      do k = 1, size(loop)
+        call loop(k)%closest(plane(:, c), arc, distance)
+        far(c) = far(c) .and. distance >= least_width*length(c)
+      end do
+    end do
+    do q = 1, grid%n_quad
+      kept(q) = all(far(grid%corner(:, q)))
+    end do
+    do
+      changed = .false.
+      do c = 1, grid%n_column
+        call drop_fans(grid, c, kept, changed)
+      end do
+      if (.not. changed) exit
+    end do
+  end subroutine select_core
+
+  !> Drop all but the largest of the groups of quadrilaterals at a column that have no edge in
+  !> common.
+  pure subroutine drop_fans(grid, column, kept, changed)
+    type(grid_t), intent(in) :: grid
+    integer, intent(in) :: column
+    logical, intent(inout) :: kept(:)
+    logical, intent(inout) :: changed
+
+    integer :: group(grid%first(column + 1) - grid%first(column)), i, j, n
+    logical :: joined
+
+    associate (quad => grid%quad_at(grid%first(column):grid%first(column + 1) - 1))
+      n = size(quad)
+      group = merge([(i, i=1, n)], 0, kept(quad))
+      do
+        joined = .false.
+        do i = 1, n
+          do j = 1, n
+            if (group(i) == 0 .or. group(j) == 0 .or. group(i) >= group(j)) cycle
+            if (.not. any(grid%neighbour(:, quad(i)) == quad(j))) cycle
+            group(j) = group(i)
+            joined = .true.
+          end do
+        end do
+        if (.not. joined) exit
+      end do
+      i = largest_group(group)
+      do j = 1, n
+        if (group(j) == 0 .or. group(j) == i) cycle
+        kept(quad(j)) = .false.
+        changed = .true.
+      end do
+    end associate
+  end subroutine drop_fans
+
+  !> Return the number that occurs most often, 0 apart; of several the smallest.
+  pure integer function largest_group(group)
+    integer, intent(in) :: group(:)
+
+    integer :: i, most
+
+    most = 0
+    largest_group = 0
+    do i = 1, size(group)
+      if (count(group == i) <= most) cycle
+      most = count(group == i)
+      largest_group = i
+    end do
+  end function largest_group
+
+  !> Find the chains of edges between quadrilaterals that stay and those that go.
+  pure subroutine find_chains(grid, kept, chain)
+    type(grid_t), intent(in) :: grid
+    logical, intent(in) :: kept(:)
+    type(chain_t), allocatable, intent(out) :: chain(:)
+
+    integer :: next(grid%n_column), before(grid%n_column), path(grid%n_column)
+    logical :: used(grid%n_column)
+    integer :: c, i, q, n, turn
+
+    next = 0
+    before = 0
+    do q = 1, grid%n_quad
+      if (.not. kept(q)) cycle
+      do i = 1, 4
+        if (grid%neighbour(i, q) == 0) cycle
+        if (kept(grid%neighbour(i, q))) cycle
+        next(grid%corner(i, q)) = grid%corner(mod(i, 4) + 1, q)
+        before(grid%corner(mod(i, 4) + 1, q)) = grid%corner(i, q)
+      end do
+    end do
+    allocate (chain(0))
+    used = .false.
+    ! Open chains begin where none comes before; the rest are closed.
+    do turn = 1, 2
+      do c = 1, grid%n_column
+        if (next(c) == 0 .or. used(c) .or. (turn == 1 .and. before(c) > 0)) cycle
+        n = 0
+        i = c
+        do
+          n = n + 1
+          path(n) = i
+          used(i) = .true.
+          i = next(i)
+          if (i == 0 .or. i == c) exit
+        end do
+        chain = [chain, chain_t(path(:n), turn == 2)]
+      end do
+    end do
+  end subroutine find_chains
+
+end module dd3_sheet_core

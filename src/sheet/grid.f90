@@ -1,0 +1,138 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> A sheet as a grid of quadrilaterals: its elements seen through the thickness. Nodes above one
+!> another form a column, elements above one another a quadrilateral.
+module dd3_sheet_grid
+  use dd3_base_kinds, only : wp
+  use dd3_mesh_mesh, only : mesh_t
+  implicit none
+  private
+  public :: grid_t, new_grid
+
+  !> Grid of a sheet.
+  type :: grid_t
+    integer :: n_layer = 0, n_column = 0, n_quad = 0
+    !> Nodes of the columns from the bottom, `(0:n_layer, n_column)`.
+    integer, allocatable :: node(:, :)
+    !> Columns at the corners of the quadrilaterals, counter-clockwise seen from above, `(4, n_quad)`,
+    !> and their elements from the bottom, `(n_layer, n_quad)`.
+    integer, allocatable :: corner(:, :), element(:, :)
+    !> Quadrilateral across the edge from corner i to corner i + 1, `(4, n_quad)`; 0 for none.
+    integer, allocatable :: neighbour(:, :)
+    !> Quadrilaterals at column c: `quad_at(first(c):first(c + 1) - 1)`.
+    integer, allocatable :: quad_at(:), first(:)
+  end type grid_t
+
+contains
+
+  !> Find the grid of a mesh of elements with eight nodes.
+  pure subroutine new_grid(self, mesh, regular)
+    type(grid_t), intent(out) :: self
+    type(mesh_t), intent(in) :: mesh
+    !> Whether each column has the same number of layers.
+    logical, intent(out) :: regular
+
+    integer :: above(mesh%n_node), column_of(mesh%n_node), next(mesh%n_element)
+    integer :: first_on(mesh%n_node), e, c, k, q
+    logical :: has_below(mesh%n_node)
+
+    above = 0
+    has_below = .false.
+    first_on = 0
+    do e = 1, mesh%n_element
+      associate (node => mesh%connectivity(:, e))
+        above(node(:4)) = node(5:)
+        has_below(node(5:)) = .true.
+        next(e) = first_on(node(1))
+        first_on(node(1)) = e
+      end associate
+    end do
+    associate (bottom => pack([(k, k=1, mesh%n_node)], .not. has_below))
+      self%n_column = size(bottom)
+      self%n_layer = 0
+      k = bottom(1)
+      do while (above(k) > 0)
+        k = above(k)
+        self%n_layer = self%n_layer + 1
+      end do
+      allocate (self%node(0:self%n_layer, self%n_column), source=0)
+      self%node(0, :) = bottom
+    end associate
+    regular = self%n_layer > 0
+    do c = 1, merge(self%n_column, 0, regular)
+      do k = 1, self%n_layer
+        self%node(k, c) = above(self%node(k - 1, c))
+        regular = regular .and. self%node(k, c) > 0
+        if (.not. regular) return
+      end do
+      regular = regular .and. above(self%node(self%n_layer, c)) == 0
+    end do
+    if (.not. regular) return
+    column_of = 0
+    column_of(self%node(0, :)) = [(c, c=1, self%n_column)]
+    self%n_quad = mesh%n_element/self%n_layer
+    allocate (self%corner(4, self%n_quad), self%element(self%n_layer, self%n_quad))
+    q = 0
+    do e = 1, mesh%n_element
+      if (has_below(mesh%connectivity(1, e))) cycle
+      q = q + 1
+      self%corner(:, q) = column_of(mesh%connectivity(:4, e))
+      self%element(1, q) = e
+      do k = 2, self%n_layer
+        self%element(k, q) = element_on(mesh%connectivity(5:, self%element(k - 1, q)))
+      end do
+    end do
+    call set_neighbours(self)
+
+  contains
+
+    !> Return the element whose lower nodes are given.
+    pure integer function element_on(node)
+      integer, intent(in) :: node(4)
+
+      element_on = first_on(node(1))
+      do while (any(mesh%connectivity(:4, element_on) /= node))
+        element_on = next(element_on)
+      end do
+    end function element_on
+
+  end subroutine new_grid
+
+  !> List the quadrilaterals at each column, and those across the edges.
+  pure subroutine set_neighbours(self)
+    type(grid_t), intent(inout) :: self
+
+    integer :: filled(self%n_column), c, i, k, q, other
+
+    allocate (self%first(self%n_column + 1), self%quad_at(4*self%n_quad))
+    self%first = 0
+    do q = 1, self%n_quad
+      do i = 1, 4
+        self%first(self%corner(i, q) + 1) = self%first(self%corner(i, q) + 1) + 1
+      end do
+    end do
+    self%first(1) = 1
+    do c = 1, self%n_column
+      self%first(c + 1) = self%first(c) + self%first(c + 1)
+    end do
+    filled = self%first(:self%n_column)
+    do q = 1, self%n_quad
+      do i = 1, 4
+        c = self%corner(i, q)
+        self%quad_at(filled(c)) = q
+        filled(c) = filled(c) + 1
+      end do
+    end do
+    allocate (self%neighbour(4, self%n_quad), source=0)
+    do q = 1, self%n_quad
+      do i = 1, 4
+        associate (from => self%corner(i, q), to => self%corner(mod(i, 4) + 1, q))
+          do k = self%first(from), self%first(from + 1) - 1
+            other = self%quad_at(k)
+            if (other /= q .and. any(self%corner(:, other) == to)) self%neighbour(i, q) = other
+          end do
+        end associate
+      end do
+    end do
+  end subroutine set_neighbours
+
+end module dd3_sheet_grid

@@ -1,0 +1,183 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Curves and sheet in one plane. With a direction of projection it is the plane normal to that; for
+!> curves on the sheet it is that of the initial sheet, on which their closest points are mapped.
+module dd3_sheet_projection
+  use dd3_base_error, only : error_list_t
+  use dd3_base_kinds, only : wp
+  use dd3_base_text, only : to_text
+  use dd3_input_case, only : trim_spec_t
+  use dd3_linalg_tensor, only : cross, identity
+  use dd3_sheet_core, only : edge_length
+  use dd3_sheet_curves, only : curve_t
+  use dd3_sheet_grid, only : grid_t
+  use dd3_sheet_location, only : bilinear, corner_sign
+  use dd3_sheet_plane_curve, only : loop_t, new_loop
+  use dd3_sheet_sheet, only : sheet_t
+  implicit none
+  private
+  public :: project_curves
+
+  !> Distance between the points at which a curve on the sheet is mapped, and largest distance of
+  !> the curve from the sheet, over the length of the elements.
+  real(wp), parameter :: spacing = 0.25_wp, largest_distance = 1.0_wp
+  !> Quadrilaterals examined for a point, iterations on each, largest natural coordinate.
+  integer, parameter :: n_near = 9, most_iterations = 20
+  real(wp), parameter :: farthest = 10.0_wp
+
+contains
+
+  !> Set the positions of the columns and the loops in the plane.
+  subroutine project_curves(sheet, grid, spec, curve, plane, loop, errors)
+    type(sheet_t), intent(in) :: sheet
+    type(grid_t), intent(in) :: grid
+    type(trim_spec_t), intent(in) :: spec
+    type(curve_t), intent(in) :: curve(:)
+    !> `(2, n_column)`, mm.
+    real(wp), allocatable, intent(out) :: plane(:, :)
+    type(loop_t), allocatable, intent(out) :: loop(:)
+    !> Gets curves that lie off the sheet.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: base(3, 2), middle(3, grid%n_column)
+    real(wp), allocatable :: mapped(:, :)
+    integer :: k
+
+    middle = 0.5_wp*(sheet%x(:, grid%node(0, :)) + sheet%x(:, grid%node(grid%n_layer, :)))
+    allocate (loop(size(curve)))
+    if (norm2(spec%along) > 0.0_wp) then
+      base = base_across(spec%along)
+      plane = matmul(transpose(base), middle)
+      do k = 1, size(curve)
+        call new_loop(loop(k), matmul(transpose(base), curve(k)%point))
+      end do
+      return
+    end if
+    plane = sheet%mesh%x(:2, grid%node(0, :))
+    do k = 1, size(curve)
+      call map_curve(grid, middle, plane, curve(k), spec, mapped, errors)
+      call new_loop(loop(k), mapped)
+    end do
+  end subroutine project_curves
+
+  !> Return two unit vectors normal to a direction and to each other; for z these are x and y.
+  pure function base_across(direction) result(base)
+    real(wp), intent(in) :: direction(3)
+    real(wp) :: base(3, 2)
+
+    real(wp) :: axis(3)
+
+    axis = direction/norm2(direction)
+    base(:, 1) = identity(:, minloc(abs(axis), dim=1))
+    base(:, 1) = base(:, 1) - dot_product(base(:, 1), axis)*axis
+    base(:, 1) = base(:, 1)/norm2(base(:, 1))
+    base(:, 2) = cross(axis, base(:, 1))
+  end function base_across
+
+  !> Map a curve on the initial sheet.
+  subroutine map_curve(grid, middle, plane, curve, spec, mapped, errors)
+    type(grid_t), intent(in) :: grid
+    !> Positions of the columns in the middle of the thickness, mm, and on the initial sheet.
+    real(wp), intent(in) :: middle(:, :), plane(:, :)
+    type(curve_t), intent(in) :: curve
+    type(trim_spec_t), intent(in) :: spec
+    !> `(2, n)`, mm.
+    real(wp), allocatable, intent(out) :: mapped(:, :)
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: step, distance, largest, point(3)
+    integer :: i, j, k, n, total
+
+    step = sum(edge_length(grid, plane))/real(grid%n_column, wp)
+    n = size(curve%point, 2)
+    total = 0
+    do i = 1, n
+      total = total + parts(i)
+    end do
+    allocate (mapped(2, total))
+    largest = 0.0_wp
+    k = 0
+    do i = 1, n
+      do j = 1, parts(i)
+        k = k + 1
+        associate (from => curve%point(:, i), to => curve%point(:, mod(i, n) + 1))
+          point = from + (real(j - 1, wp)/real(parts(i), wp))*(to - from)
+        end associate
+        call map_point(grid, middle, plane, point, mapped(:, k), distance)
+        largest = max(largest, distance)
+      end do
+    end do
+    if (largest <= largest_distance*step) return
+    call errors%push_input(curve%at, "the curve that begins here lies up to "// &
+        to_text(largest, 3)//" mm off the sheet", "a curve on the sheet, or a direction of "// &
+        "projection in cut '"//spec%name//"' (along)", code="E153")
+
+  contains
+
+    !> Return the number of parts of a segment.
+    pure integer function parts(i)
+      integer, intent(in) :: i
+
+      parts = max(1, ceiling(norm2(curve%point(:, mod(i, n) + 1) - curve%point(:, i)) &
+          /(spacing*step)))
+    end function parts
+
+  end subroutine map_curve
+
+  !> Map a point to the initial sheet by its closest point on the quadrilaterals near it; beyond the
+  !> border they are extended.
+  pure subroutine map_point(grid, middle, plane, point, mapped, distance)
+    type(grid_t), intent(in) :: grid
+    real(wp), intent(in) :: middle(:, :), plane(:, :), point(3)
+    real(wp), intent(out) :: mapped(2)
+    !> Distance from the sheet, mm.
+    real(wp), intent(out) :: distance
+
+    real(wp) :: to_centre(grid%n_quad), natural(2), excess, least, d
+    logical :: left(grid%n_quad)
+    integer :: k, q
+
+    do q = 1, grid%n_quad
+      to_centre(q) = norm2(0.25_wp*sum(middle(:, grid%corner(:, q)), dim=2) - point)
+    end do
+    left = .true.
+    least = huge(1.0_wp)
+    mapped = 0.0_wp
+    distance = huge(1.0_wp)
+    do k = 1, min(n_near, grid%n_quad)
+      q = minloc(to_centre, dim=1, mask=left)
+      left(q) = .false.
+      call closest_on_quad(middle(:, grid%corner(:, q)), point, natural, d)
+      excess = max(0.0_wp, maxval(abs(natural)) - 1.0_wp)
+      if (excess + d/max(tiny(1.0_wp), to_centre(q)) >= least) cycle
+      least = excess + d/max(tiny(1.0_wp), to_centre(q))
+      mapped = matmul(plane(:, grid%corner(:, q)), bilinear(natural))
+      distance = d
+    end do
+  end subroutine map_point
+
+  !> Find the closest point of a bilinear quadrilateral that is extended beyond its edges, by the
+  !> method of Gauss and Newton.
+  pure subroutine closest_on_quad(corner, point, natural, distance)
+    real(wp), intent(in) :: corner(3, 4), point(3)
+    real(wp), intent(out) :: natural(2), distance
+
+    real(wp) :: residual(3), a(3), b(3), aa, ab, bb, step(2)
+    integer :: i
+
+    natural = 0.0_wp
+    do i = 1, most_iterations
+      residual = point - matmul(corner, bilinear(natural))
+      a = matmul(corner, 0.25_wp*corner_sign(1, :)*(1.0_wp + corner_sign(2, :)*natural(2)))
+      b = matmul(corner, 0.25_wp*corner_sign(2, :)*(1.0_wp + corner_sign(1, :)*natural(1)))
+      aa = dot_product(a, a)
+      ab = dot_product(a, b)
+      bb = dot_product(b, b)
+      step = [bb*dot_product(a, residual) - ab*dot_product(b, residual), &
+          aa*dot_product(b, residual) - ab*dot_product(a, residual)]/(aa*bb - ab**2)
+      natural = max(-farthest, min(farthest, natural + step))
+      if (maxval(abs(step)) < 1.0e-10_wp) exit
+    end do
+    distance = norm2(point - matmul(corner, bilinear(natural)))
+  end subroutine closest_on_quad
+
+end module dd3_sheet_projection

@@ -1,0 +1,155 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Transfer of the state to the integration points of elements that a cut has moved or made: through
+!> the thickness each point takes the values of the points of its own level, so that the problem is
+!> one in the mid-surface. There a linear function is fitted to the points of the old element at this
+!> place and of those around it, weighted by their distance; a linear field is carried exactly, and
+!> no value leaves the range of those around it.
+!>
+!> Stress and internal variables are carried in the material axes, which turn with the sheet; the
+!> axes themselves are carried by their components and made orthonormal again.
+!> Sources: Baptista, Alves, Oliveira, Rodrigues and Menezes 2007 (transfer of the state after the
+!> trimming of hexahedra); Lancaster and Salkauskas, Math. Comput. 37 (1981) 141-158 (moving least
+!> squares); Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174 (polar decomposition).
+module dd3_sheet_transfer
+  use dd3_base_kinds, only : wp
+  use dd3_element_table, only : element_t
+  use dd3_linalg_tensor, only : inverse, solve_small
+  use dd3_sheet_grid, only : grid_t
+  use dd3_sheet_location, only : bilinear, place_t
+  use dd3_sheet_sheet, only : sheet_t
+  implicit none
+  private
+  public :: transfer_point
+
+  !> Softening of the weights, over the distance of the farthest point.
+  real(wp), parameter :: softening = 0.1_wp
+  !> Iterations of the polar decomposition.
+  integer, parameter :: most_iterations = 20
+
+contains
+
+  !> Set the state of one integration point from the old sheet.
+  pure subroutine transfer_point(old, grid, plane, element, layer, level, place, stress, &
+      internal_variables, orientation)
+    !> Sheet before the cut, its grid and the positions of its columns in the plane.
+    type(sheet_t), intent(in) :: old
+    type(grid_t), intent(in) :: grid
+    real(wp), intent(in) :: plane(:, :)
+    type(element_t), intent(in) :: element
+    !> Layer of the element, and an integration point of the same level.
+    integer, intent(in) :: layer, level
+    !> Place on the old grid.
+    type(place_t), intent(in) :: place
+    real(wp), intent(out) :: stress(:), internal_variables(:), orientation(:, :)
+
+    real(wp), allocatable :: weight(:)
+    integer, allocatable :: donor(:, :)
+    real(wp) :: low(size(stress) + size(internal_variables)), high(size(low)), mean(size(low))
+    real(wp) :: value(size(low))
+    integer :: k, n
+
+    n = size(stress)
+    call find_weights(grid, plane, element, layer, level, place, donor, weight)
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    mean = 0.0_wp
+    orientation = 0.0_wp
+    do k = 1, size(weight)
+      associate (p => donor(1, k), e => donor(2, k))
+        value = [old%stress(:, p, e), old%internal_variables(:, p, e)]
+        orientation = orientation + weight(k)*old%orientation(:, :, p, e)
+      end associate
+      low = min(low, value)
+      high = max(high, value)
+      mean = mean + weight(k)*value
+    end do
+    mean = min(high, max(low, mean))
+    stress = mean(:n)
+    internal_variables = mean(n + 1:)
+    call make_orthonormal(orientation)
+  end subroutine transfer_point
+
+  !> Find the integration points around a place on the grid, and their weights: those of the linear
+  !> function fitted by weighted least squares, evaluated at the place.
+  pure subroutine find_weights(grid, plane, element, layer, level, place, donor, weight)
+    type(grid_t), intent(in) :: grid
+    real(wp), intent(in) :: plane(:, :)
+    type(element_t), intent(in) :: element
+    integer, intent(in) :: layer, level
+    type(place_t), intent(in) :: place
+    !> Point and element of each, `(2, n)`.
+    integer, allocatable, intent(out) :: donor(:, :)
+    real(wp), allocatable, intent(out) :: weight(:)
+
+    integer, allocatable :: around(:), same_level(:)
+    real(wp), allocatable :: offset(:, :)
+    real(wp) :: point(2), matrix(3, 3), row(3, 1), reach
+    logical :: regular
+    integer :: i, k, p
+
+    point = matmul(plane(:, grid%corner(:, place%quad)), bilinear(place%natural))
+    around = quads_around(grid, place%quad)
+    same_level = pack([(p, p=1, element%n_point)], &
+        abs(element%point(3, :) - element%point(3, level)) < 1.0e-9_wp)
+    allocate (donor(2, size(around)*size(same_level)), weight(size(around)*size(same_level)))
+    allocate (offset(2, size(weight)))
+    k = 0
+    do i = 1, size(around)
+      do p = 1, size(same_level)
+        k = k + 1
+        donor(:, k) = [same_level(p), grid%element(layer, around(i))]
+        offset(:, k) = matmul(plane(:, grid%corner(:, around(i))), &
+            bilinear(element%point(:2, same_level(p)))) - point
+      end do
+    end do
+    reach = sqrt(maxval(sum(offset**2, dim=1)))
+    offset = offset/reach
+    weight = (1.0_wp/(sum(offset**2, dim=1) + softening**2))**2
+    matrix = 0.0_wp
+    do k = 1, size(weight)
+      row(:, 1) = [1.0_wp, offset(:, k)]
+      matrix = matrix + weight(k)*matmul(row, transpose(row))
+    end do
+    row(:, 1) = [1.0_wp, 0.0_wp, 0.0_wp]
+    call solve_small(3, 1, matrix, row, regular)
+    if (.not. regular) row(:, 1) = [1.0_wp, 0.0_wp, 0.0_wp]
+    weight = weight*(row(1, 1) + row(2, 1)*offset(1, :) + row(3, 1)*offset(2, :))
+    weight = weight/sum(weight)
+  end subroutine find_weights
+
+  !> Return a quadrilateral and those that have a corner in common with it.
+  pure function quads_around(grid, quad) result(around)
+    type(grid_t), intent(in) :: grid
+    integer, intent(in) :: quad
+    integer, allocatable :: around(:)
+
+    integer :: i, k
+
+    around = [quad]
+    do i = 1, 4
+      associate (c => grid%corner(i, quad))
+        do k = grid%first(c), grid%first(c + 1) - 1
+          if (all(around /= grid%quad_at(k))) around = [around, grid%quad_at(k)]
+        end do
+      end associate
+    end do
+  end function quads_around
+
+  !> Replace a matrix by the nearest rotation.
+  pure subroutine make_orthonormal(matrix)
+    real(wp), intent(inout) :: matrix(3, 3)
+
+    real(wp) :: inverted(3, 3), next(3, 3)
+    logical :: regular
+    integer :: i
+
+    do i = 1, most_iterations
+      call inverse(matrix, inverted, regular)
+      if (.not. regular) return
+      next = 0.5_wp*(matrix + transpose(inverted))
+      if (maxval(abs(next - matrix)) < 1.0e-14_wp) exit
+      matrix = next
+    end do
+  end subroutine make_orthonormal
+
+end module dd3_sheet_transfer

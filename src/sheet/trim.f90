@@ -1,0 +1,355 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Cut of a sheet along closed curves. Seen through its thickness the sheet is a grid of
+!> quadrilaterals, and the cut a problem in a plane: that normal to the direction of projection, or,
+!> for curves on the sheet, that of the initial sheet. What is well inside stays as it is; a layer of
+!> new quadrilaterals joins it to the curves (dd3_sheet_core, dd3_sheet_fitting), the columns near
+!> the cut are moved for their shape (dd3_sheet_smoothing), and the state of what is new or moved is
+!> that of the old sheet at its place (dd3_sheet_rebuild, dd3_sheet_transfer).
+module dd3_sheet_trim
+  use dd3_base_error, only : error_list_t
+  use dd3_base_kinds, only : pi, wp
+  use dd3_base_text, only : newline, to_text
+  use dd3_element_table, only : element_t
+  use dd3_input_case, only : trim_spec_t
+  use dd3_sheet_core, only : find_chains, mark_columns, select_core
+  use dd3_sheet_curves, only : curve_t, read_curves
+  use dd3_sheet_fitting, only : fit_chain, fit_t, orient_loops
+  use dd3_sheet_grid, only : grid_t, new_grid
+  use dd3_sheet_location, only : natural_coordinates
+  use dd3_sheet_plane_curve, only : crossing_segments, loop_t
+  use dd3_sheet_projection, only : project_curves
+  use dd3_sheet_rebuild, only : cut_t, least_sine_at, rebuild
+  use dd3_sheet_sheet, only : sheet_t
+  use dd3_sheet_smoothing, only : smooth
+  implicit none
+  private
+  public :: trim_sheet
+
+  !> Rings of old columns beside the chains that may move.
+  integer, parameter :: n_ring = 2
+  !> Least sine of an angle of an element near the cut.
+  real(wp), parameter :: least_sine = 0.15_wp
+
+contains
+
+  !> Cut a sheet. It may be used if no error was added.
+  subroutine trim_sheet(sheet, spec, element, errors)
+    type(sheet_t), intent(inout) :: sheet
+    type(trim_spec_t), intent(in) :: spec
+    type(element_t), intent(in) :: element
+    type(error_list_t), intent(inout) :: errors
+
+    type(cut_t) :: cut
+    type(curve_t), allocatable :: curve(:)
+    type(loop_t), allocatable :: loop(:)
+    type(fit_t), allocatable :: fit(:)
+    logical, allocatable :: stays(:)
+    logical :: regular
+    integer :: before, i
+
+    before = errors%count
+    call read_curves(curve, spec, errors)
+    regular = element%n_node == 8
+    if (regular) call new_grid(cut%grid, sheet%mesh, regular)
+    if (.not. regular) call errors%push_input(spec%source%opened, "a sheet of element "// &
+        trim(element%name)//" in layers that end within it cannot be cut", &
+        "elements with 8 nodes, the same number of layers everywhere", code="E153")
+    if (errors%count > before) return
+    call project_curves(sheet, cut%grid, spec, curve, cut%plane, loop, errors)
+    if (errors%count == before) call check_crossings(spec, curve, loop, errors)
+    if (errors%count > before) return
+    allocate (stays(cut%grid%n_column), cut%kept(cut%grid%n_quad))
+    call mark_columns(loop, spec%keeps_inside, cut%plane, stays)
+    call select_core(cut%grid, loop, cut%plane, stays, cut%kept)
+    call check_core(spec, stays, cut%kept, errors)
+    if (errors%count > before) return
+    call orient_loops(loop, spec%keeps_inside)
+    call find_chains(cut%grid, cut%kept, cut%chain)
+    allocate (fit(size(cut%chain)))
+    do i = 1, size(fit)
+      call fit_chain(fit(i), cut%chain(i), side_at(cut, i) < 0.0_wp, cut%grid, cut%kept, loop, &
+          cut%plane)
+    end do
+    call check_fits(spec, sheet, cut, fit, curve, loop, errors)
+    if (errors%count > before) return
+    call new_patch(cut, sheet, fit, loop)
+    call smooth(cut%patch, loop)
+    call rebuild(sheet, cut, element, spec%name)
+    call report_cut(sheet, cut, spec, errors)
+  end subroutine trim_sheet
+
+  !> Report curves that cross each other or themselves.
+  subroutine check_crossings(spec, curve, loop, errors)
+    type(trim_spec_t), intent(in) :: spec
+    type(curve_t), intent(in) :: curve(:)
+    type(loop_t), intent(in) :: loop(:)
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: place(2, 2)
+
+    place = crossing_segments(loop)
+    if (place(1, 1) == 0) return
+    if (place(1, 1) == place(1, 2)) then
+      call errors%push_input(curve(place(1, 1))%at, "the curve that begins here crosses itself"// &
+          " on the sheet", "a curve without crossings in cut '"//spec%name//"'", code="E153")
+    else
+      call errors%push_input(curve(place(1, 2))%at, "the curve that begins here crosses another"// &
+          " one on the sheet", "curves of cut '"//spec%name//"' that do not cross", code="E153")
+    end if
+  end subroutine check_crossings
+
+  !> Report a cut that leaves all or nothing.
+  subroutine check_core(spec, stays, kept, errors)
+    type(trim_spec_t), intent(in) :: spec
+    logical, intent(in) :: stays(:), kept(:)
+    type(error_list_t), intent(inout) :: errors
+
+    if (.not. any(kept)) then
+      call errors%push_input(spec%source%opened, "nothing of the sheet stays in cut '"// &
+          spec%name//"'", "curves within which the sheet has several elements (see keep, along)", &
+          code="E153")
+    else if (all(kept)) then
+      call errors%push_input(spec%source%opened, "cut '"//spec%name//"' misses the sheet: "// &
+          "nothing is cut off", "curves on the sheet, larger than its elements (see keep, along)", &
+          code="E153")
+    else if (all(stays)) then
+      call errors%push_input(spec%source%opened, "no node lies on the part that cut '"// &
+          spec%name//"' takes off", "curves that take off more than an element; a finer mesh", &
+          code="E153")
+    end if
+  end subroutine check_core
+
+  !> Report chains that do not follow a curve, and curves that no chain follows.
+  subroutine check_fits(spec, sheet, cut, fit, curve, loop, errors)
+    type(trim_spec_t), intent(in) :: spec
+    type(sheet_t), intent(in) :: sheet
+    type(cut_t), intent(in) :: cut
+    type(fit_t), intent(in) :: fit(:)
+    type(curve_t), intent(in) :: curve(:)
+    type(loop_t), intent(in) :: loop(:)
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, k, node
+
+    do i = 1, size(fit)
+      if (fit(i)%loop > 0) cycle
+      node = cut%grid%node(0, cut%chain(i)%column(1))
+      call errors%push_input(spec%source%opened, "the elements do not follow cut '"//spec%name// &
+          "' near "//point_text(sheet%x(:, node))//": it has features smaller than an element, "// &
+          "or meets the border of the sheet at a small angle", &
+          "a smoother curve, or a finer mesh there", code="E153")
+      return
+    end do
+    do k = 1, size(loop)
+      if (any(fit%loop == k) .or. .not. on_sheet(cut, loop(k)%point(:, 1))) cycle
+      call errors%push_input(curve(k)%at, "the curve that begins here lies within an element, or "// &
+          "the strip beside it is narrower than one", "a larger curve, or a finer mesh there", &
+          code="E153")
+    end do
+  end subroutine check_fits
+
+  !> Whether a point of the plane lies on the sheet.
+  pure logical function on_sheet(cut, point)
+    type(cut_t), intent(in) :: cut
+    real(wp), intent(in) :: point(2)
+
+    real(wp) :: natural(2), corner(2, 4)
+    integer :: q
+
+    do q = 1, cut%grid%n_quad
+      corner = cut%plane(:, cut%grid%corner(:, q))
+      if (any(point < minval(corner, dim=2)) .or. any(point > maxval(corner, dim=2))) cycle
+      call natural_coordinates(corner, point, natural, on_sheet)
+      if (on_sheet) on_sheet = all(abs(natural) <= 1.0_wp)
+      if (on_sheet) return
+    end do
+    on_sheet = .false.
+  end function on_sheet
+
+  !> Return the side from which the sheet is seen at a chain: 1 from above, -1 from below.
+  pure real(wp) function side_at(cut, chain)
+    type(cut_t), intent(in) :: cut
+    integer, intent(in) :: chain
+
+    integer :: k, q
+
+    associate (column => cut%chain(chain)%column(1), grid => cut%grid)
+      side_at = 1.0_wp
+      do k = grid%first(column), grid%first(column + 1) - 1
+        q = grid%quad_at(k)
+        if (cut%kept(q)) side_at = side_of(cut%plane(:, grid%corner(:, q)))
+      end do
+    end associate
+  end function side_at
+
+  !> Return the sign of the area of a quadrilateral.
+  pure real(wp) function side_of(corner)
+    real(wp), intent(in) :: corner(2, 4)
+
+    associate (u => corner(:, 3) - corner(:, 1), v => corner(:, 4) - corner(:, 2))
+      side_of = sign(1.0_wp, u(1)*v(2) - u(2)*v(1))
+    end associate
+  end function side_of
+
+  !> Set the quadrilaterals after the cut: those that stay, and a layer between each chain and its
+  !> points on the curve.
+  pure subroutine new_patch(cut, sheet, fit, loop)
+    type(cut_t), intent(inout) :: cut
+    type(sheet_t), intent(in) :: sheet
+    type(fit_t), intent(in) :: fit(:)
+    type(loop_t), intent(in) :: loop(:)
+
+    integer :: c, i, j, k, n, n_column, n_kept, n_new, q
+
+    associate (grid => cut%grid, patch => cut%patch)
+      n_kept = count(cut%kept)
+      n_new = sum([(size(cut%chain(k)%column) - merge(0, 1, cut%chain(k)%closed), k=1, size(fit))])
+      n_column = grid%n_column + sum([(size(cut%chain(k)%column), k=1, size(fit))])
+      allocate (patch%corner(4, n_kept + n_new), patch%side(n_kept + n_new))
+      allocate (patch%plane(2, n_column), patch%metric(3, n_column), patch%free(n_column))
+      allocate (patch%loop(n_column), cut%source(n_column), source=0)
+      allocate (patch%arc(n_column), source=0.0_wp)
+      patch%corner(:, :n_kept) = grid%corner(:, pack([(q, q=1, grid%n_quad)], cut%kept))
+      patch%plane(:, :grid%n_column) = cut%plane
+      patch%metric(:, :grid%n_column) = metric_of(sheet, cut)
+      patch%free = .false.
+      call free_near_chains(cut)
+      cut%source(:grid%n_column) = [(c, c=1, grid%n_column)]
+      c = grid%n_column
+      q = n_kept
+      do k = 1, size(fit)
+        n = size(cut%chain(k)%column)
+        do i = 1, n
+          c = c + 1
+          cut%source(c) = cut%chain(k)%column(i)
+          patch%plane(:, c) = loop(fit(k)%loop)%at(fit(k)%arc(i))
+          patch%metric(:, c) = patch%metric(:, cut%source(c))
+          patch%arc(c) = fit(k)%arc(i)
+          if (.not. fit(k)%fixed(i)) patch%loop(c) = fit(k)%loop
+          if (i == n .and. .not. cut%chain(k)%closed) exit
+          j = merge(c + 1, c + 1 - n, i < n)
+          q = q + 1
+          patch%corner(:, q) = [cut%chain(k)%column(mod(i, n) + 1), cut%chain(k)%column(i), c, j]
+        end do
+      end do
+      do q = 1, size(patch%corner, 2)
+        patch%side(q) = side_of(patch%plane(:, patch%corner(:, q)))
+      end do
+      q = n_kept
+      do k = 1, size(fit)
+        n = size(cut%chain(k)%column) - merge(0, 1, cut%chain(k)%closed)
+        patch%side(q + 1:q + n) = side_at(cut, k)
+        q = q + n
+      end do
+    end associate
+  end subroutine new_patch
+
+  !> Free the columns of the chains and some rings beside them, those at the border of the sheet
+  !> apart.
+  pure subroutine free_near_chains(cut)
+    type(cut_t), intent(inout) :: cut
+
+    logical :: near(cut%grid%n_column), border(cut%grid%n_column)
+    integer :: i, k, q, ring
+
+    associate (grid => cut%grid)
+      near = .false.
+      border = .false.
+      do k = 1, size(cut%chain)
+        near(cut%chain(k)%column) = .true.
+      end do
+      do ring = 1, n_ring
+        cut%patch%free(:grid%n_column) = near
+        do q = 1, grid%n_quad
+          if (.not. cut%kept(q)) cycle
+          if (any(cut%patch%free(grid%corner(:, q)))) near(grid%corner(:, q)) = .true.
+        end do
+      end do
+      do q = 1, grid%n_quad
+        do i = 1, 4
+          if (grid%neighbour(i, q) == 0) border(grid%corner([i, mod(i, 4) + 1], q)) = .true.
+        end do
+      end do
+      cut%patch%free(:grid%n_column) = near .and. .not. border
+    end associate
+  end subroutine free_near_chains
+
+  !> Return the metric at the columns: the mean over the quadrilaterals at each.
+  pure function metric_of(sheet, cut) result(metric)
+    type(sheet_t), intent(in) :: sheet
+    type(cut_t), intent(in) :: cut
+    real(wp) :: metric(3, cut%grid%n_column)
+
+    real(wp) :: u(2), v(2), a(3), b(3), determinant, inverted(2, 2), product(2, 2)
+    integer :: number(cut%grid%n_column), q
+
+    metric = 0.0_wp
+    number = 0
+    associate (grid => cut%grid)
+      do q = 1, grid%n_quad
+        associate (c => grid%corner(:, q))
+          u = cut%plane(:, c(3)) - cut%plane(:, c(1))
+          v = cut%plane(:, c(4)) - cut%plane(:, c(2))
+          determinant = u(1)*v(2) - u(2)*v(1)
+          if (.not. abs(determinant) > 0.0_wp) cycle
+          a = sheet%x(:, grid%node(0, c(3))) - sheet%x(:, grid%node(0, c(1)))
+          b = sheet%x(:, grid%node(0, c(4))) - sheet%x(:, grid%node(0, c(2)))
+          ! The inverse of the matrix with the columns u and v.
+          inverted = reshape([v(2), -u(2), -v(1), u(1)], [2, 2])/determinant
+          product = reshape([dot_product(a, a), dot_product(a, b), dot_product(a, b), &
+              dot_product(b, b)], [2, 2])
+          product = matmul(transpose(inverted), matmul(product, inverted))
+          metric(:, c) = metric(:, c) + spread([product(1, 1), product(1, 2), product(2, 2)], 2, 4)
+          number(c) = number(c) + 1
+        end associate
+      end do
+    end associate
+    metric = metric/spread(real(max(1, number), wp), 1, 3)
+    where (spread(number == 0, 1, 3)) metric = spread([1.0_wp, 0.0_wp, 1.0_wp], 2, size(number))
+  end function metric_of
+
+  !> Report what the cut has made of the sheet, and elements of bad shape as an error.
+  subroutine report_cut(sheet, cut, spec, errors)
+    !> After the cut.
+    type(sheet_t), intent(inout) :: sheet
+    type(cut_t), intent(in) :: cut
+    type(trim_spec_t), intent(in) :: spec
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: sine, worst
+    integer :: e, first, at
+
+    first = cut%grid%n_layer*count(cut%kept)
+    worst = 1.0_wp
+    at = 1
+    do e = 1, sheet%mesh%n_element
+      sine = least_sine_at(sheet%x, sheet%mesh%connectivity(:, e))
+      if (sine >= worst) cycle
+      ! Elements away from the cut have the shapes that they had.
+      if (e <= first) then
+        if (.not. any(cut%patch%free(cut%patch%corner(:, (e - 1)/cut%grid%n_layer + 1)))) cycle
+      end if
+      worst = sine
+      at = e
+    end do
+    sheet%report = sheet%report//"cut '"//spec%name//"': "// &
+        to_text(cut%grid%n_layer*count(.not. cut%kept))//" elements removed, "// &
+        to_text(sheet%mesh%n_element - first)//" new; least angle "// &
+        to_text(180.0_wp/pi*asin(max(0.0_wp, worst)), 3)//" degrees"//newline
+    if (worst > least_sine) return
+    call errors%push_input(spec%source%opened, "cut '"//spec%name//"' makes an element of bad "// &
+        "shape near "//point_text(sheet%x(:, sheet%mesh%connectivity(1, at)))// &
+        ": the sine of an angle is "//to_text(worst, 2), &
+        "a smoother curve that meets the border of the sheet at a large angle, a finer mesh, or "// &
+        "another direction (along)", code="E153")
+  end subroutine report_cut
+
+  !> Return a point as text.
+  pure function point_text(x) result(text)
+    real(wp), intent(in) :: x(3)
+    character(len=:), allocatable :: text
+
+    text = to_text(x(1), 4)//" "//to_text(x(2), 4)//" "//to_text(x(3), 4)
+  end function point_text
+
+end module dd3_sheet_trim
