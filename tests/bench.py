@@ -116,3 +116,13 @@ class Bench:
         if done.code not in codes:
             raise Problem(f"{name}: exit code {done.code}\n{done.output}{done.errors}")
         return Run(folder, done)
+
+    def refuse(self, name, deck):
+        """Return what the program says of a deck that it must refuse with exit code 2, without results."""
+        file = self.work / f"{name}.dat"
+        file.write_text(deck, encoding="utf-8")
+        folder = self.work / f"{name}.out"
+        done = launch(command(self.program, file, folder, ["--quiet"]), timeout=300)
+        if done.code != 2 or folder.exists():
+            raise Problem(f"{name}: exit code {done.code}, expected 2 and no results\n{done.output}{done.errors}")
+        return done.output + done.errors

@@ -6,15 +6,16 @@
 !> a core of the grid and a layer that connects it with the boundary).
 module dd3_sheet_core
   use dd3_base_kinds, only : wp
+  use dd3_sheet_cut_function, only : cut_function_t
   use dd3_sheet_grid, only : grid_t
-  use dd3_sheet_plane_curve, only : is_inside, loop_t
+  use dd3_sheet_location, only : corner_sign
   implicit none
   private
-  public :: chain_t, mark_columns, select_core, find_chains, edge_length
+  public :: chain_t, mark_columns, select_core, find_chains
 
-  !> Least distance of a corner of the core from the curves, over the mean length of the edges at it:
-  !> the new layer is at least as wide.
-  real(wp), parameter :: least_width = 0.35_wp
+  !> Least distance of a corner of the core from the cut along an edge, over its length: the new layer
+  !> is at least as wide.
+  real(wp), parameter :: least_width = 0.4_wp
 
   !> Edges along the cut that follow one another; what stays is on their left.
   type :: chain_t
@@ -26,77 +27,50 @@ module dd3_sheet_core
 contains
 
   !> Mark the columns that stay.
-  pure subroutine mark_columns(loop, keeps_inside, plane, stays)
-    type(loop_t), intent(in) :: loop(:)
-    logical, intent(in) :: keeps_inside
-    !> `(2, n_column)`, mm.
-    real(wp), intent(in) :: plane(:, :)
+  pure subroutine mark_columns(cut, stays)
+    type(cut_function_t), intent(in) :: cut
     logical, intent(out) :: stays(:)
 
     integer :: c
 
     do c = 1, size(stays)
-      stays(c) = is_inside(loop, plane(:, c)) .eqv. keeps_inside
+      stays(c) = cut%value_at(cut%plane(:, c)) > 0.0_wp
     end do
   end subroutine mark_columns
 
-  !> Return the mean length of the edges at each column, mm.
-  pure function edge_length(grid, plane) result(length)
-    type(grid_t), intent(in) :: grid
-    !> `(2, n_column)`, mm.
-    real(wp), intent(in) :: plane(:, :)
-    real(wp) :: length(grid%n_column)
-
-    real(wp) :: total
-    integer :: number(grid%n_column), q, i
-
-    length = 0.0_wp
-    number = 0
-    do q = 1, grid%n_quad
-      do i = 1, 4
-        associate (ends => [grid%corner(i, q), grid%corner(mod(i, 4) + 1, q)])
-          total = norm2(plane(:, ends(2)) - plane(:, ends(1)))
-          length(ends) = length(ends) + total
-          number(ends) = number(ends) + 1
-        end associate
-      end do
-    end do
-    length = length/real(max(1, number), wp)
-  end function edge_length
-
-  !> Select the quadrilaterals whose corners stay and are not too close to the curves, without those
-  !> that hang on the others by a corner.
-  pure subroutine select_core(grid, loop, plane, stays, kept)
-    type(grid_t), intent(in) :: grid
-    type(loop_t), intent(in) :: loop(:)
-    !> `(2, n_column)`, mm.
-    real(wp), intent(in) :: plane(:, :)
+  !> Select the quadrilaterals whose corners stay and are not too close to the cut, without those that
+  !> hang on the others by a corner.
+  pure subroutine select_core(cut, stays, kept)
+    type(cut_function_t), intent(in) :: cut
     logical, intent(in) :: stays(:)
     logical, intent(out) :: kept(:)
 
-    real(wp) :: length(grid%n_column), distance, arc
-    logical :: far(grid%n_column), changed
-    integer :: c, k, q
+    real(wp) :: zero(2)
+    logical :: far(cut%grid%n_column), changed
+    integer :: c, i, k, q
 
-    length = edge_length(grid, plane)
-    far = stays
-    do c = 1, grid%n_column
-      if (.not. stays(c)) cycle
-      do k = 1, size(loop)
-        call loop(k)%closest(plane(:, c), arc, distance)
-        far(c) = far(c) .and. distance >= least_width*length(c)
+    associate (grid => cut%grid)
+      far = stays
+      do q = 1, grid%n_quad
+        do i = 1, 4
+          k = mod(i, 4) + 1
+          if (stays(grid%corner(i, q)) .eqv. stays(grid%corner(k, q))) cycle
+          zero = cut%zero_on_edge(q, i)
+          if (norm2(zero - corner_sign(:, i)) < 2.0_wp*least_width) far(grid%corner(i, q)) = .false.
+          if (norm2(zero - corner_sign(:, k)) < 2.0_wp*least_width) far(grid%corner(k, q)) = .false.
+        end do
       end do
-    end do
-    do q = 1, grid%n_quad
-      kept(q) = all(far(grid%corner(:, q)))
-    end do
-    do
-      changed = .false.
-      do c = 1, grid%n_column
-        call drop_fans(grid, c, kept, changed)
+      do q = 1, grid%n_quad
+        kept(q) = all(far(grid%corner(:, q)))
       end do
-      if (.not. changed) exit
-    end do
+      do
+        changed = .false.
+        do c = 1, grid%n_column
+          call drop_fans(grid, c, kept, changed)
+        end do
+        if (.not. changed) exit
+      end do
+    end associate
   end subroutine select_core
 
   !> Drop all but the largest of the groups of quadrilaterals at a column that have no edge in

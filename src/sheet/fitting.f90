@@ -1,26 +1,23 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Second step of a cut: a point on the curves for each column of a chain, in the order of the chain.
-!> The corners of the curves are points of their own, and where a chain ends, at the border of the
-!> sheet, so is the crossing of border and curve.
+!> Second step of a cut: a point on the line of the cut for each column of a chain, in the order of the
+!> chain. The corners of the line are points of their own, and so are its ends at the border of the
+!> sheet.
 module dd3_sheet_fitting
   use dd3_base_kinds, only : wp
   use dd3_sheet_core, only : chain_t
-  use dd3_sheet_grid, only : grid_t
-  use dd3_sheet_plane_curve, only : is_inside, loop_t, new_loop
+  use dd3_sheet_plane_curve, only : loop_t
   implicit none
   private
-  public :: fit_t, fit_chain, orient_loops
+  public :: fit_t, fit_chain
 
-  !> Passes that even out the distances along the curve.
+  !> Passes that even out the distances along the line.
   integer, parameter :: n_pass = 10
-  !> Distance from a curve at which its sides are told apart, over its length.
-  real(wp), parameter :: beside = 1.0e-7_wp
 
-  !> Points of a chain on a curve.
+  !> Points of a chain on a line.
   type :: fit_t
-    !> Loop on which they lie; 0 if the chain does not follow a loop.
+    !> Line on which they lie; 0 if the chain does not follow one.
     integer :: loop = 0
-    !> Arc length of each, mm, increasing; decreasing in a mirrored chain.
+    !> Arc length of each, increasing, mm.
     real(wp), allocatable :: arc(:)
     !> Points that do not slide: corners and ends.
     logical, allocatable :: fixed(:)
@@ -28,75 +25,35 @@ module dd3_sheet_fitting
 
 contains
 
-  !> Turn the loops so that what stays is on their left.
-  pure subroutine orient_loops(loop, keeps_inside)
-    type(loop_t), intent(inout) :: loop(:)
-    logical, intent(in) :: keeps_inside
-
-    type(loop_t) :: turned
-    real(wp) :: side(2), point(2)
-    integer :: k, i, n
-
-    do k = 1, size(loop)
-      associate (arc => loop(k)%arc)
-        i = maxloc(arc(2:) - arc(:size(arc) - 1), dim=1)
-      end associate
-      n = size(loop(k)%point, 2)
-      side = loop(k)%point(:, mod(i, n) + 1) - loop(k)%point(:, i)
-      point = loop(k)%point(:, i) + 0.5_wp*side &
-          + beside*loop(k)%length()*[-side(2), side(1)]/norm2(side)
-      if (is_inside(loop, point) .eqv. keeps_inside) cycle
-      call new_loop(turned, loop(k)%point(:, n:1:-1))
-      loop(k) = turned
-    end do
-  end subroutine orient_loops
-
   !> Find the points of a chain.
-  pure subroutine fit_chain(fit, chain_on_sheet, mirrored, grid, kept, loop, plane)
+  pure subroutine fit_chain(fit, chain, loop, plane)
     type(fit_t), intent(out) :: fit
-    type(chain_t), intent(in) :: chain_on_sheet
-    !> Whether the sheet is seen from below in the plane, where what stays is on the right then.
-    logical, intent(in) :: mirrored
-    type(grid_t), intent(in) :: grid
-    !> Quadrilaterals of the core.
-    logical, intent(in) :: kept(:)
-    !> Oriented.
+    type(chain_t), intent(in) :: chain
+    !> Lines of the cut, with what stays on their left.
     type(loop_t), intent(in) :: loop(:)
     !> Positions of the columns, `(2, n_column)`, mm.
     real(wp), intent(in) :: plane(:, :)
 
-    real(wp) :: arc(size(chain_on_sheet%column)), distance(size(chain_on_sheet%column)), end_arc(2)
-    type(chain_t) :: chain
-    integer :: ends(2), n
-    logical :: found(2)
+    real(wp) :: arc(size(chain%column)), distance(size(chain%column))
+    integer :: n
 
-    chain = chain_on_sheet
     n = size(chain%column)
-    if (mirrored) chain%column = chain%column(n:1:-1)
     fit%loop = nearest_loop(chain, loop, plane)
-    call project(chain, loop(fit%loop), plane, arc, distance)
-    fit%arc = arc
-    allocate (fit%fixed(n), source=.false.)
-    if (chain%closed) then
-      call unwrap(fit, chain, loop(fit%loop), plane, minloc(distance, dim=1))
-    else
-      ends = chain%column([1, n])
-      call find_crossing(grid, kept, loop, plane, ends(1), .not. mirrored, fit%loop, end_arc(1), &
-          found(1))
-      call find_crossing(grid, kept, loop, plane, ends(2), mirrored, fit%loop, end_arc(2), found(2))
-      if (.not. all(found)) then
+    associate (line => loop(fit%loop))
+      call project(chain, line, plane, arc, distance)
+      fit%arc = arc
+      allocate (fit%fixed(n), source=.false.)
+      if (chain%closed .neqv. line%closed) then
         fit%loop = 0
-        return
+      else if (chain%closed) then
+        call unwrap(fit, chain, line, plane, minloc(distance, dim=1))
+      else
+        fit%arc(1) = 0.0_wp
+        fit%arc(n) = line%length()
+        fit%fixed([1, n]) = .true.
       end if
-      fit%arc(1) = end_arc(1)
-      fit%arc(n) = end_arc(2)
-      fit%fixed([1, n]) = .true.
-      call unwrap(fit, chain, loop(fit%loop), plane, 1)
-    end if
-    if (fit%loop > 0) call order_points(fit, chain%closed, loop(fit%loop))
-    if (.not. mirrored) return
-    fit%arc = fit%arc(n:1:-1)
-    fit%fixed = fit%fixed(n:1:-1)
+      if (fit%loop > 0) call order_points(fit, line)
+    end associate
   end subroutine fit_chain
 
   !> Return the loop that is closest to most columns of a chain.
@@ -133,59 +90,7 @@ contains
     end do
   end subroutine project
 
-  !> Follow the border of the sheet from the end of a chain, through what goes, to its crossing with
-  !> a loop.
-  pure subroutine find_crossing(grid, kept, loop, plane, column, first, wanted, arc, found)
-    type(grid_t), intent(in) :: grid
-    logical, intent(in) :: kept(:)
-    type(loop_t), intent(in) :: loop(:)
-    real(wp), intent(in) :: plane(:, :)
-    !> End of the chain, and whether it is its first column.
-    integer, intent(in) :: column
-    logical, intent(in) :: first
-    !> Loop that is crossed.
-    integer, intent(in) :: wanted
-    real(wp), intent(out) :: arc
-    logical, intent(out) :: found
-
-    real(wp) :: fraction
-    integer :: here, next, step
-
-    here = column
-    found = .false.
-    arc = 0.0_wp
-    do step = 1, grid%n_quad
-      next = beyond(grid, kept, here, first)
-      if (next == 0) return
-      call loop(wanted)%crossing(plane(:, here), plane(:, next), arc, fraction, found)
-      if (found) return
-      here = next
-    end do
-  end subroutine find_crossing
-
-  !> Return the next column on the border of the sheet among the quadrilaterals that go; 0 for none.
-  pure integer function beyond(grid, kept, column, forward)
-    type(grid_t), intent(in) :: grid
-    logical, intent(in) :: kept(:)
-    integer, intent(in) :: column
-    !> Whether the border is followed counter-clockwise.
-    logical, intent(in) :: forward
-
-    integer :: i, k, q
-
-    do k = grid%first(column), grid%first(column + 1) - 1
-      q = grid%quad_at(k)
-      if (kept(q)) cycle
-      i = findloc(grid%corner(:, q), column, dim=1)
-      if (.not. forward) i = mod(i + 2, 4) + 1
-      if (grid%neighbour(i, q) > 0) cycle
-      beyond = grid%corner(merge(mod(i, 4) + 1, i, forward), q)
-      return
-    end do
-    beyond = 0
-  end function beyond
-
-  !> Let the arc lengths increase along the chain beyond the length of the loop.
+  !> Let the arc lengths increase along a closed chain beyond the length of its line.
   pure subroutine unwrap(fit, chain, loop, plane, start)
     type(fit_t), intent(inout) :: fit
     type(chain_t), intent(in) :: chain
@@ -204,12 +109,6 @@ contains
       expected = fit%arc(i) + norm2(plane(:, chain%column(j)) - plane(:, chain%column(i)))
       fit%arc(j) = fit%arc(j) + loop%length()*anint((expected - fit%arc(j))/loop%length())
     end do
-    if (.not. chain%closed) then
-      ! The end lies ahead of the start.
-      if (fit%arc(n) <= fit%arc(1)) fit%arc(n) = fit%arc(n) + loop%length()
-      if (fit%arc(n) - fit%arc(1) > loop%length()) fit%loop = 0
-      return
-    end if
     ! The last column comes back to the start after one round.
     i = merge(n, start - 1, start == 1)
     if (abs(fit%arc(i) - fit%arc(start) - loop%length()) > 0.5_wp*loop%length()) fit%loop = 0
@@ -218,9 +117,8 @@ contains
 
   !> Make the arc lengths increase, put the nearest points on the corners of the loop, and even out
   !> the distances between the points that are not fixed.
-  pure subroutine order_points(fit, closed, loop)
+  pure subroutine order_points(fit, loop)
     type(fit_t), intent(inout) :: fit
-    logical, intent(in) :: closed
     type(loop_t), intent(in) :: loop
 
     real(wp) :: before, after
@@ -229,7 +127,7 @@ contains
     n = size(fit%arc)
     if (n == 1) return
     call make_monotonic(fit%arc)
-    call fix_corners(fit, closed, loop)
+    call fix_corners(fit, loop)
     do pass = 1, n_pass
       do i = 1, n
         if (fit%fixed(i)) cycle
@@ -276,22 +174,24 @@ contains
   end subroutine make_monotonic
 
   !> Fix the point nearest to each corner of the loop there, in the order of the chain.
-  pure subroutine fix_corners(fit, closed, loop)
+  pure subroutine fix_corners(fit, loop)
     type(fit_t), intent(inout) :: fit
-    logical, intent(in) :: closed
     type(loop_t), intent(in) :: loop
 
     real(wp) :: corner, first
-    integer :: i, k, n, round
+    integer :: i, k, n, round, rounds
 
     n = size(fit%arc)
-    first = fit%arc(1)
-    if (closed) first = 0.5_wp*(fit%arc(1) + fit%arc(n) - loop%length())
+    first = 0.0_wp
+    rounds = 0
+    if (loop%closed) then
+      first = 0.5_wp*(fit%arc(1) + fit%arc(n) - loop%length())
+      rounds = 2
+    end if
     do k = 1, size(loop%corner)
-      do round = -2, 2
+      do round = -rounds, rounds
         corner = loop%corner(k) + real(round, wp)*loop%length()
-        if (corner < first .or. corner >= first + loop%length() .or. &
-            (.not. closed .and. corner > fit%arc(n))) cycle
+        if (corner < first .or. corner >= first + loop%length()) cycle
         i = minloc(abs(fit%arc - corner), dim=1, mask=.not. fit%fixed)
         if (i == 0) return
         fit%fixed(i) = .true.

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Closed polygons in a plane: which points lie inside, the closest point, crossings, corners.
+!> Polygons in a plane: which points lie inside, the closest point, crossings, corners.
 module dd3_sheet_plane_curve
   use dd3_base_kinds, only : pi, wp
   implicit none
@@ -9,19 +9,21 @@ module dd3_sheet_plane_curve
   !> Least angle between two segments at a corner of a curve, rad.
   real(wp), parameter :: corner_angle = pi/6.0_wp
 
-  !> A closed polygon.
+  !> A polygon, closed by a side from its last vertex to its first unless it is open.
   type :: loop_t
     !> Vertices, `(2, n)`, mm.
     real(wp), allocatable :: point(:, :)
-    !> Arc length at the vertices, the first one again at the end, `(n + 1)`, mm.
+    logical :: closed = .true.
+    !> Arc length at the vertices, that of the first one again at the end, `(n + 1)`, mm; not used by
+    !> an open polygon.
     real(wp), allocatable :: arc(:)
     !> Arc lengths of the corners.
     real(wp), allocatable :: corner(:)
   contains
     procedure :: length
+    procedure :: n_side
     procedure :: closest
     procedure :: at
-    procedure :: crossing
   end type loop_t
 
 contains
@@ -57,14 +59,21 @@ contains
     end do
   end subroutine new_loop
 
-  !> Return the length of a loop, mm.
+  !> Return the length of a polygon, mm.
   pure real(wp) function length(self)
     class(loop_t), intent(in) :: self
 
-    length = self%arc(size(self%arc))
+    length = self%arc(self%n_side() + 1)
   end function length
 
-  !> Find the closest point of a loop.
+  !> Return the number of its sides.
+  pure integer function n_side(self)
+    class(loop_t), intent(in) :: self
+
+    n_side = size(self%point, 2) - merge(0, 1, self%closed)
+  end function n_side
+
+  !> Find the closest point of a polygon.
   pure subroutine closest(self, point, arc, distance)
     class(loop_t), intent(in) :: self
     real(wp), intent(in) :: point(2)
@@ -77,10 +86,11 @@ contains
     n = size(self%point, 2)
     distance = huge(1.0_wp)
     arc = 0.0_wp
-    do i = 1, n
+    do i = 1, self%n_side()
       from = point - self%point(:, i)
       side = self%point(:, mod(i, n) + 1) - self%point(:, i)
-      t = min(1.0_wp, max(0.0_wp, dot_product(from, side)/dot_product(side, side)))
+      t = min(1.0_wp, max(0.0_wp, dot_product(from, side)/max(tiny(1.0_wp), &
+          dot_product(side, side))))
       d = norm2(from - t*side)
       if (d >= distance) cycle
       distance = d
@@ -88,7 +98,7 @@ contains
     end do
   end subroutine closest
 
-  !> Return the point at an arc length; the loop goes on after its end.
+  !> Return the point at an arc length; a closed polygon goes on after its end.
   pure function at(self, arc) result(point)
     class(loop_t), intent(in) :: self
     !> mm.
@@ -99,9 +109,10 @@ contains
     integer :: i, j, k, n
 
     n = size(self%point, 2)
-    s = modulo(arc, self%length())
+    s = min(self%length(), max(0.0_wp, arc))
+    if (self%closed) s = modulo(arc, self%length())
     i = 1
-    j = n + 1
+    j = self%n_side() + 1
     do while (j - i > 1)
       k = (i + j)/2
       if (self%arc(k) <= s) then
@@ -110,35 +121,9 @@ contains
         j = k
       end if
     end do
-    s = (s - self%arc(i))/(self%arc(i + 1) - self%arc(i))
+    s = (s - self%arc(i))/max(tiny(1.0_wp), self%arc(i + 1) - self%arc(i))
     point = self%point(:, i) + s*(self%point(:, mod(i, n) + 1) - self%point(:, i))
   end function at
-
-  !> Find the first crossing of a segment with a loop.
-  pure subroutine crossing(self, from, to, arc, fraction, found)
-    class(loop_t), intent(in) :: self
-    !> Ends of the segment.
-    real(wp), intent(in) :: from(2), to(2)
-    !> Arc length of the crossing, mm, and its place on the segment, 0 to 1.
-    real(wp), intent(out) :: arc, fraction
-    logical, intent(out) :: found
-
-    real(wp) :: s, t
-    logical :: meets
-    integer :: i, n
-
-    n = size(self%point, 2)
-    found = .false.
-    arc = 0.0_wp
-    fraction = huge(1.0_wp)
-    do i = 1, n
-      call intersect(from, to, self%point(:, i), self%point(:, mod(i, n) + 1), s, t, meets)
-      if (.not. meets .or. s >= fraction) cycle
-      found = .true.
-      fraction = s
-      arc = self%arc(i) + t*(self%arc(i + 1) - self%arc(i))
-    end do
-  end subroutine crossing
 
   !> Intersect two segments.
   pure subroutine intersect(a, b, c, d, s, t, meets)

@@ -3,11 +3,10 @@
 !> curves on the sheet it is that of the initial sheet, on which their closest points are mapped.
 module dd3_sheet_projection
   use dd3_base_error, only : error_list_t
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_text, only : to_text
   use dd3_input_case, only : trim_spec_t
   use dd3_linalg_tensor, only : cross, identity
-  use dd3_sheet_core, only : edge_length
   use dd3_sheet_curves, only : curve_t
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
@@ -87,7 +86,7 @@ contains
     real(wp) :: step, distance, largest, point(3)
     integer :: i, j, k, n, total
 
-    step = sum(edge_length(grid, plane))/real(grid%n_column, wp)
+    step = mean_length(grid, plane)
     n = size(curve%point, 2)
     total = 0
     do i = 1, n
@@ -122,6 +121,17 @@ contains
     end function parts
 
   end subroutine map_curve
+
+  !> Return the mean length of the diagonals of the quadrilaterals over that of a square's sides, mm.
+  pure real(wp) function mean_length(grid, plane)
+    type(grid_t), intent(in) :: grid
+    real(wp), intent(in) :: plane(:, :)
+
+    integer :: q
+
+    mean_length = sum([(norm2(plane(:, grid%corner(3, q)) - plane(:, grid%corner(1, q))), &
+        q=1, grid%n_quad)])/(sqrt2*real(grid%n_quad, wp))
+  end function mean_length
 
   !> Map a point to the initial sheet by its closest point on the quadrilaterals near it; beyond the
   !> border they are extended.

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Last step of a cut: the sheet on its new grid. What did not move keeps its nodes, elements and
-!> state; the columns that moved or are new have the positions of the old sheet at their places in
-!> the plane, initially as well as now, so that thickness and strains go on without a break.
+!> state; the columns that moved or are new have the positions of the old sheet at their places on
+!> the initial sheet, then as well as now, so that thickness and strains go on without a break.
 module dd3_sheet_rebuild
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -20,10 +20,10 @@ module dd3_sheet_rebuild
   !> Weight of a corner below which a place lies on the edge across.
   real(wp), parameter :: on_edge = 1.0e-6_wp
 
-  !> The parts of a cut: the old grid and its plane, and what becomes of it.
+  !> The parts of a cut: the old grid, and what becomes of it.
   type :: cut_t
     type(grid_t) :: grid
-    !> Positions of the old columns in the plane, `(2, n_column)`, mm.
+    !> Positions of the old columns on the initial sheet, `(2, n_column)`, mm.
     real(wp), allocatable :: plane(:, :)
     !> Quadrilaterals that stay, `(n_quad)`.
     logical, allocatable :: kept(:)

@@ -31,8 +31,6 @@ module dd3_sheet_smoothing
     !> Positions in the plane, `(2, n_column)`, mm, and the metric there: products of the vectors in
     !> space that belong to the unit vectors of the plane, 11 12 22, `(3, n_column)`.
     real(wp), allocatable :: plane(:, :), metric(:, :)
-    !> 1, or -1 where the sheet is seen from below, `(n_quad)`.
-    real(wp), allocatable :: side(:)
     !> Whether a column may move in the plane; loop on which it slides, 0 for none, and its arc
     !> length there, mm.
     logical, allocatable :: free(:)
@@ -198,7 +196,7 @@ contains
           do i = 1, 4
             u = self%plane(:, corner(mod(i, 4) + 1)) - self%plane(:, corner(i))
             v = self%plane(:, corner(mod(i + 2, 4) + 1)) - self%plane(:, corner(i))
-            determinant = self%side(self%quad_at(k))*(u(1)*v(2) - u(2)*v(1))
+            determinant = u(1)*v(2) - u(2)*v(1)
             determinant = 0.5_wp*(determinant + sqrt(determinant**2 + 4.0_wp*delta**2))
             distortion = distortion + ((m(1)*(u(1)**2 + v(1)**2) + 2.0_wp*m(2)*(u(1)*u(2) &
                 + v(1)*v(2)) + m(3)*(u(2)**2 + v(2)**2))/(2.0_wp*root*determinant))**2

@@ -1,8 +1,10 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Cut of a sheet along closed curves. Seen through its thickness the sheet is a grid of
-!> quadrilaterals, and the cut a problem in a plane: that normal to the direction of projection, or,
-!> for curves on the sheet, that of the initial sheet. What is well inside stays as it is; a layer of
-!> new quadrilaterals joins it to the curves (dd3_sheet_core, dd3_sheet_fitting), the columns near
+!> quadrilaterals. A function of the place on the sheet is zero on the cut: the distance from the
+!> curves in the plane normal to the direction of projection (dd3_sheet_projection,
+!> dd3_sheet_cut_function). The lines on which it is zero are found on the initial sheet, which is
+!> flat (dd3_sheet_contour), and so is all that follows. What is well inside stays as it is; a layer
+!> of new quadrilaterals joins it to the lines (dd3_sheet_core, dd3_sheet_fitting), the columns near
 !> the cut are moved for their shape (dd3_sheet_smoothing), and the state of what is new or moved is
 !> that of the old sheet at its place (dd3_sheet_rebuild, dd3_sheet_transfer).
 module dd3_sheet_trim
@@ -11,12 +13,14 @@ module dd3_sheet_trim
   use dd3_base_text, only : newline, to_text
   use dd3_element_table, only : element_t
   use dd3_input_case, only : trim_spec_t
+  use dd3_sheet_contour, only : find_contours
   use dd3_sheet_core, only : find_chains, mark_columns, select_core
   use dd3_sheet_curves, only : curve_t, read_curves
-  use dd3_sheet_fitting, only : fit_chain, fit_t, orient_loops
-  use dd3_sheet_grid, only : grid_t, new_grid
-  use dd3_sheet_location, only : natural_coordinates
-  use dd3_sheet_plane_curve, only : crossing_segments, loop_t
+  use dd3_sheet_cut_function, only : cut_function_t
+  use dd3_sheet_fitting, only : fit_chain, fit_t
+  use dd3_sheet_grid, only : new_grid
+  use dd3_sheet_location, only : bilinear, locate, natural_coordinates, place_t
+  use dd3_sheet_plane_curve, only : crossing_segments, is_inside, loop_t
   use dd3_sheet_projection, only : project_curves
   use dd3_sheet_rebuild, only : cut_t, least_sine_at, rebuild
   use dd3_sheet_sheet, only : sheet_t
@@ -40,43 +44,79 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(cut_t) :: cut
+    type(cut_function_t) :: cutting
     type(curve_t), allocatable :: curve(:)
-    type(loop_t), allocatable :: loop(:)
+    type(loop_t), allocatable :: line(:)
     type(fit_t), allocatable :: fit(:)
     logical, allocatable :: stays(:)
-    logical :: regular
     integer :: before, i
 
     before = errors%count
     call read_curves(curve, spec, errors)
-    regular = element%n_node == 8
-    if (regular) call new_grid(cut%grid, sheet%mesh, regular)
-    if (.not. regular) call errors%push_input(spec%source%opened, "a sheet of element "// &
-        trim(element%name)//" in layers that end within it cannot be cut", &
-        "elements with 8 nodes, the same number of layers everywhere", code="E153")
+    call check_sheet(cut, sheet, spec, element, errors)
     if (errors%count > before) return
-    call project_curves(sheet, cut%grid, spec, curve, cut%plane, loop, errors)
-    if (errors%count == before) call check_crossings(spec, curve, loop, errors)
+    cutting%grid = cut%grid
+    cutting%keeps_inside = spec%keeps_inside
+    call project_curves(sheet, cut%grid, spec, curve, cutting%plane, cutting%loop, errors)
+    if (errors%count == before) call check_crossings(spec, curve, cutting%loop, errors)
     if (errors%count > before) return
     allocate (stays(cut%grid%n_column), cut%kept(cut%grid%n_quad))
-    call mark_columns(loop, spec%keeps_inside, cut%plane, stays)
-    call select_core(cut%grid, loop, cut%plane, stays, cut%kept)
-    call check_core(spec, stays, cut%kept, errors)
+    call mark_columns(cutting, stays)
+    call select_core(cutting, stays, cut%kept)
+    call check_core(spec, cutting, cut%kept, curve, errors)
     if (errors%count > before) return
-    call orient_loops(loop, spec%keeps_inside)
+    call find_contours(cutting, stays, cut%plane, line)
     call find_chains(cut%grid, cut%kept, cut%chain)
     allocate (fit(size(cut%chain)))
     do i = 1, size(fit)
-      call fit_chain(fit(i), cut%chain(i), side_at(cut, i) < 0.0_wp, cut%grid, cut%kept, loop, &
-          cut%plane)
+      call fit_chain(fit(i), cut%chain(i), line, cut%plane)
     end do
-    call check_fits(spec, sheet, cut, fit, curve, loop, errors)
+    call check_fits(spec, sheet, cut, fit, errors)
     if (errors%count > before) return
-    call new_patch(cut, sheet, fit, loop)
-    call smooth(cut%patch, loop)
+    call new_patch(cut, sheet, fit, line)
+    call smooth(cut%patch, line)
+    call snap(cut, cutting)
     call rebuild(sheet, cut, element, spec%name)
     call report_cut(sheet, cut, spec, errors)
   end subroutine trim_sheet
+
+  !> Make the grid of a sheet that can be cut: of elements with eight nodes, and initially flat.
+  subroutine check_sheet(cut, sheet, spec, element, errors)
+    type(cut_t), intent(inout) :: cut
+    type(sheet_t), intent(in) :: sheet
+    type(trim_spec_t), intent(in) :: spec
+    type(element_t), intent(in) :: element
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: regular
+    integer :: q
+
+    regular = element%n_node == 8
+    if (regular) call new_grid(cut%grid, sheet%mesh, regular)
+    if (.not. regular) then
+      call errors%push_input(spec%source%opened, "a sheet of element "//trim(element%name)// &
+          " in layers that end within it cannot be cut", &
+          "elements with 8 nodes, the same number of layers everywhere", code="E153")
+      return
+    end if
+    cut%plane = sheet%mesh%x(:2, cut%grid%node(0, :))
+    do q = 1, cut%grid%n_quad
+      if (area_of(cut%plane(:, cut%grid%corner(:, q))) > 0.0_wp) cycle
+      call errors%push_input(spec%source%opened, "the initial sheet is not flat: its element "// &
+          to_text(cut%grid%element(1, q))//" has no area along z", &
+          "a sheet that began as a flat blank normal to z", code="E153")
+      return
+    end do
+  end subroutine check_sheet
+
+  !> Return twice the area of a quadrilateral, negative if it is turned over.
+  pure real(wp) function area_of(corner)
+    real(wp), intent(in) :: corner(2, 4)
+
+    associate (u => corner(:, 3) - corner(:, 1), v => corner(:, 4) - corner(:, 2))
+      area_of = u(1)*v(2) - u(2)*v(1)
+    end associate
+  end function area_of
 
   !> Report curves that cross each other or themselves.
   subroutine check_crossings(spec, curve, loop, errors)
@@ -98,66 +138,66 @@ contains
     end if
   end subroutine check_crossings
 
-  !> Report a cut that leaves all or nothing.
-  subroutine check_core(spec, stays, kept, errors)
+  !> Report a cut that leaves all or nothing, and curves within an element.
+  subroutine check_core(spec, cutting, kept, curve, errors)
     type(trim_spec_t), intent(in) :: spec
-    logical, intent(in) :: stays(:), kept(:)
+    type(cut_function_t), intent(in) :: cutting
+    logical, intent(in) :: kept(:)
+    type(curve_t), intent(in) :: curve(:)
     type(error_list_t), intent(inout) :: errors
 
-    if (.not. any(kept)) then
-      call errors%push_input(spec%source%opened, "nothing of the sheet stays in cut '"// &
-          spec%name//"'", "curves within which the sheet has several elements (see keep, along)", &
-          code="E153")
-    else if (all(kept)) then
-      call errors%push_input(spec%source%opened, "cut '"//spec%name//"' misses the sheet: "// &
-          "nothing is cut off", "curves on the sheet, larger than its elements (see keep, along)", &
-          code="E153")
-    else if (all(stays)) then
-      call errors%push_input(spec%source%opened, "no node lies on the part that cut '"// &
-          spec%name//"' takes off", "curves that take off more than an element; a finer mesh", &
-          code="E153")
-    end if
+    integer :: i, k, before
+
+    if (.not. any(kept)) call errors%push_input(spec%source%opened, &
+        "nothing of the sheet stays in cut '"//spec%name//"'", "curves within which the sheet "// &
+        "has several elements (see keep, along)", code="E153")
+    before = errors%count
+    do k = 1, size(cutting%loop)
+      if (any([(is_inside(cutting%loop(k:k), cutting%plane(:, i)), &
+          i=1, size(cutting%plane, 2))])) cycle
+      if (.not. on_sheet(cutting, cutting%loop(k)%point(:, 1))) cycle
+      call errors%push_input(curve(k)%at, "the curve that begins here lies within an element", &
+          "a larger curve, or a finer mesh there", code="E153")
+    end do
+    if (errors%count == before .and. all(kept)) call errors%push_input(spec%source%opened, "cut '"// &
+        spec%name//"' misses the sheet: nothing is cut off", &
+        "curves on the sheet (see keep, along)", code="E153")
   end subroutine check_core
 
-  !> Report chains that do not follow a curve, and curves that no chain follows.
-  subroutine check_fits(spec, sheet, cut, fit, curve, loop, errors)
+  !> Report chains that do not follow a line of the cut of their own.
+  subroutine check_fits(spec, sheet, cut, fit, errors)
     type(trim_spec_t), intent(in) :: spec
     type(sheet_t), intent(in) :: sheet
     type(cut_t), intent(in) :: cut
     type(fit_t), intent(in) :: fit(:)
-    type(curve_t), intent(in) :: curve(:)
-    type(loop_t), intent(in) :: loop(:)
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k, node
 
     do i = 1, size(fit)
-      if (fit(i)%loop > 0) cycle
+      k = fit(i)%loop
+      if (k > 0) then
+        if (count(fit%loop == k) == 1) cycle
+      end if
       node = cut%grid%node(0, cut%chain(i)%column(1))
       call errors%push_input(spec%source%opened, "the elements do not follow cut '"//spec%name// &
-          "' near "//point_text(sheet%x(:, node))//": it has features smaller than an element, "// &
-          "or meets the border of the sheet at a small angle", &
+          "' near "//point_text(sheet%x(:, node))//": it leaves a strip that is narrower than "// &
+          "two elements, or meets the border of the sheet at a small angle", &
           "a smoother curve, or a finer mesh there", code="E153")
       return
-    end do
-    do k = 1, size(loop)
-      if (any(fit%loop == k) .or. .not. on_sheet(cut, loop(k)%point(:, 1))) cycle
-      call errors%push_input(curve(k)%at, "the curve that begins here lies within an element, or "// &
-          "the strip beside it is narrower than one", "a larger curve, or a finer mesh there", &
-          code="E153")
     end do
   end subroutine check_fits
 
   !> Whether a point of the plane lies on the sheet.
-  pure logical function on_sheet(cut, point)
-    type(cut_t), intent(in) :: cut
+  pure logical function on_sheet(cutting, point)
+    type(cut_function_t), intent(in) :: cutting
     real(wp), intent(in) :: point(2)
 
     real(wp) :: natural(2), corner(2, 4)
     integer :: q
 
-    do q = 1, cut%grid%n_quad
-      corner = cut%plane(:, cut%grid%corner(:, q))
+    do q = 1, cutting%grid%n_quad
+      corner = cutting%plane(:, cutting%grid%corner(:, q))
       if (any(point < minval(corner, dim=2)) .or. any(point > maxval(corner, dim=2))) cycle
       call natural_coordinates(corner, point, natural, on_sheet)
       if (on_sheet) on_sheet = all(abs(natural) <= 1.0_wp)
@@ -165,31 +205,6 @@ contains
     end do
     on_sheet = .false.
   end function on_sheet
-
-  !> Return the side from which the sheet is seen at a chain: 1 from above, -1 from below.
-  pure real(wp) function side_at(cut, chain)
-    type(cut_t), intent(in) :: cut
-    integer, intent(in) :: chain
-
-    integer :: k, q
-
-    associate (column => cut%chain(chain)%column(1), grid => cut%grid)
-      side_at = 1.0_wp
-      do k = grid%first(column), grid%first(column + 1) - 1
-        q = grid%quad_at(k)
-        if (cut%kept(q)) side_at = side_of(cut%plane(:, grid%corner(:, q)))
-      end do
-    end associate
-  end function side_at
-
-  !> Return the sign of the area of a quadrilateral.
-  pure real(wp) function side_of(corner)
-    real(wp), intent(in) :: corner(2, 4)
-
-    associate (u => corner(:, 3) - corner(:, 1), v => corner(:, 4) - corner(:, 2))
-      side_of = sign(1.0_wp, u(1)*v(2) - u(2)*v(1))
-    end associate
-  end function side_of
 
   !> Set the quadrilaterals after the cut: those that stay, and a layer between each chain and its
   !> points on the curve.
@@ -205,7 +220,7 @@ contains
       n_kept = count(cut%kept)
       n_new = sum([(size(cut%chain(k)%column) - merge(0, 1, cut%chain(k)%closed), k=1, size(fit))])
       n_column = grid%n_column + sum([(size(cut%chain(k)%column), k=1, size(fit))])
-      allocate (patch%corner(4, n_kept + n_new), patch%side(n_kept + n_new))
+      allocate (patch%corner(4, n_kept + n_new))
       allocate (patch%plane(2, n_column), patch%metric(3, n_column), patch%free(n_column))
       allocate (patch%loop(n_column), cut%source(n_column), source=0)
       allocate (patch%arc(n_column), source=0.0_wp)
@@ -232,17 +247,27 @@ contains
           patch%corner(:, q) = [cut%chain(k)%column(mod(i, n) + 1), cut%chain(k)%column(i), c, j]
         end do
       end do
-      do q = 1, size(patch%corner, 2)
-        patch%side(q) = side_of(patch%plane(:, patch%corner(:, q)))
-      end do
-      q = n_kept
-      do k = 1, size(fit)
-        n = size(cut%chain(k)%column) - merge(0, 1, cut%chain(k)%closed)
-        patch%side(q + 1:q + n) = side_at(cut, k)
-        q = q + n
-      end do
     end associate
   end subroutine new_patch
+
+  !> Move the new columns from the lines, which are polygons, to the curves.
+  pure subroutine snap(cut, cutting)
+    type(cut_t), intent(inout) :: cut
+    type(cut_function_t), intent(in) :: cutting
+
+    type(place_t) :: place
+    integer :: c
+
+    associate (grid => cut%grid, patch => cut%patch)
+      do c = grid%n_column + 1, size(cut%source)
+        if (patch%loop(c) == 0) cycle
+        place = locate(grid, cut%plane, patch%plane(:, c), grid%quad_at(grid%first(cut%source(c))))
+        call cutting%zero_near(place%quad, place%natural)
+        patch%plane(:, c) = matmul(cut%plane(:, grid%corner(:, place%quad)), &
+            bilinear(place%natural))
+      end do
+    end associate
+  end subroutine snap
 
   !> Free the columns of the chains and some rings beside them, those at the border of the sheet
   !> apart.

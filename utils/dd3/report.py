@@ -61,6 +61,7 @@ class Report:
         self.tools = tools_in(self.history)
         self.last = self.sheet.last
         self.pictures = made_folder(options.output or self.folder / "report")
+        self.path: Path = self.pictures / "report.html"
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts: list[str] = []
         self.limit = ""  # result of the forming limit diagram
@@ -428,20 +429,24 @@ STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springb
          add_warnings, add_statistics, add_setup)
 
 
-def write(options: argparse.Namespace) -> Path:
-    """Write the page and return its path."""
+def write(options: argparse.Namespace) -> Report:
+    """Write the page."""
     report = Report(options)
     for step in each(STEPS, "report"):
         step(report)
     add_summary(report)
     report.parts.insert(0, report.parts.pop())
-    path: Path = report.pictures / "report.html"
-    path.write_text(page(report), encoding="utf-8")
-    return path
+    report.path.write_text(page(report), encoding="utf-8")
+    return report
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Write the page of the command line."""
+    print(report_of(words).path)
+
+
+def report_of(words: Sequence[str] | None) -> Report:
+    """Write the page of a command line."""
     parser = new_parser("report", __doc__)
     parser.add_argument("run", metavar="RUN", help="folder of results")
     parser.add_argument("--mirror", nargs="+", default=[], choices=list(AXES), metavar="AXIS",
@@ -453,4 +458,4 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     options.mirror = sorted(set(options.mirror))
     forming_limit.check_options(parser, options)
-    print(write(options))
+    return write(options)

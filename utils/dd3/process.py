@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run the operations of a part one after another: draw, trim, flange, springback.
+
+    dd3 process part.toml
+    dd3 process part.toml --report          and write one report of all operations
+
+The file lists the input files in their order; a later one takes the sheet of an earlier one over by *START:
+
+    title = "S-rail"
+    [report]
+    mirror = ["y"]
+    [[operation]]
+    deck = "op10.dat"
+    set = { depth = 37 }
+    [[operation]]
+    deck = "op20.dat"
+
+Paths belong to the folder of the file that names them. Results of op10.dat go to op10.out beside it. An operation that
+has ended is not repeated unless a file that it reads has changed, the sheet that it starts from included; one that was
+interrupted continues. The input files are checked before the first run.
+"""
+import argparse
+import hashlib
+import html
+import json
+import re
+import tempfile
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dd3 import report as pages
+from dd3.command import new_parser
+from dd3.errors import Problem
+from dd3.programs import command, find_program, launch, made_folder
+from dd3.run import read_job
+
+STAMP = "operation.json"  # in the folder of an operation: what it has read
+KEYS: dict[str, type[Any]] = {"title": str, "report": dict, "operation": list}
+OPERATION_KEYS: dict[str, type[Any]] = {"deck": str, "name": str, "set": dict}
+REPORT_KEYS: dict[str, type[Any]] = {"mirror": list, "section": list}
+LATER = "E152"  # code of the error of a sheet that is not there yet
+
+
+@dataclass
+class Operation:
+    """A run of the process: its input file, parameters, and folder of results."""
+
+    name: str
+    deck: Path
+    settings: dict[str, object] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the results."""
+        return self.deck.parent / f"{self.name}.out"
+
+
+@dataclass
+class Process:
+    """The operations of a part, and the options of their reports."""
+
+    path: Path
+    title: str
+    operations: list[Operation]
+    report: dict[str, list[str]]
+
+
+def refuse(path: Path, table: dict[str, Any], keys: Mapping[str, type[Any]], where: str) -> None:
+    """Refuse keys that are not known and values of another type."""
+    for key, value in table.items():
+        if key not in keys:
+            raise Problem(f"{path}: error: unknown key '{key}'{where}; expected one of: {' '.join(keys)}")
+        if not isinstance(value, keys[key]):
+            raise Problem(f"{path}: error: {key}{where} is a {type(value).__name__}; expected a {keys[key].__name__}")
+
+
+def read_process(path: Path) -> Process:
+    """Read the file of a process."""
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise Problem(f"{path}: error: {error}") from None
+    refuse(path, table, KEYS, "")
+    refuse(path, table.get("report", {}), REPORT_KEYS, " of [report]")
+    operations: list[Operation] = []
+    for number, row in enumerate(table.get("operation", []), 1):
+        where = f" of operation {number}"
+        refuse(path, row, OPERATION_KEYS, where)
+        if "deck" not in row:
+            raise Problem(f"{path}: error: operation {number} has no deck")
+        deck = path.parent / row["deck"]
+        if not deck.is_file():
+            raise Problem(f"{path}: error: the deck '{row['deck']}'{where} does not exist")
+        operations.append(Operation(row.get("name", deck.stem), deck.resolve(), row.get("set", {})))
+        if len({operation.folder for operation in operations}) < number:
+            raise Problem(f"{path}: error: {operations[-1].folder} is the folder of two operations; give one a name")
+    if not operations:
+        raise Problem(f"{path}: error: no [[operation]]")
+    return Process(path, table.get("title", path.stem), operations, table.get("report", {}))
+
+
+def check_deck(program: Path, operation: Operation) -> tuple[dict[str, Any], str]:
+    """Return the description of the run of a deck, empty if it has errors, and these."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = launch(command(program, operation.deck, None, ["--quiet", "--check", "--initial", folder],
+                              operation.settings))
+        if done.code == 0:
+            return read_job(Path(folder)), ""
+        if done.code != 2:
+            raise Problem(f"{operation.deck}: exit code {done.code}\n{done.errors}")
+        return {}, done.errors.strip()
+
+
+def files_of(job: dict[str, Any]) -> list[Path]:
+    """Return the files that a run reads: input files, those that their values name, the restart file of a sheet."""
+    found = [Path(name) for name in job["input"]["files"]]
+    for block in job["input"]["blocks"]:
+        for entry in block["entries"]:
+            if entry["at"] and isinstance(entry["value"], str):
+                path = Path(entry["at"]["file"]).parent / entry["value"]
+                found += [file for file in (path, path / "restart.h5") if file.is_file()]
+    return sorted(set(found))
+
+
+def digests(job: dict[str, Any], settings: dict[str, object]) -> dict[str, str]:
+    """Return the check sums of what a run depends on."""
+    sums = {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files_of(job)}
+    return {**sums, "settings": json.dumps(settings, sort_keys=True), "version": job["program"]["version"]}
+
+
+def state_of(folder: Path) -> str:
+    """Return the state of a run, empty where there is none."""
+    return str(read_job(folder)["outcome"]["state"]) if (folder / "run.json").is_file() else ""
+
+
+def run_operation(program: Path, operation: Operation, threads: int | None = None) -> bool:
+    """Run an operation unless it has ended with the same input; return whether it was run."""
+    job, errors = check_deck(program, operation)
+    if errors:
+        raise Problem(errors)
+    now = digests(job, operation.settings)
+    stamp = operation.folder / STAMP
+    same = stamp.is_file() and json.loads(stamp.read_text(encoding="utf-8")) == now
+    if same and state_of(operation.folder) == "reached":
+        return False
+    made_folder(operation.folder)
+    restart = operation.folder / "restart.h5"
+    options: list[object] = ["--quiet", *(["--threads", threads] if threads else [])]
+    going_on = ["--restart", restart] if same and restart.is_file() else []
+    stamp.write_text(json.dumps(now, indent=1) + "\n", encoding="utf-8")
+    done = launch(command(program, operation.deck, operation.folder, [*options, *going_on], operation.settings),
+                  one_core=False)
+    if done.code == 2 and going_on:  # the restart file is that of another model
+        done = launch(command(program, operation.deck, operation.folder, options, operation.settings), one_core=False)
+    if done.code != 0:
+        raise Problem(f"{operation.name}: {done.errors.strip() or f'exit code {done.code}'}")
+    return True
+
+
+def check_all(program: Path, process: Process) -> None:
+    """Report the errors of all input files at once; a sheet that an earlier operation will leave is no error."""
+    found = []
+    for operation in process.operations:
+        _, errors = check_deck(program, operation)
+        codes = set(re.findall(r": error (E\d+):", errors))
+        if errors and codes != {LATER}:
+            found.append(errors)
+    if found:
+        raise Problem("\n".join(found))
+
+
+def run_process(program: Path, process: Process, threads: int | None = None) -> None:
+    """Run all operations."""
+    check_all(program, process)
+    for operation in process.operations:
+        again = run_operation(program, operation, threads)
+        job = read_job(operation.folder)
+        print(f"{operation.name}: {'reached its end' if again else 'has ended before'}, "
+              f"{job['counts']['increments']} increments, {job['seconds']:.4g} s, {len(job['warnings'])} warnings; "
+              f"results in {operation.folder}", flush=True)
+
+
+def write_report(process: Process) -> Path:
+    """Write the page of each operation, and one that leads to them."""
+    target = made_folder(process.path.parent / f"{process.path.stem}.report")
+    rows = []
+    for operation in process.operations:
+        words = [str(operation.folder), "--output", str(target / operation.name)]
+        for axis in process.report.get("mirror", []):
+            words += ["--mirror", axis]
+        for plane in process.report.get("section", []):
+            words += ["--section", plane]
+        page = pages.report_of(words)
+        job, thinning = page.job, page.field("thinning")
+        draw = page.field("equivalent_plastic_strain")
+        largest = max((abs(page.column(f"{tool}_fz")).max() * page.whole / 1000 for tool in page.tools), default=0.0)
+        rows.append((f'<a href="{operation.name}/report.html">{html.escape(operation.name)}</a>',
+                     html.escape(" ".join(job["title"].split())), html.escape(job["outcome"]["state"]),
+                     job["sheet"]["elements"], f"{largest:.4g}", f"{100 * thinning.max():.3g}", f"{draw.max():.3g}",
+                     job["counts"]["increments"], len(job["warnings"]), f"{job['seconds']:.4g}"))
+    head = ("operation", "title", "state", "elements", "largest force, kN", "largest thinning, %", "plastic strain",
+            "increments", "warnings", "seconds")
+    lines = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows]
+    path = target / "report.html"
+    title = html.escape(process.title)
+    path.write_text(
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f"<style>{pages.STYLE}</style></head><body><main>\n<h1>{title}</h1><section><table>\n<tr>"
+        + "".join(f"<th>{name}</th>" for name in head) + "</tr>\n" + "\n".join(lines)
+        + "\n</table></section>\n</main></body></html>\n", encoding="utf-8")
+    return path
+
+
+def process_parser(name: str, text: str | None) -> argparse.ArgumentParser:
+    """Return the parser of a command that runs a process."""
+    parser = new_parser(name, text)
+    parser.add_argument("file", type=Path, metavar="FILE", help="file of the process, .toml")
+    parser.add_argument("--program", default="build/release/dd3imp", help="the program (build/release/dd3imp)")
+    parser.add_argument("--threads", type=int, help="threads of a run (default: all cores)")
+    return parser
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the process of the command line."""
+    parser = process_parser("process", __doc__)
+    parser.add_argument("--report", action="store_true", help="write one report of all operations")
+    options = parser.parse_args(words)
+    process = read_process(options.file)
+    run_process(find_program(options.program), process, options.threads)
+    if options.report:
+        print(write_report(process))
