@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Correct the tools of a process for springback, until the free part has the shape that was drawn at first.
+
+    dd3 compensate rail.toml --tools tools
+    dd3 compensate rail.toml --tools tools --loops 4 --tolerance 0.1 --mirror y
+
+The displacement adjustment: where the free part, aligned as a whole, lies beside the wanted shape, the surface of the
+tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
+at the end of the draw in the first loop; the free part is that at the end of the last operation. The displacement is a
+smooth function of the place through the points of the drawn sheet, and moves all tools alike: patches stay joined,
+gaps between tools stay. --mirror names the planes of symmetry x = 0, y = 0.
+
+--tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
+in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
+operations themselves are left in the state of the last loop.
+
+Sources: Gan and Wagoner, Int. J. Mech. Sci. 46 (2004) 1097-1113 (displacement adjustment); Lingbeek, Huetink, Ohnimus,
+Petzoldt and Weiher, J. Mater. Process. Technol. 169 (2005) 115-125 (smooth displacement of the tools' surfaces).
+"""
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RBFInterpolator
+from scipy.special import comb
+
+from dd3.errors import Problem
+from dd3.gmsh_session import session
+from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process
+from dd3.programs import find_program, made_folder
+from dd3.run import read_frame, read_job
+from dd3.sheet import AXES, Sheet
+from dd3.springback import best_fit, images
+from dd3.tables import read_text
+from dd3.tools.cad import silence
+from dd3.tools.surface import Surface, from_nodes, read_lines, write
+
+MOST_POINTS = 2000  # of the spline
+MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
+UNKNOWN = "E115"  # code of the error of a parameter that an input file does not have
+
+
+@dataclass
+class Shapes:
+    """The lower face of the sheet by its initial coordinates: under the tools, and free; positions of nodes, mm. The
+    displacements of the tools by the names of their files, under which the sheet was drawn."""
+
+    initial: np.ndarray
+    drawn: np.ndarray
+    free: np.ndarray
+    tools: dict[str, np.ndarray]
+
+
+def lower_face(sheet: Sheet, step: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return initial and present positions of the nodes of the lower face at a step."""
+    points = sheet.points(step)
+    initial = points - sheet.values(step, "displacement")[0]
+    nodes = np.unique(sheet.faces(upper=False))
+    return initial[nodes], points[nodes]
+
+
+def drawn_step(sheet: Sheet, job: dict[str, Any]) -> int:
+    """Return the last step at which tools act."""
+    held = [phase["number"] for phase in job["phases"] if any(tool["active"] for tool in phase["tools"])]
+    steps = np.flatnonzero(np.isin(sheet.file["job"]["phase"][: sheet.count], held))
+    if not steps.size:
+        raise Problem(f"{sheet.path}: no phase with tools")
+    return int(steps[-1])
+
+
+def shapes_of(process: Process) -> Shapes:
+    """Return the shapes of the part after a run of the process; the draw is the first operation."""
+    first, last = Sheet(process.operations[0].folder), Sheet(process.operations[-1].folder)
+    job = read_job(process.operations[0].folder)
+    step = drawn_step(first, job)
+    start, drawn = lower_face(first, step)
+    initial, free = lower_face(last, last.last)
+    place = LinearNDInterpolator(start[:, :2], drawn)(initial[:, :2])
+    outside = ~np.isfinite(place).all(axis=1)
+    if outside.any():  # round-off at the border
+        place[outside] = NearestNDInterpolator(start[:, :2], drawn)(initial[outside, :2])
+    return Shapes(initial, place, free, tool_places(process.operations[0].folder, job, first, step))
+
+
+def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
+    """Return the displacement of each tool's file at a step."""
+    history = read_frame(folder, "history.csv")
+    phase = job["phases"][int(sheet.file["job"]["phase"][step]) - 1]["name"]
+    row = history[history["phase"] == phase].iloc[-1]
+    return {Path(tool["patches"]).name: np.array([float(row[f"{tool['name']}_u{axis}"]) for axis in AXES])
+            for tool in job["tools"]}
+
+
+def wanted_surface(process: Process) -> Any:
+    """Return the lower face of the whole sheet under the tools as a surface of pyvista."""
+    import pyvista as pv
+    sheet = Sheet(process.operations[0].folder)
+    quads = sheet.faces(upper=False)
+    faces = np.hstack((np.full((len(quads), 1), 4), quads))
+    return pv.PolyData(sheet.points(drawn_step(sheet, read_job(sheet.path.parent))), faces.ravel()).triangulate()
+
+
+def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return a free part in the place that fits a surface best, and the closest points of the surface.
+
+    The iteration over closest points starts from the place that fits the drawn part best, node by node.
+    Source: Besl and McKay, IEEE Trans. Pattern Anal. Mach. Intell. 14 (1992) 239-256.
+    """
+    place, last = best_fit(free, drawn, mirror), np.inf
+    for _ in range(MOST_FITS):
+        _, closest = wanted.find_closest_cell(place, return_closest_point=True)
+        mean = float(np.linalg.norm(closest - place, axis=1).mean())
+        if mean > (1 - SETTLED) * last:
+            break
+        last = mean
+        place = best_fit(place, closest, mirror)
+    _, closest = wanted.find_closest_cell(place, return_closest_point=True)
+    return place, np.asarray(closest)
+
+
+def read_surface(path: Path) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return points and weights of the patches of a .bez file."""
+    lines = [line.partition("#")[0].split() for line in read_text(path).splitlines()]
+    return read_lines([line for line in lines if line])
+
+
+def nodes_of(patch: tuple[np.ndarray, np.ndarray], count: int) -> np.ndarray:
+    """Return the points (v, u, 3) of a patch on a regular grid of its parameters with 2 count + 1 points a side."""
+    points, weights = patch
+    t = np.linspace(0, 1, 2 * count + 1)
+    factors = []
+    for degree in (points.shape[0] - 1, points.shape[1] - 1):
+        k = np.arange(degree + 1)
+        factors.append(comb(degree, k) * t[:, None]**k * (1 - t[:, None])**(degree - k))
+    above = np.einsum("ai,bj,ijc->abc", *factors, points * weights[..., None])
+    below = np.einsum("ai,bj,ij->ab", *factors, weights)
+    return np.asarray(above / below[..., None])
+
+
+def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> int:
+    """Return the number of parts along each side of the patches that makes them no longer than `size`."""
+    longest = max(np.linalg.norm(np.diff(nodes_of(patch, 4), axis=axis), axis=2).sum(axis=axis).max()
+                  for patch in patches for axis in (0, 1))
+    return max(1, int(np.ceil(longest / size)))
+
+
+def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray) -> Surface:
+    """Return a tool's surface, divided, with its points moved. `place` is its displacement where the displacement of
+    its points is given."""
+    patches = read_surface(path)
+    count = divisions(patches, size)
+    nodes = np.stack([nodes_of(patch, count) for patch in patches])
+    nodes = nodes + displacement(nodes.reshape(-1, 3) + place).reshape(nodes.shape)
+    blocks = [nodes[:, 2 * i:2 * i + 3, 2 * j:2 * j + 3] for i in range(count) for j in range(count)]
+    net = from_nodes(np.stack(blocks, axis=1).reshape(-1, 3, 3, 3))
+    return Surface(net, np.repeat(np.arange(len(patches)), count * count),
+                   [f"patch {number}" for number in range(1, len(patches) + 1)])
+
+
+def spline(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
+    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
+    multiquadrics through the means of cells of the size `reach`, which stay bounded away from the points.
+
+    Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
+    """
+    whole, given = np.concatenate(images(points, mirror)), np.concatenate(images(displacement, mirror))
+    size = reach
+    while True:
+        _, cell, count = np.unique(np.floor(whole / size).astype(int), axis=0, return_inverse=True, return_counts=True)
+        if len(count) <= MOST_POINTS:
+            break
+        size *= 1.25
+    places, values = (np.stack([np.bincount(cell.ravel(), part[:, axis]) / count for axis in range(3)], axis=1)
+                      for part in (whole, given))
+    return RBFInterpolator(places, values, kernel="multiquadric", epsilon=1 / size, degree=0)
+
+
+def write_step(path: Path, surface: Surface) -> None:
+    """Write a surface as a STEP file of Bézier faces."""
+    with session() as gmsh, silence():
+        for net in surface.net:
+            tags = [gmsh.model.occ.addPoint(*point[:3] / point[3]) for point in net.reshape(-1, 4)]
+            gmsh.model.occ.addBezierSurface(tags, 3)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(path))
+
+
+def with_parameter(program: Path, process: Process, name: str) -> list[Operation]:
+    """Return the operations whose input file has a parameter."""
+    found = []
+    for operation in process.operations:
+        trial = Operation(operation.name, operation.deck, {**operation.settings, name: "."})
+        _, errors = check_deck(program, trial)
+        if f"error {UNKNOWN}" not in errors:
+            found.append(operation)
+    if not found:
+        raise Problem(f"{process.path}: error: no input file has the parameter '{name}' (*PARAMETER)")
+    return found
+
+
+def compensate(program: Path, process: Process, parameter: str, loops: int, tolerance: float, factor: float,
+               mirror: Sequence[str], size: float | None, threads: int | None = None) -> list[tuple[float, float]]:
+    """Run the loops; return the largest and the mean deviation of each, mm."""
+    work = made_folder(process.path.parent / f"{process.path.stem}.compensate")
+    operations = with_parameter(program, process, parameter)
+    run_process(program, process, threads)
+    job = read_job(operations[0].folder)
+    tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
+    length = size or 10 * max(job["sheet"]["thickness"])
+    wanted, found, folders = wanted_surface(process), [], []
+    for loop in range(loops + 1):
+        shapes = shapes_of(process)
+        place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
+        deviation = np.linalg.norm(goal - place, axis=1)
+        np.savez(work / f"shape_{loop}.npz", initial=shapes.initial, drawn=shapes.drawn, place=place, goal=goal)
+        found.append((float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
+        folders.append(dict(tools))
+        print(f"loop {loop}: largest deviation {found[-1][0]:.4g} mm, mean {found[-1][1]:.4g} mm", flush=True)
+        if found[-1][0] <= tolerance or loop == loops:
+            break
+        move = spline(shapes.drawn, factor * (goal - place), mirror, length)
+        folder = made_folder(work / f"loop_{loop + 1}")
+        for name, path in tools.items():
+            surface = moved_surface(path, move, length if loop == 0 else np.inf, shapes.tools[name])
+            write(folder / name, surface, [f"{name} of loop {loop + 1} of dd3 compensate {process.path.name}"])
+        tools = {name: folder / name for name in tools}
+        for operation in operations:
+            operation.settings[parameter] = str(folder.resolve())
+        run_process(program, process, threads)
+    best = int(np.argmin([largest for largest, _ in found]))
+    for name, path in folders[best].items():
+        shutil.copy(path, work / name)
+        write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
+    rows = ["loop,largest,mean", *(f"{loop},{a:.6g},{b:.6g}" for loop, (a, b) in enumerate(found))]
+    (work / "deviations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    print(f"tools of loop {best} in {work}")
+    return found
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the loops of the command line."""
+    parser = process_parser("compensate", __doc__)
+    parser.add_argument("--tools", required=True, metavar="NAME",
+                        help="parameter of the input files with the folder of the tool surfaces")
+    parser.add_argument("--loops", type=int, default=4, help="corrections at most (4)")
+    parser.add_argument("--tolerance", type=float, default=0.1, metavar="LENGTH",
+                        help="largest deviation that ends the loops, mm (0.1)")
+    parser.add_argument("--factor", type=float, default=1.0, help="part of the deviation that is corrected (1)")
+    parser.add_argument("--mirror", nargs="+", default=[], choices=list(AXES), metavar="AXIS",
+                        help="planes of symmetry")
+    parser.add_argument("--size", type=float, metavar="LENGTH",
+                        help="largest side of the patches that are moved, mm (10 thicknesses)")
+    options = parser.parse_args(words)
+    compensate(find_program(options.program), read_process(options.file), options.tools, options.loops,
+               options.tolerance, options.factor, sorted(set(options.mirror)), options.size, options.threads)
