@@ -18,6 +18,7 @@ COMMANDS = {
     "curve": ("dd3.curve", "write closed curves of a CAD file for *TRIM"),
     "process": ("dd3.process", "run the operations of a part one after another"),
     "compensate": ("dd3.compensate", "correct the tools of a process for springback"),
+    "outline": ("dd3.outline", "find the outline of the blank that gives a wanted rim"),
     "report": ("dd3.report", "make a page about a forming run"),
     "plot": ("draw results, materials, or the sheet before a run", "dd3 plot force bending.out", {
         "force": ("dd3.plot.force", "tool force against tool displacement"),
