@@ -127,28 +127,28 @@ def excess(rim: Rim, height: float | None, wanted: Outline | None) -> np.ndarray
 
 
 def moved(points: np.ndarray, rim: Rim, beyond: np.ndarray) -> np.ndarray:
-    """Return an outline moved inwards by the excess of the rim, in lengths of the initial sheet."""
+    """Return an outline moved inwards by the excess of the rim, in lengths of the initial sheet. Between the ends of
+    the rim its vertices are the nodes of the rim; beyond planes of symmetry they move with the nearest end."""
     outline = Outline(points)
+    total = outline.start[-1]
     arc = np.array([outline.closest(point)[0] for point in rim.initial])
     order = np.argsort(arc)
     arc, shift = arc[order], -(beyond / rim.stretch)[order]
-    # A rim that goes all around, or one that ends at planes of symmetry, beyond which the last value holds.
-    gaps = np.diff(np.concatenate((arc, arc[:1] + outline.start[-1])))
+    gaps = np.diff(np.concatenate((arc, arc[:1] + total)))
     first = (int(gaps.argmax()) + 1) % len(arc)
-    arc = np.concatenate((arc[first:], arc[:first] + outline.start[-1]))
+    arc = np.concatenate((arc[first:], arc[:first] + total))
     shift = np.concatenate((shift[first:], shift[:first]))
     closed = gaps.max() < 4 * np.median(gaps)
-    places = (outline.start[:-1] - arc[0]) % outline.start[-1] + arc[0]
-    if closed:
-        arc = np.concatenate((arc, arc[:1] + outline.start[-1]))
-        shift = np.concatenate((shift, shift[:1]))
-        values = np.interp(places, arc, shift)
-    else:
-        middle = 0.5 * (arc[-1] + arc[0] + outline.start[-1])  # beyond the ends each has its half
-        values = np.where(places > middle, shift[0], np.interp(places, arc, shift))
-    result = points.copy()
-    result[:, :2] += values[:, None] * outline.normals()
-    return result
+    # The vertices beyond the ends, counted from the first node of the rim.
+    own = (outline.start[:-1] - arc[0]) % total + arc[0]
+    beyond_ends = np.flatnonzero(own > arc[-1] + NEAR * total) if not closed else np.array([], int)
+    beyond_ends = beyond_ends[np.argsort(own[beyond_ends])]
+    places = np.concatenate((arc, own[beyond_ends]))
+    values = np.concatenate((shift, np.where(own[beyond_ends] > 0.5 * (arc[-1] + arc[0] + total), shift[0], shift[-1])))
+    vertices = np.stack([np.interp(places % total, outline.start, np.append(column, column[0]))
+                         for column in points.T], axis=1)
+    vertices[:, :2] += values[:, None] * Outline(vertices).normals()
+    return vertices
 
 
 def outline_file(program: Path, operation: Operation, name: str) -> Path:
