@@ -117,12 +117,15 @@ class Bench:
             raise Problem(f"{name}: exit code {done.code}\n{done.output}{done.errors}")
         return Run(folder, done)
 
-    def refuse(self, name, deck):
-        """Return what the program says of a deck that it must refuse with exit code 2, without results."""
+    def refuse(self, name, deck, output=None):
+        """Return what the program says of a deck that it must refuse with exit code 2, without results.
+
+        `output` is their folder, empty for that of the deck.
+        """
         file = self.work / f"{name}.dat"
         file.write_text(deck, encoding="utf-8")
         folder = self.work / f"{name}.out"
-        done = launch(command(self.program, file, folder, ["--quiet"]), timeout=300)
+        done = launch(command(self.program, file, folder if output is None else output, ["--quiet"]), timeout=300)
         if done.code != 2 or folder.exists():
             raise Problem(f"{name}: exit code {done.code}, expected 2 and no results\n{done.output}{done.errors}")
         return done.output + done.errors

@@ -38,6 +38,13 @@ contains
     do i = 1, size(case%tool)
       call check_file(case%tool(i)%patches, directory, case%tool(i)%source%at("patches"), errors)
     end do
+    do i = 1, size(case%start)
+      call check_file(case%start(i)%from//"/"//restart_name, directory, &
+          case%start(i)%source%at("from"), errors)
+    end do
+    do i = 1, size(case%trim)
+      call check_file(case%trim(i)%file, directory, case%trim(i)%source%at("file"), errors)
+    end do
     do i = 1, size(case%material)
       call check_law(case%material(i)%yield, directory, errors)
       call check_law(case%material(i)%hardening, directory, errors)

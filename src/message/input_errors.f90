@@ -112,14 +112,14 @@ contains
           "of parameters and its convention."), &
       row("E150", "line or table of a draw-bead", "Points of the line coincide, or the force "// &
           "falls too fast.", "Points that differ; a slower fall."), &
-      row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
-          "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
-          "the elements; a finer mesh; `along`, `keep`."), &
+      row("E151", "results over an input file", "A result would replace a file that the job "// &
+          "reads.", "Another folder of results, by `--output`."), &
       row("E152", "sheet of another run", "`*START` finds no sheet in the folder, its run has "// &
           "not reached its end, or its material is another one.", "The folder of a finished "// &
           "run; `at = last`; the `*MATERIAL` of that run."), &
-      row("E151", "results over an input file", "A result would replace a file that the job "// &
-          "reads.", "Another folder of results, by `--output`.")]
+      row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
+          "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
+          "the elements; a finer mesh; `along`, `keep`.")]
   end function of_job
 
 end module dd3_message_input_errors

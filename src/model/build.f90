@@ -33,6 +33,7 @@ module dd3_model_build
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
+  use dd3_sheet_curves, only : curve_t, read_curves
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   use dd3_sheet_trim, only : trim_sheet
   implicit none
@@ -71,6 +72,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     type(mesh_t) :: mesh
+    type(curve_t), allocatable :: curve(:)
     integer :: i
 
     call set_title(model, case)
@@ -79,7 +81,11 @@ contains
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) then
-      ! The mesh file of an input with errors is read to report its errors with the others.
+      ! The files of curves and the mesh file of an input with errors are read to report their errors
+      ! with the others.
+      do i = 1, size(case%trim)
+        if (case%trim(i)%source%valid) call read_curves(curve, case%trim(i), errors)
+      end do
       if (model%element%n_node == 0 .or. size(case%mesh) /= 1) return
       if (case%mesh(1)%source%has("file")) &
           call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)

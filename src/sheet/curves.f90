@@ -161,6 +161,7 @@ contains
     integer :: i, n
 
     n = size(curve%point, 2)
+    if (n == 0) return
     longest = maxval([(norm2(curve%point(:, i + 1) - curve%point(:, i)), i=1, n - 1)])
     gap = norm2(curve%point(:, n) - curve%point(:, 1))
     if (gap <= 1.0e-6_wp*longest) then

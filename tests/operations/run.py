@@ -201,6 +201,9 @@ def refused(bench):
         found = bench.refuse(name, deck)
         check(code in found and text in found, f"{name}: {code} and '{text}' are not in\n{found}")
         print(f"refused: {name}", flush=True)
+    before = (bench.work / "draw.out" / "restart.h5").read_bytes()
+    found = bench.refuse("itself", start.format("draw.out") + UNLOAD + "*OUTPUT\n  directory = draw.out\n", "")
+    check("E151" in found and (bench.work / "draw.out" / "restart.h5").read_bytes() == before, found)
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 

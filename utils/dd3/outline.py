@@ -27,6 +27,7 @@ from dd3.process import Operation, Process, check_deck, process_parser, read_pro
 from dd3.programs import find_program, made_folder
 from dd3.sheet import Sheet
 
+SHARPEST = 0.4  # cosine of half the turn at a vertex, at least
 NEAR = 1e-3  # distance of the rim's nodes from the outline, over its size
 
 
@@ -104,10 +105,11 @@ class Outline:
         return -away if self.inside(point) else away
 
     def normals(self) -> np.ndarray:
-        """Return the outward unit normals at the vertices."""
+        """Return the vectors at the vertices by which both sides at each move outwards by 1."""
         side = self.side / np.maximum(self.length, 1e-300)[:, None]
         mean = side + np.roll(side, 1, axis=0)
         mean /= np.maximum(np.linalg.norm(mean, axis=1), 1e-300)[:, None]
+        mean /= np.maximum((mean * side).sum(axis=1), SHARPEST)[:, None]
         return self.turn * np.stack((mean[:, 1], -mean[:, 0]), axis=1)
 
 

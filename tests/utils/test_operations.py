@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operations: curves of CAD files, processes, outlines of blanks, tools that are corrected for springback."""
+
+import json
+
+import ezdxf
+import numpy as np
+import pytest
+from helpers import call
+
+from dd3.compensate import divisions, moved_surface, nodes_of, read_surface, spline, write_step
+from dd3.curve import read_curves
+from dd3.gmsh_session import session
+from dd3.outline import Outline, Rim, excess, moved
+from dd3.tools.surface import write
+
+STRIP = """*PARAMETER
+  strain = 0.02
+*BLANK strip
+  size = 40 20 1
+  divisions = 12 6 1
+  element = solid_shell
+  material = steel
+*MATERIAL steel
+  young = 2e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = linear Y0=200 H=1000
+*BOUNDARY left
+  set = x_min
+  fix = x y z
+*PHASE pull
+  control = load
+  trial = 0.5
+  displace = x_max x 1
+"""
+CUT = """*START
+  from = op10.out
+*MATERIAL steel
+  young = 2e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = linear Y0=200 H=1000
+*TRIM rim
+  file = "rim.txt"
+*PHASE free
+  unload = on
+"""
+PROCESS = """title = "Strip"
+[[operation]]
+deck = "op10.dat"
+[[operation]]
+deck = "op20.dat"
+"""
+
+
+def test_curves_of_cad(tmp_path):
+    """A face with a hole has two curves, on their geometry within the chord; a solid has none."""
+    with session() as gmsh:
+        occ = gmsh.model.occ
+        plate = occ.addRectangle(0, 0, 2, 30, 20)
+        hole = occ.addDisk(12, 9, 2, 4, 4)
+        occ.cut([(2, plate)], [(2, hole)])
+        occ.synchronize()
+        gmsh.write(str(tmp_path / "plate.step"))
+        gmsh.clear()
+        occ.addBox(0, 0, 0, 1, 2, 3)
+        occ.synchronize()
+        gmsh.write(str(tmp_path / "box.step"))
+    said = call("curve", tmp_path / "plate.step", tmp_path / "rims.txt", "--chord", "0.005")
+    assert "curve 2" in said
+    outer, inner = read_curves(tmp_path / "rims.txt")
+    assert len(outer) == 4 and np.allclose(np.ptp(outer, axis=0), (30, 20, 0))
+    radius = np.linalg.norm(inner[:, :2] - (12, 9), axis=1)
+    chords = 4 - np.linalg.norm(0.5 * (inner + np.roll(inner, 1, axis=0))[:, :2] - (12, 9), axis=1)
+    assert np.allclose(radius, 4) and 0 < chords.max() <= 0.005 and np.allclose(inner[:, 2], 2)
+    assert "free edges" in call("curve", tmp_path / "box.step", tmp_path / "none.txt", expect=2)
+
+
+def test_curves_of_dxf(tmp_path):
+    """Lines of a layer are joined, in mm; open ones are refused with their ends."""
+    document = ezdxf.new(units=ezdxf.units.IN)
+    space = document.modelspace()
+    space.add_lwpolyline([(1, 0), (0, 0), (0, 1)], dxfattribs={"layer": "TRIM"})
+    space.add_arc((0, 0), 1, 0, 90, dxfattribs={"layer": "TRIM"})
+    space.add_text("note", dxfattribs={"layer": "TRIM"})
+    space.add_line((5, 5), (6, 6), dxfattribs={"layer": "OTHER"})
+    document.saveas(tmp_path / "trim.dxf")
+    call("curve", tmp_path / "trim.dxf", tmp_path / "trim.txt", "--layer", "TRIM")
+    (curve,) = read_curves(tmp_path / "trim.txt")
+    x, y = curve[:, :2].T
+    area = 0.5 * abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+    assert area == pytest.approx(np.pi / 4 * 25.4**2, rel=1e-3) and np.allclose(curve.max(0), (25.4, 25.4, 0))
+    said = call("curve", tmp_path / "trim.dxf", tmp_path / "x.txt", expect=2)
+    assert "not closed end at (127 127 0), (152.4 152.4 0)" in said
+    assert "there are: OTHER TRIM" in call("curve", tmp_path / "trim.dxf", tmp_path / "x.txt", "--layer", "no", expect=2)
+
+
+def make_process(folder, first=STRIP, second=CUT, text=PROCESS):
+    """Write a process of two operations; return its file."""
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    (folder / "rim.txt").write_text("".join(f"{20 + 9 * np.cos(a):.6f} {10 + 7 * np.sin(a):.6f} 0\n" for a in angle))
+    (folder / "op10.dat").write_text(first)
+    (folder / "op20.dat").write_text(second)
+    (folder / "part.toml").write_text(text)
+    return folder / "part.toml"
+
+
+def test_process(tmp_path, program):
+    """The operations run once, and again from the one on whose input has changed."""
+    path = make_process(tmp_path)
+    words = ("process", path, "--program", program, "--threads", "1")
+    said = call(*words, "--report")
+    assert said.count("reached its end") == 2 and "report.html" in said
+    page = (tmp_path / "part.report" / "report.html").read_text()
+    assert "op10/report.html" in page and "op20/report.html" in page
+    job = json.loads((tmp_path / "op20.out" / "run.json").read_text())
+    assert job["sheet"]["kind"] == "start" and job["sheet"]["elements"] < 72
+    assert call(*words).count("has ended before") == 2
+    make_process(tmp_path, second=CUT.replace("unload = on", "unload = on\n  trial = 0.2"))
+    said = call(*words)
+    assert "op10: has ended before" in said and "op20: reached its end" in said
+    make_process(tmp_path, first=STRIP.replace("x_max x 1", "x_max x 2"))
+    assert call(*words).count("reached its end") == 2
+
+
+def test_process_refused(tmp_path, program):
+    """Wrong files of processes and all errors of their input files are told before a run."""
+    words = ("process", tmp_path / "part.toml", "--program", program)
+    for text, said in (("title = 3\n", "title is a int"), ("tilte = ''\n", "unknown key 'tilte'"),
+                       ("", "no [[operation]]"), ("[[operation]]\nname = 'a'\n", "operation 1 has no deck"),
+                       ("[[operation]]\ndeck = 'no.dat'\n", "'no.dat' of operation 1 does not exist"),
+                       ("[[operation\n", "error: ")):
+        make_process(tmp_path, text=text)
+        assert said in call(*words, expect=2)
+    make_process(tmp_path, text=PROCESS.replace('deck = "op20.dat"', 'deck = "op20.dat"\nname = "op10"'))
+    assert "folder of two operations" in call(*words, expect=2)
+    make_process(tmp_path, first=STRIP.replace("displace", "displaec"), second=CUT.replace("rim.txt", "none.txt"))
+    said = call(*words, expect=2)
+    assert "op10.dat:19: error E112" in said and "none.txt" in said and not (tmp_path / "op10.out").exists()
+
+
+def rim_of(points, radius):
+    """Return the rim of a sheet that has been stretched from the unit circle to a radius, at some of its points."""
+    outward = points / np.linalg.norm(points, axis=1, keepdims=True)
+    three = np.column_stack((outward, np.zeros(len(points))))
+    return Rim(points, radius * three, outward, three, np.full(len(points), radius))
+
+
+def test_outline():
+    """An outline moves by the excess over the stretch, all around and between planes of symmetry."""
+    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    circle = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
+    wanted = Outline(1.8 * circle)
+    beyond = excess(rim_of(circle[:, :2], 2.0), None, wanted)
+    assert np.allclose(beyond, 0.2, atol=1e-3)
+    new = moved(circle, rim_of(circle[:, :2], 2.0), beyond)
+    assert np.allclose(np.linalg.norm(new[:, :2], axis=1), 0.9, atol=1e-3) and len(new) == 64
+    quarter = np.vstack(([[1, -0.5, 0]], circle[:17], [[-0.5, 1, 0], [-0.5, -0.5, 0]]))
+    rim = rim_of(circle[:17, :2], 2.0)
+    new = moved(quarter, rim, excess(rim, None, wanted))
+    assert np.allclose(np.linalg.norm(new[:17, :2], axis=1), 0.9, atol=3e-3) and len(new) == 20
+    # The ends go on across the planes of symmetry, parallel to the axes.
+    assert abs(new[0, 0] - new[-1, 0]) < 1e-2 and abs(new[16, 1] - new[17, 1]) < 1e-2
+    assert wanted.distance(np.array([0.0, 2.8])) == pytest.approx(1.0, abs=2e-3)
+    assert wanted.distance(np.array([0.3, 0.0])) < -1.4
+
+
+def test_outline_by_height():
+    """The excess of a rim over a plane is a length along the wall."""
+    angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    circle = np.column_stack((np.cos(angle), np.sin(angle)))
+    slope = np.array([0.6, 0.0, 0.8])
+    rim = Rim(circle, np.column_stack((circle, np.full(40, 3.2))), circle, np.tile(slope, (40, 1)), np.ones(40))
+    assert np.allclose(excess(rim, 3.0, None), 0.25)
+
+
+def test_moved_surface(tmp_path):
+    """Patches that are moved stay joined, symmetric, and where nothing moves them."""
+    arc = np.sqrt(0.5)
+    path = tmp_path / "tool.bez"
+    path.write_text("patch 2 1 rational\n"
+                    f"0 -10 -5 1\n0 -10 0 {arc}\n5 -10 0 1\n0 10 -5 1\n0 10 0 {arc}\n5 10 0 1\n"
+                    "patch 1 1\n5 -10 0\n25 -10 0\n5 10 0\n25 10 0\n")
+    patches = read_surface(path)
+    radius = np.linalg.norm(nodes_of(patches[0], 3)[..., [0, 2]] - (5, -5), axis=2)
+    assert np.allclose(radius, 5) and divisions(patches, 5.0) == 4
+    rng = np.random.default_rng(3)
+    points = rng.uniform((0, 0, -5), (25, 10, 0), (200, 3))
+    values = np.column_stack((0.01 * points[:, 0], 0.02 * points[:, 1], 0.1 * np.cos(points[:, 0] / 8)))
+    move = spline(points, values, ["y"], 4.0)
+    far = move(np.array([[500.0, 300.0, -200.0]]))
+    assert abs(far).max() < 1.0
+    surface = moved_surface(path, move, 5.0, np.zeros(3))
+    nodes = np.stack([nodes_of((net[..., :3], net[..., 3]), 1) for net in surface.net]).reshape(-1, 3)
+    assert len(surface.net) == 32
+    # The faces have the same nodes at their joint.
+    first, second = (nodes_of((net[..., :3], net[..., 3]), 1)[:, side] for net, side in
+                     ((surface.net[3], -1), (surface.net[16], 0)))
+    assert np.allclose(first, second, atol=1e-12)
+    mirrored = nodes * (1, -1, 1)
+    assert max(np.abs(nodes - place).sum(axis=1).min() for place in mirrored) < 1e-6
+    write(path, moved_surface(path, np.zeros_like, np.inf, np.zeros(3)), ["unchanged"])
+    again = np.linalg.norm(nodes_of(read_surface(path)[0], 4)[..., [0, 2]] - (5, -5), axis=2)
+    assert np.allclose(again, 5, atol=0.2)
+    write_step(tmp_path / "tool.step", surface)
+    with session(tmp_path / "tool.step") as gmsh:
+        assert len(gmsh.model.getEntities(2)) == 32
+
+
+def test_refused(tmp_path, program):
+    """Commands that need a parameter of the input files say so."""
+    path = make_process(tmp_path)
+    said = call("compensate", path, "--tools", "nothing", "--program", program, expect=2)
+    assert "no input file has the parameter 'nothing'" in said
+    assert "no *TRIM" in call("outline", path, "--curve", "strain", "--height", "1", "--program", program, expect=2)
+    assert "one of the arguments --height --rim" in call("outline", path, "--curve", "c", expect=2)
