@@ -70,8 +70,74 @@ contains
         end do
         if (.not. changed) exit
       end do
+      call drop_pieces(grid, stays, kept)
     end associate
   end subroutine select_core
+
+  !> Drop all but the largest of the pieces of the core within each part of the sheet that stays.
+  pure subroutine drop_pieces(grid, stays, kept)
+    type(grid_t), intent(in) :: grid
+    logical, intent(in) :: stays(:)
+    logical, intent(inout) :: kept(:)
+
+    integer :: part(grid%n_quad), piece(grid%n_quad), number(grid%n_quad), largest(grid%n_quad), q
+
+    call label(grid, [(any(stays(grid%corner(:, q))), q=1, grid%n_quad)], part, stays)
+    call label(grid, kept, piece)
+    number = 0
+    do q = 1, grid%n_quad
+      if (kept(q)) number(piece(q)) = number(piece(q)) + 1
+    end do
+    largest = 0
+    do q = 1, grid%n_quad
+      if (.not. kept(q)) cycle
+      associate (most => largest(part(q)))
+        if (most == 0) then
+          most = piece(q)
+        else if (number(piece(q)) > number(most)) then
+          most = piece(q)
+        end if
+      end associate
+    end do
+    do q = 1, grid%n_quad
+      if (kept(q)) kept(q) = piece(q) == largest(part(q))
+    end do
+  end subroutine drop_pieces
+
+  !> Label quadrilaterals that are connected by edges.
+  pure subroutine label(grid, member, name, stays)
+    type(grid_t), intent(in) :: grid
+    logical, intent(in) :: member(:)
+    !> The number of a quadrilateral of the same piece; 0 for one that is no member.
+    integer, intent(out) :: name(:)
+    !> If given, only edges with an end that stays connect.
+    logical, intent(in), optional :: stays(:)
+
+    integer :: stack(grid%n_quad), n, q, i, other, first
+
+    name = 0
+    do first = 1, grid%n_quad
+      if (.not. member(first) .or. name(first) > 0) cycle
+      n = 1
+      stack(1) = first
+      name(first) = first
+      do while (n > 0)
+        q = stack(n)
+        n = n - 1
+        do i = 1, 4
+          other = grid%neighbour(i, q)
+          if (other == 0) cycle
+          if (.not. member(other) .or. name(other) > 0) cycle
+          if (present(stays)) then
+            if (.not. any(stays(grid%corner([i, mod(i, 4) + 1], q)))) cycle
+          end if
+          name(other) = first
+          n = n + 1
+          stack(n) = other
+        end do
+      end do
+    end do
+  end subroutine label
 
   !> Drop all but the largest of the groups of quadrilaterals at a column that have no edge in
   !> common.

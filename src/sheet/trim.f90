@@ -71,7 +71,7 @@ contains
     do i = 1, size(fit)
       call fit_chain(fit(i), cut%chain(i), line, cut%plane)
     end do
-    call check_fits(spec, sheet, cut, fit, errors)
+    call check_fits(spec, sheet, cut, fit, line, errors)
     if (errors%count > before) return
     call new_patch(cut, sheet, fit, line)
     call smooth(cut%patch, line)
@@ -164,12 +164,13 @@ contains
         "curves on the sheet (see keep, along)", code="E153")
   end subroutine check_core
 
-  !> Report chains that do not follow a line of the cut of their own.
-  subroutine check_fits(spec, sheet, cut, fit, errors)
+  !> Report chains that do not follow a line of the cut of their own, and lines that none follows.
+  subroutine check_fits(spec, sheet, cut, fit, line, errors)
     type(trim_spec_t), intent(in) :: spec
     type(sheet_t), intent(in) :: sheet
     type(cut_t), intent(in) :: cut
     type(fit_t), intent(in) :: fit(:)
+    type(loop_t), intent(in) :: line(:)
     type(error_list_t), intent(inout) :: errors
 
     integer :: i, k, node
@@ -184,6 +185,15 @@ contains
           "' near "//point_text(sheet%x(:, node))//": it leaves a strip that is narrower than "// &
           "two elements, or meets the border of the sheet at a small angle", &
           "a smoother curve, or a finer mesh there", code="E153")
+      return
+    end do
+    do k = 1, size(line)
+      if (any(fit%loop == k)) cycle
+      node = cut%grid%node(0, minloc(sum((cut%plane - spread(line(k)%point(:, 1), 2, &
+          cut%grid%n_column))**2, dim=1), dim=1))
+      call errors%push_input(spec%source%opened, "cut '"//spec%name//"' leaves a part that is "// &
+          "narrower than two elements near "//point_text(sheet%x(:, node)), &
+          "curves that leave larger parts, or a finer mesh there", code="E153")
       return
     end do
   end subroutine check_fits
