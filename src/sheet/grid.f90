@@ -6,7 +6,7 @@ module dd3_sheet_grid
   use dd3_mesh_mesh, only : mesh_t
   implicit none
   private
-  public :: grid_t, new_grid
+  public :: grid_t, list_quads, new_grid
 
   !> Grid of a sheet.
   type :: grid_t
@@ -81,6 +81,7 @@ contains
         self%element(k, q) = element_on(mesh%connectivity(5:, self%element(k - 1, q)))
       end do
     end do
+    call list_quads(self%corner, self%n_column, self%first, self%quad_at)
     call set_neighbours(self)
 
   contains
@@ -97,31 +98,42 @@ contains
 
   end subroutine new_grid
 
-  !> List the quadrilaterals at each column, and those across the edges.
-  pure subroutine set_neighbours(self)
-    type(grid_t), intent(inout) :: self
+  !> List the quadrilaterals at each column: those at column c are `list(first(c):first(c + 1) - 1)`.
+  pure subroutine list_quads(corner, n_column, first, list)
+    !> `(4, n_quad)`.
+    integer, intent(in) :: corner(:, :)
+    integer, intent(in) :: n_column
+    integer, allocatable, intent(out) :: first(:), list(:)
 
-    integer :: filled(self%n_column), c, i, k, q, other
+    integer :: filled(n_column), c, i, q
 
-    allocate (self%first(self%n_column + 1), self%quad_at(4*self%n_quad))
-    self%first = 0
-    do q = 1, self%n_quad
+    allocate (first(n_column + 1), list(size(corner)))
+    first = 0
+    do q = 1, size(corner, 2)
       do i = 1, 4
-        self%first(self%corner(i, q) + 1) = self%first(self%corner(i, q) + 1) + 1
+        first(corner(i, q) + 1) = first(corner(i, q) + 1) + 1
       end do
     end do
-    self%first(1) = 1
-    do c = 1, self%n_column
-      self%first(c + 1) = self%first(c) + self%first(c + 1)
+    first(1) = 1
+    do c = 1, n_column
+      first(c + 1) = first(c) + first(c + 1)
     end do
-    filled = self%first(:self%n_column)
-    do q = 1, self%n_quad
+    filled = first(:n_column)
+    do q = 1, size(corner, 2)
       do i = 1, 4
-        c = self%corner(i, q)
-        self%quad_at(filled(c)) = q
+        c = corner(i, q)
+        list(filled(c)) = q
         filled(c) = filled(c) + 1
       end do
     end do
+  end subroutine list_quads
+
+  !> Find the quadrilaterals across the edges.
+  pure subroutine set_neighbours(self)
+    type(grid_t), intent(inout) :: self
+
+    integer :: i, k, q, other
+
     allocate (self%neighbour(4, self%n_quad), source=0)
     do q = 1, self%n_quad
       do i = 1, 4

@@ -8,6 +8,7 @@
 !> Eng. 192 (2003) 2775-2787.
 module dd3_sheet_smoothing
   use dd3_base_kinds, only : wp
+  use dd3_sheet_grid, only : list_quads
   use dd3_sheet_plane_curve, only : loop_t
   implicit none
   private
@@ -49,7 +50,7 @@ contains
 
     integer :: pass, c
 
-    call list_quads(self)
+    call list_quads(self%corner, size(self%free), self%first, self%quad_at)
     do pass = 1, n_pass
       do c = 1, size(self%free)
         if (self%free(c)) then
@@ -60,35 +61,6 @@ contains
       end do
     end do
   end subroutine smooth
-
-  !> List the quadrilaterals at each column.
-  pure subroutine list_quads(self)
-    type(patch_t), intent(inout) :: self
-
-    integer :: filled(size(self%free)), c, i, q
-
-    if (allocated(self%first)) deallocate (self%first, self%quad_at)
-    allocate (self%first(size(self%free) + 1), self%quad_at(size(self%corner)))
-    self%first = 0
-    do q = 1, size(self%corner, 2)
-      do i = 1, 4
-        c = self%corner(i, q) + 1
-        self%first(c) = self%first(c) + 1
-      end do
-    end do
-    self%first(1) = 1
-    do c = 1, size(self%free)
-      self%first(c + 1) = self%first(c) + self%first(c + 1)
-    end do
-    filled = self%first(:size(filled))
-    do q = 1, size(self%corner, 2)
-      do i = 1, 4
-        c = self%corner(i, q)
-        self%quad_at(filled(c)) = q
-        filled(c) = filled(c) + 1
-      end do
-    end do
-  end subroutine list_quads
 
   !> Search the best place of a column in the plane.
   pure subroutine move_freely(self, column)
