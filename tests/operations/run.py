@@ -9,6 +9,7 @@
   also where it is moved and turned between the two.
 - cut_wall: the wall of a drawn strip, cut free, curls as it does on the whole strip; its stresses carry no moment.
 - cut_bend: a strip bent to an arc, cut obliquely and released, springs back by M/(E' I).
+- cut_on_sheet: a circle on the middle of the bent strip is cut out normal to it: it is a circle in the blank.
 - restruck: the released strip is formed again by the same tools, and its restart continues it bit for bit.
 - refused: a run that has not ended, one without a sheet, another material, curves that are open or miss the sheet.
 """
@@ -16,6 +17,7 @@ import pathlib
 import shutil
 import sys
 
+import h5py
 import numpy as np
 
 import dd3
@@ -157,6 +159,30 @@ def cut_bend(bench):
     check_values(Value("curvature after the cut, 1/mm", 1 / radius - abs(moment) / stiffness, curved, 5e-3))
 
 
+def cut_on_sheet(bench):
+    """Cut a circular hole out of the bent strip, normal to it, by a curve that lies on its middle."""
+    bench.run("bent", MATERIAL + BEND)
+    radius, hole, centre = 50.0, 1.7, (27.3, 4.1)
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    x, y = centre[0] + hole * np.cos(angle), centre[1] + hole * np.sin(angle)
+    # The middle of the strip is bent downwards about (0, 0.5 - radius).
+    points = np.column_stack((radius * np.sin(x / radius), y, 0.5 - radius + radius * np.cos(x / radius)))
+    (bench.work / "hole.txt").write_text("".join(f"{a:.9f} {b:.9f} {c:.9f}\n" for a, b, c in points))
+    deck = ("*START\n  from = bent.out\n" + MATERIAL + "*BOUNDARY plane\n  set = all\n  fix = y\n"
+            "*TRIM hole\n  file = hole.txt\n  along = 0 0 0\n  keep = outside\n" + UNLOAD)
+    run = bench.run("cut_on_sheet", deck)
+    with h5py.File(run.folder / "restart.h5") as file:
+        names = "".join(map(chr, file["mesh/sets"][...])).split()
+        sizes = file["mesh/set_size"][...]
+        first = sizes[:names.index("hole")].sum()
+        nodes = file["mesh/set_node"][...][first:first + sizes[names.index("hole")]] - 1
+        initial = file["mesh/x0"][...].reshape(-1, 3)[nodes, :2]
+    away = np.linalg.norm(initial - centre, axis=1)
+    check(len(nodes) >= 16, f"{len(nodes)} nodes on the hole")
+    check_values(Value("radius of the hole in the blank, least, mm", hole, float(away.min()), 0.02, absolute=True),
+                 Value("radius of the hole in the blank, largest, mm", hole, float(away.max()), 0.02, absolute=True))
+
+
 def restruck(bench):
     """Form the released strip again by the same tools, and continue that run."""
     drawn(bench)
@@ -207,7 +233,7 @@ def refused(bench):
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 
-TESTS = (released, cut_wall, cut_bend, restruck, refused)
+TESTS = (released, cut_wall, cut_bend, cut_on_sheet, restruck, refused)
 
 
 def main():
