@@ -36,6 +36,9 @@ from dd3.sheet import AXES, Sheet
 from dd3.springback import best_fit, images
 from dd3.tables import read_text
 from dd3.tools.cad import silence
+from dd3.tools.facet_files import Facets
+from dd3.tools.nagata import estimate_normals, unfolded_patches
+from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Surface, from_nodes, read_lines, write
 
 MOST_POINTS = 2000  # of the spline
@@ -95,12 +98,15 @@ def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> d
 
 
 def wanted_surface(process: Process) -> Any:
-    """Return the lower face of the whole sheet under the tools as a surface of pyvista."""
+    """Return the lower face of the whole sheet under the tools as a surface of pyvista, curved between the nodes."""
     import pyvista as pv
     sheet = Sheet(process.operations[0].folder)
-    quads = sheet.faces(upper=False)
-    faces = np.hstack((np.full((len(quads), 1), 4), quads))
-    return pv.PolyData(sheet.points(drawn_step(sheet, read_job(sheet.path.parent))), faces.ravel()).triangulate()
+    points = sheet.points(drawn_step(sheet, read_job(sheet.path.parent)))
+    nodes, corner = np.unique(sheet.faces(upper=False), return_inverse=True)
+    quads = corner.reshape(-1, 4)
+    mesh = Facets(points[nodes], quads, np.zeros(len(quads), int), ["sheet"])
+    net, _ = unfolded_patches(mesh.nodes, estimate_normals(mesh))
+    return pv.PolyData(*flat_quads(net)).triangulate()
 
 
 def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
