@@ -6,8 +6,8 @@
     corrections.py --program build/release/dd3imp --work build/corrections
 
 - outline: the flange of the square cup ends within 0.5 mm of the wanted rim after at most five draws.
-- compensate: after three corrections the sprung, trimmed rail deviates from the drawn one by less than a third of what
-  it did without, in its largest and in its mean distance.
+- compensate: after three corrections the sprung, trimmed rail deviates from the drawn one by less than half of what it
+  did without, in its largest and in its mean distance.
 """
 import shutil
 import sys
@@ -39,7 +39,7 @@ def main():
     rail = copied(options.work / "compensate", "rail")
     found = compensate.compensate(options.program, read_process(rail / "rail.toml"), "tools", 3, 0.1, 1.0, [], None)
     for kind in (0, 1):
-        check(found[-1][kind] < found[0][kind] / 3, f"compensate: {found}")
+        check(found[-1][kind] < found[0][kind] / 2, f"compensate: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))
     check(steps == ["die.step", "holder.step", "punch.step"], f"STEP files: {steps}")
     sys.stdout.flush()

@@ -12,7 +12,7 @@ gaps between tools stay. --mirror names the planes of symmetry x = 0, y = 0.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
 in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
-operations themselves are left in the state of the last loop.
+operations are left as they are with these; --report writes their report.
 
 Sources: Gan and Wagoner, Int. J. Mech. Sci. 46 (2004) 1097-1113 (displacement adjustment); Lingbeek, Huetink, Ohnimus,
 Petzoldt and Weiher, J. Mater. Process. Technol. 169 (2005) 115-125 (smooth displacement of the tools' surfaces).
@@ -29,7 +29,7 @@ from scipy.special import comb
 
 from dd3.errors import Problem
 from dd3.gmsh_session import session
-from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process
+from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process, write_report
 from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
@@ -237,6 +237,10 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
             operation.settings[parameter] = str(folder.resolve())
         run_process(program, process, threads)
     best = int(np.argmin([largest for largest, _ in found]))
+    if best < len(found) - 1:
+        for operation in operations:
+            operation.settings[parameter] = str(next(iter(folders[best].values())).parent.resolve())
+        run_process(program, process, threads)
     for name, path in folders[best].items():
         shutil.copy(path, work / name)
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
@@ -259,6 +263,10 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="planes of symmetry")
     parser.add_argument("--size", type=float, metavar="LENGTH",
                         help="largest side of the patches that are moved, mm (10 thicknesses)")
+    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
-    compensate(find_program(options.program), read_process(options.file), options.tools, options.loops,
-               options.tolerance, options.factor, sorted(set(options.mirror)), options.size, options.threads)
+    process = read_process(options.file)
+    compensate(find_program(options.program), process, options.tools, options.loops, options.tolerance, options.factor,
+               sorted(set(options.mirror)), options.size, options.threads)
+    if options.report:
+        print(write_report(process))

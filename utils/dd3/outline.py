@@ -10,7 +10,8 @@ the sheet reaches beyond the wanted rim by some length along it, or ends before:
 cup, or a closed curve in plan, --rim, for that of a flange. The outline is moved by as much in the initial sheet, by
 the stretch of the outermost elements, and the process runs again.
 
-The results are in <process>.outline: the outline of each draw, deviations.csv, and the best one, outline.txt.
+The results are in <process>.outline: the outline of each draw, deviations.csv, and the best one, outline.txt. The
+operations are left as they are with this; --report writes their report.
 
 Source: push and pull of the border by the displacements of its nodes: Padmanabhan, Oliveira, Baptista, Alves and
 Menezes, J. Mater. Process. Technol. 209 (2009) 1460-1468.
@@ -23,7 +24,7 @@ import numpy as np
 
 from dd3.curve import read_curves, write_curves
 from dd3.errors import Problem
-from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process
+from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process, write_report
 from dd3.programs import find_program, made_folder
 from dd3.sheet import Sheet
 
@@ -189,6 +190,9 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
             break
         curves = [moved(curves[0], rim, beyond), *curves[1:]]
     best = int(np.argmin([largest for largest, _ in found]))
+    if best < len(found) - 1:
+        first.settings[name] = str((work / f"outline_{best + 1}.txt").resolve())
+        run_process(program, process, threads)
     write_curves(work / "outline.txt", outlines[best], f"dd3 outline {process.path.name}")
     rows = ["draw,largest,mean", *(f"{number},{a:.6g},{b:.6g}" for number, (a, b) in enumerate(found, 1))]
     (work / "deviations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
@@ -207,8 +211,12 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--draws", type=int, default=5, help="draws at most (5)")
     parser.add_argument("--tolerance", type=float, default=0.3, metavar="LENGTH",
                         help="largest deviation of the rim that ends the draws, mm (0.3)")
+    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
-    find_outline(find_program(options.program), read_process(options.file), options.curve, options.height, options.rim,
-                 options.draws, options.tolerance, options.threads)
+    process = read_process(options.file)
+    find_outline(find_program(options.program), process, options.curve, options.height, options.rim, options.draws,
+                 options.tolerance, options.threads)
+    if options.report:
+        print(write_report(process))
 
 
