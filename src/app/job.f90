@@ -168,6 +168,8 @@ contains
     if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
         contact_report(model)//limits_report(model)//drawbead_report(model)
+    if (allocated(start%sheet_report)) &
+        write (output_unit, '(a)', advance="no") start%sheet_report
     if (size(case%point) == 0) then
       call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
       if (allocated(solver)) call solver%release()

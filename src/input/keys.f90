@@ -7,7 +7,8 @@ module dd3_input_keys
   use dd3_input_accuracy, only : accuracy_names, default_by_accuracy
   implicit none
   private
-  public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, drawbead_keys, &
+  public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, &
+      drawbead_keys, &
       contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
       history_keys, output_keys, point_keys
 
@@ -82,14 +83,14 @@ contains
     type(parameter_t), allocatable :: key(:)
 
     key = [ &
-      row("file", kind_text, "", "-", "file of one or more closed curves: a line x y z for each "// &
-          "vertex, an empty line between curves; dd3 curve makes one of CAD files"), &
+      row("file", kind_text, "", "-", "file of one or more closed curves: a line x y z for "// &
+          "each vertex, an empty line between curves; dd3 curve makes one of CAD files"), &
       row("points", kind_reals, "mm", "-", "vertices of one closed curve, x y z in turn", &
           count=0), &
       row("along", kind_reals, "", "0 0 1", "direction along which the curves are projected on "// &
           "the sheet; 0 0 0: normal to the sheet, for curves on it", count=3), &
-      row("keep", kind_name, "", "inside", "part of the sheet that stays; inside: within an odd "// &
-          "number of curves", choices="inside outside")]
+      row("keep", kind_name, "", "inside", "part of the sheet that stays; inside: within an "// &
+          "odd number of curves", choices="inside outside")]
   end function trim_keys
 
   function set_keys() result(key)
@@ -292,8 +293,8 @@ contains
           repeatable=.true., form="set number number number"), &
       row("pressure", kind_other, "MPa", "-", "pressure at the end of the phase on the faces "// &
           "with all nodes in the set; follows the faces", repeatable=.true., form="set number"), &
-      row("gravity", kind_reals, "mm/s2", "-", "acceleration of gravity at the end of the phase; "// &
-          "a sheet that is free is laid down", count=3), &
+      row("gravity", kind_reals, "mm/s2", "-", "acceleration of gravity at the end of the "// &
+          "phase; a sheet that is free is laid down", count=3), &
       row("rotate", kind_other, "mm, degrees", "-", "rotation of nodes over the phase: point "// &
           "and direction of the axis, angle", repeatable=.true., &
           form="set number number number number number number number"), &

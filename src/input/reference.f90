@@ -29,6 +29,8 @@ module dd3_input_reference
     type(name_index_t) :: index
     !> Sets of the sheet.
     character(len=name_length), allocatable :: sheet_set(:)
+    !> Number of these that the program makes for each sheet of its kind.
+    integer :: n_own = 0
     !> Whether the sheet has sets that are known only when its mesh is made.
     logical :: of_mesh = .false.
   end type known_t
@@ -65,7 +67,8 @@ contains
     end do
   end subroutine check_references
 
-  !> List the sheet's sets, those of its cuts among them, and all blocks with a name; of equal names the first one counts.
+  !> List the sheet's sets, those of its cuts among them, and all blocks with a name; of equal names
+  !> the first one counts.
   subroutine new_known(known, deck, mesh_sets)
     type(known_t), intent(out) :: known
     type(deck_t), intent(in) :: deck
@@ -74,6 +77,7 @@ contains
     integer :: i
 
     known%sheet_set = sheet_sets(deck)
+    known%n_own = size(known%sheet_set)
     if (present(mesh_sets)) then
       do i = 1, size(mesh_sets)
         if (any(known%sheet_set == mesh_sets(i)%s)) cycle
@@ -95,13 +99,14 @@ contains
     end do
   end subroutine new_known
 
-  !> Report sets and tools with a reserved name.
+  !> Report sets, cuts and tools with a reserved name.
   subroutine check_reserved_name(block, known, errors)
     type(block_t), intent(in) :: block
     type(known_t), intent(in) :: known
     type(error_list_t), intent(inout) :: errors
 
-    if (block%keyword == "set" .and. known%index%find("set "//block%name) == of_sheet) then
+    if ((block%keyword == "set" .and. known%index%find("set "//block%name) == of_sheet) .or. &
+        (block%keyword == "trim" .and. any(known%sheet_set(:known%n_own) == block%name))) then
       call errors%push_input(block%named, "'"//block%called()//"' is a set of the "// &
           trim(merge("mesh ", "blank", known%of_mesh)), &
           "another name", code="E123")

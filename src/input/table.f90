@@ -6,7 +6,8 @@ module dd3_input_table
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : blank_sets
   use dd3_input_keys, only : blank_keys, mesh_keys, start_keys, trim_keys, set_keys, &
-      material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, &
+      material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, &
+      newton_keys, solver_keys, &
       phase_keys, history_keys, output_keys, point_keys
   implicit none
   private
@@ -50,8 +51,8 @@ contains
     call add(table, "start", "once", "The sheet of another run, in place of *BLANK or *MESH, "// &
         "with its stresses and internal variables. Its sets are those of its blank or mesh.", &
         start_keys())
-    call add(table, "trim", "named many", "A cut of the sheet before the first phase. The nodes "// &
-        "of the new border are the set of its name.", trim_keys())
+    call add(table, "trim", "named many", "A cut of the sheet before the first phase. The "// &
+        "nodes of the new border are the set of its name.", trim_keys())
     call add(table, "set", "named many", "A node set selected by the initial coordinates.", &
         set_keys())
     call add(table, "material", "named many required", "A material.", material_keys())

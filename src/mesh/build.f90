@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Builds the mesh of a case: nodes and elements of the blank or of the mesh file, then the node sets
-!> of the input; checks the prescribed displacements and the directions that are free again.
+!> Builds the mesh of a case: nodes and elements of the blank or of the mesh file, then the node
+!> sets of the input; checks the prescribed displacements and the directions that are free again.
 module dd3_mesh_build
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t

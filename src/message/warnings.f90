@@ -138,9 +138,9 @@ contains
       row("N104", "mean gap in the contact layers", &
           "The compliant contact keeps the sheet off the tools by this distance.", &
           "A smaller `layer` in `*CONTACT`, if it matters."), &
-      row("N106", "forces of a sheet that is taken over", "Tools, supports and parts of the sheet "// &
-          "that acted on it in the other run are gone; what they leave fades over the first "// &
-          "phase.", "A first phase with `unload = on`, if they are large."), &
+      row("N106", "forces of a sheet that is taken over", "Tools, supports and parts of the "// &
+          "sheet that acted on it in the other run are gone; what they leave fades over the "// &
+          "first phase.", "A first phase with `unload = on`, if they are large."), &
       row("N105", "phase without increments", &
           "The condition of its early end holds at its start.", "Check `until` of the phase.")]
   end function notes

@@ -81,8 +81,8 @@ contains
     call new_materials(model, case, errors)
     call read_tools(model, case, errors)
     if (errors%count > 0) then
-      ! The files of curves and the mesh file of an input with errors are read to report their errors
-      ! with the others.
+      ! The files of curves and the mesh file of an input with errors are read to report their
+      ! errors with the others.
       do i = 1, size(case%trim)
         if (case%trim(i)%source%valid) call read_curves(curve, case%trim(i), errors)
       end do

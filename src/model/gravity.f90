@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Weight of the sheet: a load on all nodes by their masses, which are those of the initial elements,
-!> consistent with the shape functions.
+!> Weight of the sheet: a load on all nodes by their masses, which are those of the initial
+!> elements, consistent with the shape functions.
 !>
 !> A sheet whose supports leave it free, above the tools or on a few points of them, has no
 !> equilibrium under its weight until it lies on the tools. Forces and springs at the nodes carry it
@@ -50,8 +50,8 @@ contains
     set%weight = mass/sum(mass)
   end subroutine new_weight_set
 
-  !> At the start of a phase, let the weight that it puts on a free sheet act at once, and forces that
-  !> fade carry it.
+  !> At the start of a phase, let the weight that it puts on a free sheet act at once, and forces
+  !> that fade carry it.
   subroutine lay_down(model, state)
     type(model_t), intent(in) :: model
     !> With the loads at the start and at the end of the running phase.

@@ -173,7 +173,8 @@ contains
 
     allocate (length(0))
     if (.not. allocated(model%drawbead)) return
-    call find_bead_points(model, [(.true., b=1, size(model%drawbead))], model%start_positions(), point)
+    call find_bead_points(model, [(.true., b=1, size(model%drawbead))], &
+        model%start_positions(), point)
     length = [(covered_length(point, b), b=1, size(model%drawbead))]
   end function initial_bead_lengths
 

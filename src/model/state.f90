@@ -162,8 +162,8 @@ contains
     touches = any(self%contact_tool == tool .and. self%status /= status_gap)
   end function touches
 
-  !> Make the initial state: the sheet as it is at the start of the job, unstressed or with the state
-  !> that another run has left in it, and the tools at their initial positions.
+  !> Make the initial state: the sheet as it is at the start of the job, unstressed or with the
+  !> state that another run has left in it, and the tools at their initial positions.
   subroutine new_state(self, model, sheet)
     type(state_t), intent(out) :: self
     type(model_t), intent(in) :: model

@@ -57,7 +57,8 @@ contains
       else
         call read_mesh(sheet, file, sizes, ok)
         call read_state(sheet, file, sizes, ok)
-        if (.not. ok) call report("the sheet in '"//path//"' is incomplete", "a run of this version")
+        if (.not. ok) call report("the sheet in '"//path//"' is incomplete", &
+            "a run of this version")
       end if
     end if
     call close_hdf5(file)

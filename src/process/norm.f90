@@ -36,11 +36,11 @@ module dd3_process_norm
     real(wp) :: worst = 0.0_wp
   end type residual_t
 
-  !> Largest tolerance of the norm when all tools are released: the residual stresses, by which it
-  !> is scaled, are far larger than those that bend a slender sheet. Smaller: a more accurate shape
-  !> for more iterations; a strip drawn by 30 mm and released ends 0.06 mm elsewhere with 1e-2,
-  !> 0.01 mm with 1e-3. It bounds the tolerance and does not weigh the norm, whose value tells the
-  !> corrector how far from the solution a state is.
+  !> Largest tolerance of the norm when all tools are released, and under gravity: the residual
+  !> stresses, by which it is scaled, are far larger than those that bend a slender sheet.
+  !> Smaller: a more accurate shape for more iterations; a strip drawn by 30 mm and released ends
+  !> 0.06 mm elsewhere with 1e-2, 0.01 mm with 1e-3. It bounds the tolerance and does not weigh
+  !> the norm, whose value tells the corrector how far from the solution a state is.
   real(wp), parameter :: free_tolerance = 1.0e-5_wp
   !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
   !> sheet at rest all forces are round-off. Larger: smaller forces count as zero.
@@ -69,7 +69,8 @@ contains
     type(phase_t), intent(in) :: phase
 
     tolerance = phase%newton%tolerance
-    if (phase%unloaded .or. phase%has_gravity .or. (size(phase%active) > 0 .and. .not. any(phase%active))) &
+    if (phase%unloaded .or. phase%has_gravity .or. &
+        (size(phase%active) > 0 .and. .not. any(phase%active))) &
         tolerance = min(tolerance, free_tolerance)
   end function convergence_tolerance
 

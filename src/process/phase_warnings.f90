@@ -137,7 +137,8 @@ contains
   end function press_warning
 
   !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at
-  !> the start of a phase; empty otherwise, and where fading forces with their springs hold all nodes.
+  !> the start of a phase; empty otherwise, and where fading forces with their springs hold all
+  !> nodes.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.

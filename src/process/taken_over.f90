@@ -47,8 +47,9 @@ contains
     where (model%phase(1)%prescribed) state%fading = 0.0_wp
     size_of = [(norm2(state%fading(:, i)), i=1, model%n_node)]
     node = maxloc(size_of, dim=1)
-    note = "the sheet that is taken over has forces out of balance of up to "//to_text(size_of(node), 3)// &
-        " N, at node "//to_text(node)//", which fade over phase '"//model%phase(1)%name//"'"
+    note = "the sheet that is taken over has forces out of balance of up to "// &
+        to_text(size_of(node), 3)//" N, at node "//to_text(node)//", which fade over phase '"// &
+        model%phase(1)%name//"'"
   end subroutine balance_sheet
 
 end module dd3_process_taken_over

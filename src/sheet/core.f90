@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> First step of a cut: the quadrilaterals that stay as they are, and the chains of their edges along
-!> the cut, between which and the curves a layer of new quadrilaterals is put. The border of what
-!> stays follows the grid in steps.
-!> Source: Schneiders, Finite Elem. Anal. Des. 25 (1997) 13-35 (grid-based meshes of hexahedra:
-!> a core of the grid and a layer that connects it with the boundary).
+!> First step of a cut: the quadrilaterals that stay as they are, and the chains of their edges
+!> along the cut, between which and the curves a layer of new quadrilaterals is put. The border of
+!> what stays follows the grid in steps. Source: Schneiders, Finite Elem. Anal. Des. 25 (1997) 13-35
+!> (grid-based meshes of hexahedra: a core of the grid and a layer that connects it with the
+!> boundary).
 module dd3_sheet_core
   use dd3_base_kinds, only : wp
   use dd3_sheet_cut_function, only : cut_function_t
@@ -13,8 +13,8 @@ module dd3_sheet_core
   private
   public :: chain_t, mark_columns, select_core, find_chains
 
-  !> Least distance of a corner of the core from the cut along an edge, over its length: the new layer
-  !> is at least as wide.
+  !> Least distance of a corner of the core from the cut along an edge, over its length: the new
+  !> layer is at least as wide.
   real(wp), parameter :: least_width = 0.4_wp
 
   !> Edges along the cut that follow one another; what stays is on their left.
@@ -38,8 +38,8 @@ contains
     end do
   end subroutine mark_columns
 
-  !> Select the quadrilaterals whose corners stay and are not too close to the cut, without those that
-  !> hang on the others by a corner.
+  !> Select the quadrilaterals whose corners stay and are not too close to the cut, without those
+  !> that hang on the others by a corner.
   pure subroutine select_core(cut, stays, kept)
     type(cut_function_t), intent(in) :: cut
     logical, intent(in) :: stays(:)

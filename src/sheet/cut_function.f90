@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> The function whose zero is the cut: the distance from the curves in the plane of the cut, positive
-!> on what stays. It is known everywhere on the sheet, also where that is steep in the plane.
+!> The function whose zero is the cut: the distance from the curves in the plane of the cut,
+!> positive on what stays. It is known everywhere on the sheet, also where that is steep in the
+!> plane.
 module dd3_sheet_cut_function
   use dd3_base_kinds, only : wp
   use dd3_sheet_grid, only : grid_t

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Second step of a cut: a point on the line of the cut for each column of a chain, in the order of the
-!> chain. The corners of the line are points of their own, and so are its ends at the border of the
-!> sheet.
+!> Second step of a cut: a point on the line of the cut for each column of a chain, in the order of
+!> the chain. The corners of the line are points of their own, and so are its ends at the border of
+!> the sheet.
 module dd3_sheet_fitting
   use dd3_base_kinds, only : wp
   use dd3_sheet_core, only : chain_t

@@ -13,8 +13,8 @@ module dd3_sheet_grid
     integer :: n_layer = 0, n_column = 0, n_quad = 0
     !> Nodes of the columns from the bottom, `(0:n_layer, n_column)`.
     integer, allocatable :: node(:, :)
-    !> Columns at the corners of the quadrilaterals, counter-clockwise seen from above, `(4, n_quad)`,
-    !> and their elements from the bottom, `(n_layer, n_quad)`.
+    !> Columns at the corners of the quadrilaterals, counter-clockwise seen from above, `(4,
+    !> n_quad)`, and their elements from the bottom, `(n_layer, n_quad)`.
     integer, allocatable :: corner(:, :), element(:, :)
     !> Quadrilateral across the edge from corner i to corner i + 1, `(4, n_quad)`; 0 for none.
     integer, allocatable :: neighbour(:, :)
@@ -98,7 +98,8 @@ contains
 
   end subroutine new_grid
 
-  !> List the quadrilaterals at each column: those at column c are `list(first(c):first(c + 1) - 1)`.
+  !> List the quadrilaterals at each column: those at column c are `list(first(c):first(c + 1) -
+  !> 1)`.
   pure subroutine list_quads(corner, n_column, first, list)
     !> `(4, n_quad)`.
     integer, intent(in) :: corner(:, :)

@@ -122,7 +122,8 @@ contains
 
   end subroutine map_curve
 
-  !> Return the mean length of the diagonals of the quadrilaterals over that of a square's sides, mm.
+  !> Return the mean length of the diagonals of the quadrilaterals over that of a square's sides,
+  !> mm.
   pure real(wp) function mean_length(grid, plane)
     type(grid_t), intent(in) :: grid
     real(wp), intent(in) :: plane(:, :)

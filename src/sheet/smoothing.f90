@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Third step of a cut: quadrilaterals of good shape. The columns near the cut move in the plane, the
-!> new ones along the curves, so that the sum of squares of
+!> Third step of a cut: quadrilaterals of good shape. The columns near the cut move in the plane,
+!> the new ones along the curves, so that the sum of squares of
 !>     e = (|u|^2 + |v|^2) / (2 h(det(u, v))),    h(d) = (d + sqrt(d^2 + 4 delta^2))/2,
-!> over the corners becomes least, with the edges u and v at a corner as they are in space; e is 1 in
-!> a square. h keeps e finite for corners that are turned inside out, which are untangled too.
+!> over the corners becomes least, with the edges u and v at a corner as they are in space; e is 1
+!> in a square. h keeps e finite for corners that are turned inside out, which are untangled too.
 !> Source: Escobar, Rodriguez, Montenegro, Montero and Gonzalez-Yuste, Comput. Methods Appl. Mech.
 !> Eng. 192 (2003) 2775-2787.
 module dd3_sheet_smoothing

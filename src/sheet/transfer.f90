@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Transfer of the state to the integration points of elements that a cut has moved or made: through
 !> the thickness each point takes the values of the points of its own level, so that the problem is
-!> one in the mid-surface. There a linear function is fitted to the points of the old element at this
-!> place and of those around it, weighted by their distance; a linear field is carried exactly, and
-!> no value leaves the range of those around it.
+!> one in the mid-surface. There a linear function is fitted to the points of the old element at
+!> this place and of those around it, weighted by their distance; a linear field is carried exactly,
+!> and no value leaves the range of those around it.
 !>
 !> Stress and internal variables are carried in the material axes, which turn with the sheet; the
 !> axes themselves are carried by their components and made orthonormal again.

@@ -80,7 +80,8 @@ contains
     call report_cut(sheet, cut, spec, errors)
   end subroutine trim_sheet
 
-  !> Make the grid of a sheet that can be cut: of elements with eight nodes, and initially flat.
+  !> Make the grid of a sheet that can be cut: of elements with eight nodes, initially flat, without
+  !> a set of the cut's name.
   subroutine check_sheet(cut, sheet, spec, element, errors)
     type(cut_t), intent(inout) :: cut
     type(sheet_t), intent(in) :: sheet
@@ -91,6 +92,8 @@ contains
     logical :: regular
     integer :: q
 
+    if (sheet%mesh%find_set(spec%name) > 0) call errors%push_input(spec%source%named, "'"// &
+        spec%source%called()//"' is a set of the sheet", "another name", code="E123")
     regular = element%n_node == 8
     if (regular) call new_grid(cut%grid, sheet%mesh, regular)
     if (.not. regular) then
@@ -159,8 +162,8 @@ contains
       call errors%push_input(curve(k)%at, "the curve that begins here lies within an element", &
           "a larger curve, or a finer mesh there", code="E153")
     end do
-    if (errors%count == before .and. all(kept)) call errors%push_input(spec%source%opened, "cut '"// &
-        spec%name//"' misses the sheet: nothing is cut off", &
+    if (errors%count == before .and. all(kept)) call errors%push_input(spec%source%opened, &
+        "cut '"//spec%name//"' misses the sheet: nothing is cut off", &
         "curves on the sheet (see keep, along)", code="E153")
   end subroutine check_core
 
@@ -375,8 +378,8 @@ contains
     call errors%push_input(spec%source%opened, "cut '"//spec%name//"' makes an element of bad "// &
         "shape near "//point_text(sheet%x(:, sheet%mesh%connectivity(1, at)))// &
         ": the sine of an angle is "//to_text(worst, 2), &
-        "a smoother curve that meets the border of the sheet at a large angle, a finer mesh, or "// &
-        "another direction (along)", code="E153")
+        "a smoother curve that meets the border of the sheet at a large angle, a finer mesh, "// &
+        "or another direction (along)", code="E153")
   end subroutine report_cut
 
   !> Return a point as text.
