@@ -47,7 +47,7 @@ contains
     set%name = gravity_name
     set%scale = sum(mass)
     set%node = [(i, i=1, model%n_node)]
-    set%weight = mass/sum(mass)
+    set%weight = mass/max(tiny(1.0_wp), set%scale)
   end subroutine new_weight_set
 
   !> At the start of a phase, let the weight that it puts on a free sheet act at once, and forces
