@@ -61,6 +61,8 @@ contains
     integer :: e, i, p
 
     do i = 1, size(turn, 2)
+      ! A turn about no axis is an error of the input.
+      if (.not. norm2(turn(4:6, i)) > 0.0_wp) cycle
       centre = turn(:3, i)
       rotation = rotation_about(turn(4:6, i)/norm2(turn(4:6, i)), degree*turn(7, i))
       self%x = spread(centre, 2, size(self%x, 2)) &
