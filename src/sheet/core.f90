@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> First step of a cut: the quadrilaterals that stay as they are, and the chains of their edges
 !> along the cut, between which and the curves a layer of new quadrilaterals is put. The border of
-!> what stays follows the grid in steps. Source: Schneiders, Finite Elem. Anal. Des. 25 (1997) 13-35
-!> (grid-based meshes of hexahedra: a core of the grid and a layer that connects it with the
-!> boundary).
+!> what stays follows the grid in steps.
+!> Source: Schneiders, Finite Elem. Anal. Des. 25 (1997) 13-35 (grid-based meshes of hexahedra: a
+!> core of the grid and a layer that connects it with the boundary).
 module dd3_sheet_core
   use dd3_base_kinds, only : wp
   use dd3_sheet_cut_function, only : cut_function_t

@@ -14,8 +14,8 @@ module dd3_sheet_plane_curve
     !> Vertices, `(2, n)`, mm.
     real(wp), allocatable :: point(:, :)
     logical :: closed = .true.
-    !> Arc length at the vertices, that of the first one again at the end, `(n + 1)`, mm; not used
-    !> by an open polygon.
+    !> Arc length at the vertices, that of the first one again at the end, `(n + 1)`, mm; an open
+    !> polygon does not use that one.
     real(wp), allocatable :: arc(:)
     !> Arc lengths of the corners.
     real(wp), allocatable :: corner(:)

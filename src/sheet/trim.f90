@@ -329,7 +329,6 @@ contains
           u = cut%plane(:, c(3)) - cut%plane(:, c(1))
           v = cut%plane(:, c(4)) - cut%plane(:, c(2))
           determinant = u(1)*v(2) - u(2)*v(1)
-          if (.not. abs(determinant) > 0.0_wp) cycle
           a = sheet%x(:, grid%node(0, c(3))) - sheet%x(:, grid%node(0, c(1)))
           b = sheet%x(:, grid%node(0, c(4))) - sheet%x(:, grid%node(0, c(2)))
           ! The inverse of the matrix with the columns u and v.
@@ -342,8 +341,7 @@ contains
         end associate
       end do
     end associate
-    metric = metric/spread(real(max(1, number), wp), 1, 3)
-    where (spread(number == 0, 1, 3)) metric = spread([1.0_wp, 0.0_wp, 1.0_wp], 2, size(number))
+    metric = metric/spread(real(number, wp), 1, 3)
   end function metric_of
 
   !> Report what the cut has made of the sheet, and elements of bad shape as an error.

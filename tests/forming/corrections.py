@@ -7,7 +7,7 @@
 
 - outline: the flange of the square cup ends within 0.5 mm of the wanted rim after at most five draws.
 - compensate: after three corrections the sprung, trimmed rail deviates from the drawn one by less than half of what it
-  did without, in its largest and in its mean distance.
+  did without, in its largest distance and its root mean square.
 """
 import shutil
 import sys

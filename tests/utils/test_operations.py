@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from helpers import call
 
-from dd3.compensate import divisions, moved_surface, nodes_of, read_surface, spline, write_step
+from dd3.compensate import divisions, moved_surface, nodes_of, read_surface, smooth_field, write_step
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
 from dd3.outline import Outline, Rim, excess, moved
@@ -47,6 +47,9 @@ CUT = """*START
   unload = on
 """
 PROCESS = """title = "Strip"
+[report]
+mirror = ["x", "y"]
+section = ["x=20", "y=10"]
 [[operation]]
 deck = "op10.dat"
 [[operation]]
@@ -114,14 +117,18 @@ def test_process(tmp_path, program):
     assert said.count("reached its end") == 2 and "report.html" in said
     page = (tmp_path / "part.report" / "report.html").read_text()
     assert "op10/report.html" in page and "op20/report.html" in page
+    assert "the planes x, y = 0" in (tmp_path / "part.report" / "op10" / "report.html").read_text()
     job = json.loads((tmp_path / "op20.out" / "run.json").read_text())
     assert job["sheet"]["kind"] == "start" and job["sheet"]["elements"] < 72
     assert call(*words).count("has ended before") == 2
     make_process(tmp_path, second=CUT.replace("unload = on", "unload = on\n  trial = 0.2"))
     said = call(*words)
     assert "op10: has ended before" in said and "op20: reached its end" in said
-    make_process(tmp_path, first=STRIP.replace("x_max x 1", "x_max x 2"))
-    assert call(*words).count("reached its end") == 2
+    table = STRIP.replace("linear Y0=200 H=1000", "table file=flow.txt")
+    for stress in (220, 230):  # a file that a law reads
+        (tmp_path / "flow.txt").write_text(f"0 200\n0.1 {stress}\n")
+        make_process(tmp_path, first=table, second=CUT.replace("linear Y0=200 H=1000", "table file=flow.txt"))
+        assert call(*words).count("reached its end") == 2
 
 
 def test_process_refused(tmp_path, program):
@@ -144,7 +151,7 @@ def rim_of(points, radius):
     """Return the rim of a sheet that has been stretched from the unit circle to a radius, at some of its points."""
     outward = points / np.linalg.norm(points, axis=1, keepdims=True)
     three = np.column_stack((outward, np.zeros(len(points))))
-    return Rim(points, radius * three, outward, three, np.full(len(points), radius))
+    return Rim(points, radius * three, three, np.full(len(points), radius))
 
 
 def test_outline():
@@ -171,7 +178,7 @@ def test_outline_by_height():
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     circle = np.column_stack((np.cos(angle), np.sin(angle)))
     slope = np.array([0.6, 0.0, 0.8])
-    rim = Rim(circle, np.column_stack((circle, np.full(40, 3.2))), circle, np.tile(slope, (40, 1)), np.ones(40))
+    rim = Rim(circle, np.column_stack((circle, np.full(40, 3.2))), np.tile(slope, (40, 1)), np.ones(40))
     assert np.allclose(excess(rim, 3.0, None), 0.25)
 
 
@@ -188,7 +195,7 @@ def test_moved_surface(tmp_path):
     rng = np.random.default_rng(3)
     points = rng.uniform((0, 0, -5), (25, 10, 0), (200, 3))
     values = np.column_stack((0.01 * points[:, 0], 0.02 * points[:, 1], 0.1 * np.cos(points[:, 0] / 8)))
-    move = spline(points, values, ["y"], 4.0)
+    move = smooth_field(points, values, ["y"], 4.0)
     far = move(np.array([[500.0, 300.0, -200.0]]))
     assert abs(far).max() < 1.0
     surface = moved_surface(path, move, 5.0, np.zeros(3))
@@ -214,4 +221,10 @@ def test_refused(tmp_path, program):
     said = call("compensate", path, "--tools", "nothing", "--program", program, expect=2)
     assert "no input file has the parameter 'nothing'" in said
     assert "no *TRIM" in call("outline", path, "--curve", "strain", "--height", "1", "--program", program, expect=2)
+    (tmp_path / "right.txt").write_text("10 -5 0\n45 -5 0\n45 25 0\n10 25 0\n")
+    cut = STRIP.replace("set = x_min", "set = rim") + '*TRIM rim\n  file = "right.txt"\n'
+    path = make_process(tmp_path, first=cut)
+    assert "'strain' is not the file" in call("outline", path, "--curve", "strain", "--height", "1", "--program", program,
+                                              expect=2)
+    assert "takes 1 or more" in call("outline", path, "--curve", "c", "--height", "1", "--draws", "0", expect=2)
     assert "one of the arguments --height --rim" in call("outline", path, "--curve", "c", expect=2)

@@ -33,7 +33,7 @@ from dd3.process import Operation, Process, check_deck, process_parser, read_pro
 from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
-from dd3.springback import best_fit, images
+from dd3.springback import best_fit, images, steps_with_tools
 from dd3.tables import read_text
 from dd3.tools.cad import silence
 from dd3.tools.facet_files import Facets
@@ -41,7 +41,7 @@ from dd3.tools.nagata import estimate_normals, unfolded_patches
 from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Surface, from_nodes, read_lines, write
 
-MOST_POINTS = 2000  # of the spline
+MOST_POINTS = 2000  # of the smooth function
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
 UNKNOWN = "E115"  # code of the error of a parameter that an input file does not have
 
@@ -67,8 +67,7 @@ def lower_face(sheet: Sheet, step: int) -> tuple[np.ndarray, np.ndarray]:
 
 def drawn_step(sheet: Sheet, job: dict[str, Any]) -> int:
     """Return the last step at which tools act."""
-    held = [phase["number"] for phase in job["phases"] if any(tool["active"] for tool in phase["tools"])]
-    steps = np.flatnonzero(np.isin(sheet.file["job"]["phase"][: sheet.count], held))
+    steps = steps_with_tools(sheet, job["phases"])
     if not steps.size:
         raise Problem(f"{sheet.path}: no phase with tools")
     return int(steps[-1])
@@ -90,7 +89,12 @@ def shapes_of(process: Process) -> Shapes:
 
 def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
     """Return the displacement of each tool's file at a step."""
+    files = [Path(tool["patches"]).name for tool in job["tools"]]
+    if len(set(files)) < len(files):
+        raise Problem(f"{folder}: two tools have the same file; expected one for each")
     history = read_frame(folder, "history.csv")
+    if any(abs(history[name]).max() > 0 for name in history if name.endswith("_angle")):
+        raise Problem(f"{folder}: a tool turns; expected tools that are moved or pressed")
     phase = job["phases"][int(sheet.file["job"]["phase"][step]) - 1]["name"]
     row = history[history["phase"] == phase].iloc[-1]
     return {Path(tool["patches"]).name: np.array([float(row[f"{tool['name']}_u{axis}"]) for axis in AXES])
@@ -166,7 +170,7 @@ def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray)
                    [f"patch {number}" for number in range(1, len(patches) + 1)])
 
 
-def spline(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
+def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
     """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
     multiquadrics through the means of cells of the size `reach`, which stay bounded away from the points.
 
@@ -209,7 +213,7 @@ def with_parameter(program: Path, process: Process, name: str) -> list[Operation
 
 def compensate(program: Path, process: Process, parameter: str, loops: int, tolerance: float, factor: float,
                mirror: Sequence[str], size: float | None, threads: int | None = None) -> list[tuple[float, float]]:
-    """Run the loops; return the largest and the mean deviation of each, mm."""
+    """Run the loops; return the largest deviation of each and its root mean square, mm."""
     work = made_folder(process.path.parent / f"{process.path.stem}.compensate")
     operations = with_parameter(program, process, parameter)
     run_process(program, process, threads)
@@ -221,13 +225,13 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         shapes = shapes_of(process)
         place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
         deviation = np.linalg.norm(goal - place, axis=1)
-        np.savez(work / f"shape_{loop}.npz", initial=shapes.initial, drawn=shapes.drawn, place=place, goal=goal)
         found.append((float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
         folders.append(dict(tools))
-        print(f"loop {loop}: largest deviation {found[-1][0]:.4g} mm, mean {found[-1][1]:.4g} mm", flush=True)
+        print(f"loop {loop}: largest deviation {found[-1][0]:.4g} mm, root mean square {found[-1][1]:.4g} mm",
+              flush=True)
         if found[-1][0] <= tolerance or loop == loops:
             break
-        move = spline(shapes.drawn, factor * (goal - place), mirror, length)
+        move = smooth_field(shapes.drawn, factor * (goal - place), mirror, length)
         folder = made_folder(work / f"loop_{loop + 1}")
         for name, path in tools.items():
             surface = moved_surface(path, move, length if loop == 0 else np.inf, shapes.tools[name])
@@ -244,7 +248,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     for name, path in folders[best].items():
         shutil.copy(path, work / name)
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
-    rows = ["loop,largest,mean", *(f"{loop},{a:.6g},{b:.6g}" for loop, (a, b) in enumerate(found))]
+    rows = ["loop,largest,rms", *(f"{loop},{a:.6g},{b:.6g}" for loop, (a, b) in enumerate(found))]
     (work / "deviations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     print(f"tools of loop {best} in {work}")
     return found
@@ -265,6 +269,8 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="largest side of the patches that are moved, mm (10 thicknesses)")
     parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
+    if options.loops < 0:
+        parser.error("--loops: takes 0 or more")
     process = read_process(options.file)
     compensate(find_program(options.program), process, options.tools, options.loops, options.tolerance, options.factor,
                sorted(set(options.mirror)), options.size, options.threads)

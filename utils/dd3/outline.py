@@ -4,8 +4,8 @@
     dd3 outline cup.toml --curve outline --height -13.5
     dd3 outline cup.toml --curve outline --rim flange.txt --tolerance 0.3 --draws 5
 
-The first input file of the process cuts its blank by *TRIM along a file of curves, whose name is its parameter --curve;
-the value there is the outline to start from, by default the nodes of the cut are the set of that *TRIM. After each draw
+The first input file of the process cuts its blank by *TRIM along a file of curves; --curve names its parameter with the
+name of that file, whose first curve is the outline to start from. After each draw
 the sheet reaches beyond the wanted rim by some length along it, or ends before: a plane z = --height, for the rim of a
 cup, or a closed curve in plan, --rim, for that of a flange. The outline is moved by as much in the initial sheet, by
 the stretch of the outermost elements, and the process runs again.
@@ -34,12 +34,11 @@ NEAR = 1e-3  # distance of the rim's nodes from the outline, over its size
 
 @dataclass
 class Rim:
-    """Nodes of a rim: initial place in plan and position, mm; the direction in which the sheet ends there, initially
-    and now, unit vectors, and the stretch along it."""
+    """Nodes of a rim: initial place in plan and position, mm; the direction in which the sheet ends there, a unit
+    vector, and the stretch along it."""
 
     initial: np.ndarray
     position: np.ndarray
-    outward: np.ndarray
     onward: np.ndarray
     stretch: np.ndarray
 
@@ -68,8 +67,7 @@ def rim_on(folder: Path, outline: np.ndarray) -> Rim:
     across = [np.mean([initial[node] - initial[other] for other in inner[int(node)]], axis=0) for node in kept]
     along = [np.mean([position[node] - position[other] for other in inner[int(node)]], axis=0) for node in kept]
     before, after = np.linalg.norm(across, axis=1), np.linalg.norm(along, axis=1)
-    return Rim(initial[kept, :2], position[kept], np.array(across)[:, :2] / before[:, None],
-               np.array(along) / after[:, None], after / before)
+    return Rim(initial[kept, :2], position[kept], np.array(along) / after[:, None], after / before)
 
 
 class Outline:
@@ -154,15 +152,15 @@ def moved(points: np.ndarray, rim: Rim, beyond: np.ndarray) -> np.ndarray:
     return vertices
 
 
-def outline_file(program: Path, operation: Operation, name: str) -> Path:
-    """Return the file of the outline: the value of a parameter of an input file."""
+def outline_file(program: Path, operation: Operation) -> Path:
+    """Return the file of curves of the first cut of an input file."""
     job, errors = check_deck(program, operation)
     if errors:
         raise Problem(errors)
     for block in job["input"]["blocks"]:
         for entry in block["entries"]:
             if block["keyword"] == "trim" and entry["key"] == "file" and entry["at"]:
-                return Path(entry["at"]["file"]).parent / str(operation.settings.get(name, entry["value"]))
+                return Path(entry["at"]["file"]).parent / entry["value"]
     raise Problem(f"{operation.deck}: error: no *TRIM with a file of curves")
 
 
@@ -171,7 +169,7 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
     """Run the draws; return the largest and the mean deviation of each, mm."""
     work = made_folder(process.path.parent / f"{process.path.stem}.outline")
     first = process.operations[0]
-    curves = read_curves(outline_file(program, first, name))
+    curves = read_curves(outline_file(program, first))
     wanted = Outline(read_curves(rim_file)[0]) if rim_file else None
     found: list[tuple[float, float]] = []
     outlines = []
@@ -180,6 +178,8 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         write_curves(path, curves, f"draw {draw} of dd3 outline {process.path.name}")
         outlines.append(curves)
         first.settings[name] = str(path.resolve())
+        if not outline_file(program, first).samefile(path):
+            raise Problem(f"{first.deck}: error: the parameter '{name}' is not the file of curves of its *TRIM")
         run_process(program, process, threads)
         rim = rim_on(process.operations[-1].folder, curves[0])
         beyond = excess(rim, height, wanted)
@@ -213,6 +213,8 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="largest deviation of the rim that ends the draws, mm (0.3)")
     parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
+    if options.draws < 1:
+        parser.error("--draws: takes 1 or more")
     process = read_process(options.file)
     find_outline(find_program(options.program), process, options.curve, options.height, options.rim, options.draws,
                  options.tolerance, options.threads)

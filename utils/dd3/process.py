@@ -119,8 +119,11 @@ def files_of(job: dict[str, Any]) -> list[Path]:
     found = [Path(name) for name in job["input"]["files"]]
     for block in job["input"]["blocks"]:
         for entry in block["entries"]:
-            if entry["at"] and isinstance(entry["value"], str):
-                path = Path(entry["at"]["file"]).parent / entry["value"]
+            if not entry["at"]:
+                continue
+            names = [entry["value"]] if isinstance(entry["value"], str) else []
+            names += re.findall(r'\bfile\s*=\s*"?([^"\s]+)', entry["text"])  # of a law
+            for path in (Path(entry["at"]["file"]).parent / name for name in names):
                 found += [file for file in (path, path / "restart.h5") if file.is_file()]
     return sorted(set(found))
 
@@ -189,8 +192,8 @@ def write_report(process: Process) -> Path:
     rows = []
     for operation in process.operations:
         words = [str(operation.folder), "--output", str(target / operation.name)]
-        for axis in process.report.get("mirror", []):
-            words += ["--mirror", axis]
+        if process.report.get("mirror"):
+            words += ["--mirror", *process.report["mirror"]]
         for plane in process.report.get("section", []):
             words += ["--section", plane]
         page = pages.report_of(words)

@@ -49,18 +49,22 @@ def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = ())
     return moved
 
 
+def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
+    """Return the steps of the phases in which tools act; phases: those of run.json."""
+    of_step = sheet.file["job"].get("phase")
+    if of_step is None:
+        return np.array([], int)
+    held = [phase["number"] for phase in phases if any(tool["active"] for tool in phase["tools"])]
+    return np.flatnonzero(np.isin(np.array(of_step[: sheet.count]), held))
+
+
 def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Springback | None:
     """Return the springback of a run whose last phase releases all tools; None for another one.
 
     phases: those of run.json.
     """
-    of_step = sheet.file["job"].get("phase")
-    if of_step is None or not phases:
-        return None
-    held = [phase["number"] for phase in phases if any(tool["active"] for tool in phase["tools"])]
-    number = np.array(of_step[: sheet.count])
-    drawn = np.flatnonzero(np.isin(number, held))
-    if not drawn.size or number[-1] in held:
+    drawn = steps_with_tools(sheet, phases)
+    if not drawn.size or drawn[-1] == sheet.count - 1:
         return None
     points = sheet.points(int(drawn[-1]))
     return Springback(points, best_fit(sheet.points(sheet.last), points, mirror), int(drawn[-1]))
