@@ -10,6 +10,8 @@
 - cut_wall: the wall of a drawn strip, cut free, curls as it does on the whole strip; its stresses carry no moment.
 - cut_bend: a strip bent to an arc, cut obliquely and released, springs back by M/(E' I).
 - cut_on_sheet: a circle on the middle of the bent strip is cut out normal to it: it is a circle in the blank.
+- cut_by_elements: the bent strip is cut by a curve and by the sides of elements; area and energy of both.
+- dynain: the bent strip, written to a dynain file of LS-DYNA and taken over from it, is released as the strip itself.
 - restruck: the released strip is formed again by the same tools; the run continues from its end, on the same mesh.
 - refused: a run that has not ended, one without a sheet, another material, curves that are open or miss the sheet.
 """
@@ -21,6 +23,8 @@ import h5py
 import numpy as np
 
 import dd3
+import dd3.dynain
+import dd3.export
 from dd3.errors import check
 from dd3.programs import parser_of_runs
 
@@ -183,6 +187,71 @@ def cut_on_sheet(bench):
                  Value("radius of the hole in the blank, largest, mm", hole, float(away.max()), 0.02, absolute=True))
 
 
+def staircase(across, along, line):
+    """Return a polygon along the sides of the elements of a strip of 60 x 8 mm whose middle has x - y < line."""
+    points = [(-1.0, -1.0)]
+    for row in range(across):
+        y = (row + 0.5) * 8 / across
+        x = 60 / along * sum((k + 0.5) * 60 / along - y < line for k in range(along))
+        points += [(x, -1.0 if row == 0 else row * 8 / across), (x, 9.0 if row == across - 1 else (row + 1) * 8 / across)]
+    return [*points, (-1.0, 9.0)]
+
+
+def on_arc(points):
+    """Return a polygon of the flat strip, in steps of 0.25 mm, on the middle of the one bent to a radius of 50 mm."""
+    text = ""
+    for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1]):
+        count = max(1, round(np.hypot(x1 - x0, y1 - y0) / 0.25))
+        for part in np.arange(count) / count:
+            x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
+            text += f"{50 * np.sin(x / 50):.9f} {y:.9f} {0.5 - 50 + 50 * np.cos(x / 50):.9f}\n"
+    return text
+
+
+def cut_by_elements(bench):
+    """Cut the bent strip at 45 degrees, by the curve and by the sides of the elements, on two meshes, and release it:
+    the area is that of the curve, and the elastic energy of its area that of the other."""
+    free = BEND[BEND.index("*SET foot"):BEND.index("*HISTORY")].replace("set = all", "set = one") + (
+        "*SET one\n  near = 0 0 0\n")
+    line, found = 32.3, {}
+    for along, across in ((30, 4), (60, 8)):
+        blank = BEND.replace("60 6 1", f"{along} {across} 1").replace("set = all", "set = one")
+        bench.run(f"flat_{along}", MATERIAL + blank + "*SET one\n  near = 0 0 0\n")
+        for name, polygon in (("curve", [(-1, -1), (line - 1, -1), (line + 9, 9), (-1, 9)]),
+                              ("elements", staircase(across, along, line))):
+            (bench.work / f"{name}.txt").write_text(on_arc(polygon))
+            run = bench.run(f"{name}_{along}", f"*START\n  from = flat_{along}.out\n{MATERIAL}{free}*TRIM cut\n"
+                            f"  file = {name}.txt\n  along = 0 0 0\n{UNLOAD}")
+            grid = dd3.open(run.folder).fields[-1]
+            place = np.asarray(grid.points) - np.asarray(grid["displacement"])
+            a, b, c, d = (place[grid.cells.reshape(-1, 9)[:, k], :2] for k in range(1, 5))
+            one, other = c - a, d - b
+            area = 0.5 * abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]).sum()
+            found[name, along] = area / (8 * (line + 4)), run.last("elastic_energy") / area
+            print(f"{name}, {along} x {across}: area {100 * found[name, along][0] - 100:+.2f} %, energy "
+                  f"{found[name, along][1]:.6f} mJ/mm2")
+    for along, error in ((30, 3e-3), (60, 5e-4)):
+        check_values(Value(f"area by the curve, {along} elements, over the polygon's", 1, found["curve", along][0], 4e-4),
+                     Value(f"energy by elements, {along} elements", found["curve", along][1],
+                           found["elements", along][1], error))
+
+
+def dynain(bench):
+    """Release the bent strip from a dynain file that was written of it, with its plastic strains and thicknesses."""
+    bench.run("bent", MATERIAL + BEND)
+    supports = ("*BOUNDARY plane\n  set = all\n  fix = y\n*SET left\n  box = -0.1 0.1 -1 9 -1 2\n"
+                "*BOUNDARY left\n  set = left\n  fix = x\n")
+    own = bench.run("bent_released", "*START\n  from = bent.out\n" + MATERIAL + supports + UNLOAD)
+    dd3.export.main([str(bench.work / "bent.out"), str(bench.work / "dynain.k"), "--shells"])
+    dd3.dynain.main([str(bench.work / "dynain.k"), str(bench.work / "formed.out"), "--material", "mild_steel"])
+    run = bench.run("taken", "*START\n  from = formed.out\n" + MATERIAL + supports + UNLOAD)
+    found, expected = (np.asarray(dd3.open(folder).fields[-1].points) for folder in (run.folder, own.folder))
+    found, expected = (np.unique(np.round(points[:, [0, 2]], 9), axis=0) for points in (found, expected))
+    check_values(Value("largest x of the released strip, mm", float(expected[:, 0].max()), float(found[:, 0].max()), 1e-4))
+    ends = [float(np.ptp(points[:, 1])) for points in (expected, found)]
+    check_values(Value("height of the released strip, mm", *ends, 2e-3))
+
+
 def restruck(bench):
     """Form the released strip again by the same tools, and continue that run."""
     drawn(bench)
@@ -233,7 +302,7 @@ def refused(bench):
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 
-TESTS = (released, cut_wall, cut_bend, cut_on_sheet, restruck, refused)
+TESTS = (released, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck, refused)
 
 
 def main():

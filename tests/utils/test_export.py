@@ -60,8 +60,17 @@ def test_shells(bar):
     rows = cards("shells.k", "ELEMENT_SHELL_THICKNESS")
     thickness = np.array([[float(line[16 * k:16 * k + 16]) for k in range(4)] for line in rows[1::2]])
     assert np.allclose(thickness, bar.cell_data["thickness"][:, None])
-    strain = [float(line[70:80]) for line in cards("shells.k", "INITIAL_STRESS_SHELL")[1::2]]
-    assert np.allclose(strain, bar.cell_data["equivalent_plastic_strain"], rtol=1e-3)
+    rows = cards("shells.k", "INITIAL_STRESS_SHELL")
+    count = int(rows[0][20:30])
+    assert count > 1 and len(rows) == 2 * (1 + count)
+    values = np.array([[float(line[10 * k:10 * k + 10]) for k in range(8)] for line in rows if "e" in line])
+    values = values.reshape(2, count, 8)
+    assert np.allclose(values[..., 7], bar.cell_data["equivalent_plastic_strain"][:, None], rtol=1e-3)
+    assert np.allclose(values[..., 1], bar.cell_data["stress"][:, None, 0], rtol=1e-3)
+    assert np.allclose(values[..., 0], np.polynomial.legendre.leggauss(count)[0], atol=1e-3)
+    # A step before the end has the middle of the elements.
+    call("export", "bar.out", "first.k", "--shells", "--at", "pull:0")
+    assert len(cards("first.k", "INITIAL_STRESS_SHELL")) == 4
 
 
 def test_refusals(program):

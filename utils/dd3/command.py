@@ -14,8 +14,10 @@ ANY = "<file>"  # stands for the words that are no command of a group
 COMMANDS = {
     "tool": ("dd3.tool", "make tool surfaces from CAD, STL, a mesh or a profile"),
     "import": ("dd3.dyna.command", "import a forming deck of LS-DYNA"),
+    "dynain": ("dd3.dynain", "take over a formed sheet of LS-DYNA for *START"),
     "mesh": ("dd3.mesh", "bring a mesh of hexahedra into the form that *MESH reads"),
     "curve": ("dd3.curve", "write closed curves of a CAD file for *TRIM"),
+    "unfold": ("dd3.unfold", "estimate the flat blank of a part in one step"),
     "process": ("dd3.process", "run the operations of a part one after another"),
     "compensate": ("dd3.compensate", "correct the tools of a process for springback"),
     "outline": ("dd3.outline", "find the outline of the blank that gives a wanted rim"),

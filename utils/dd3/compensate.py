@@ -7,8 +7,8 @@
 The displacement adjustment: where the free part, aligned as a whole, lies beside the wanted shape, the surface of the
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
 at the end of the draw in the first loop; the free part is that at the end of the last operation. The displacement is a
-smooth function of the place through the points of the drawn sheet, and moves all tools alike: patches stay joined,
-gaps between tools stay. --mirror names the planes of symmetry x = 0, y = 0.
+smooth function along the drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between
+tools stay. --mirror names the planes of symmetry x = 0, y = 0.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
 in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
@@ -25,6 +25,9 @@ from typing import Any
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RBFInterpolator
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 from scipy.special import comb
 
 from dd3.errors import Problem
@@ -42,6 +45,8 @@ from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Surface, from_nodes, read_lines, write
 
 MOST_POINTS = 2000  # of the smooth function
+FARTHEST = 3.0  # points in a mean, over its standard deviation
+BEYOND = 50.0  # continuation of the sheet for the tools, over its thickness
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
 UNKNOWN = "E115"  # code of the error of a parameter that an input file does not have
 
@@ -80,11 +85,8 @@ def shapes_of(process: Process) -> Shapes:
     step = drawn_step(first, job)
     start, drawn = lower_face(first, step)
     initial, free = lower_face(last, last.last)
-    place = LinearNDInterpolator(start[:, :2], drawn)(initial[:, :2])
-    outside = ~np.isfinite(place).all(axis=1)
-    if outside.any():  # round-off at the border
-        place[outside] = NearestNDInterpolator(start[:, :2], drawn)(initial[outside, :2])
-    return Shapes(initial, place, free, tool_places(process.operations[0].folder, job, first, step))
+    tools = tool_places(process.operations[0].folder, job, first, step)
+    return Shapes(initial, at_places(start, drawn, initial), free, tools)
 
 
 def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
@@ -101,16 +103,37 @@ def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> d
             for tool in job["tools"]}
 
 
-def wanted_surface(process: Process) -> Any:
-    """Return the lower face of the whole sheet under the tools as a surface of pyvista, curved between the nodes."""
+def drawn_surface(process: Process, beyond: float = 0.0) -> Any:
+    """Return the lower face of the whole sheet under the tools as a surface of pyvista, curved between the nodes, and
+    continued beyond its border by a length."""
     import pyvista as pv
     sheet = Sheet(process.operations[0].folder)
     points = sheet.points(drawn_step(sheet, read_job(sheet.path.parent)))
     nodes, corner = np.unique(sheet.faces(upper=False), return_inverse=True)
-    quads = corner.reshape(-1, 4)
-    mesh = Facets(points[nodes], quads, np.zeros(len(quads), int), ["sheet"])
+    points, quads = points[nodes], corner.reshape(-1, 4)
+    if beyond:
+        points, quads = continued(points, quads, beyond)
+    mesh = Facets(points, quads, np.zeros(len(quads), int), ["sheet"])
     net, _ = unfolded_patches(mesh.nodes, estimate_normals(mesh))
     return pv.PolyData(*flat_quads(net)).triangulate()
+
+
+def continued(points: np.ndarray, quads: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a mesh of quadrilaterals with a row more around its border, in the direction of the last row."""
+    edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=2).reshape(-1, 2)
+    opposite = np.stack((np.roll(quads, 1, axis=1), np.roll(quads, -2, axis=1)), axis=2).reshape(-1, 2)
+    known = {(int(a), int(b)) for a, b in edges}
+    free = np.array([(int(b), int(a)) not in known for a, b in edges])
+    outward = np.zeros_like(points)
+    for k in range(2):
+        np.add.at(outward, edges[free][:, k], points[edges[free][:, k]] - points[opposite[free][:, k]])
+    border = np.unique(edges[free])
+    number = np.full(len(points), -1)
+    number[border] = len(points) + np.arange(len(border))
+    outward = outward[border] / np.linalg.norm(outward[border], axis=1)[:, None]
+    a, b = edges[free].T
+    return (np.vstack((points, points[border] + length * outward)),
+            np.vstack((quads, np.stack((b, a, number[a], number[b]), axis=1))))
 
 
 def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
@@ -120,15 +143,32 @@ def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[s
     Source: Besl and McKay, IEEE Trans. Pattern Anal. Mach. Intell. 14 (1992) 239-256.
     """
     place, last = best_fit(free, drawn, mirror), np.inf
+    goal = normal_feet(place, wanted)
     for _ in range(MOST_FITS):
-        _, closest = wanted.find_closest_cell(place, return_closest_point=True)
-        mean = float(np.linalg.norm(closest - place, axis=1).mean())
+        mean = float(np.linalg.norm(goal - place, axis=1).mean())
         if mean > (1 - SETTLED) * last:
             break
         last = mean
-        place = best_fit(place, closest, mirror)
-    _, closest = wanted.find_closest_cell(place, return_closest_point=True)
-    return place, np.asarray(closest)
+        place = best_fit(place, goal, mirror)
+        goal = normal_feet(place, wanted)
+    return place, goal
+
+
+def normal_feet(points: np.ndarray, surface: Any) -> np.ndarray:
+    """Return points moved along the normals of a surface by their distances along these: where the sheet reaches beyond
+    the border of the surface, that is in its continuation."""
+    cells, closest = surface.find_closest_cell(points, return_closest_point=True)
+    normals = np.asarray(surface.face_normals)[cells]
+    return np.asarray(points + ((closest - points) * normals).sum(axis=1)[:, None] * normals)
+
+
+def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return values at nodes of the blank interpolated in plan at other places of it."""
+    found = LinearNDInterpolator(places[:, :2], values)(wanted[:, :2])
+    outside = ~np.isfinite(found).all(axis=1)
+    if outside.any():  # round-off at the border
+        found[outside] = NearestNDInterpolator(places[:, :2], values)(wanted[outside, :2])
+    return np.asarray(found)
 
 
 def read_surface(path: Path) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -137,42 +177,55 @@ def read_surface(path: Path) -> list[tuple[np.ndarray, np.ndarray]]:
     return read_lines([line for line in lines if line])
 
 
-def nodes_of(patch: tuple[np.ndarray, np.ndarray], count: int) -> np.ndarray:
-    """Return the points (v, u, 3) of a patch on a regular grid of its parameters with 2 count + 1 points a side."""
+def nodes_of(patch: tuple[np.ndarray, np.ndarray], in_v: int, in_u: int) -> np.ndarray:
+    """Return the points (v, u, 3) of a patch on a regular grid of its parameters, 2 n + 1 points along each."""
     points, weights = patch
-    t = np.linspace(0, 1, 2 * count + 1)
     factors = []
-    for degree in (points.shape[0] - 1, points.shape[1] - 1):
-        k = np.arange(degree + 1)
+    for degree, count in zip((points.shape[0] - 1, points.shape[1] - 1), (in_v, in_u)):
+        t, k = np.linspace(0, 1, 2 * count + 1), np.arange(degree + 1)
         factors.append(comb(degree, k) * t[:, None]**k * (1 - t[:, None])**(degree - k))
     above = np.einsum("ai,bj,ijc->abc", *factors, points * weights[..., None])
     below = np.einsum("ai,bj,ij->ab", *factors, weights)
     return np.asarray(above / below[..., None])
 
 
-def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> int:
-    """Return the number of parts along each side of the patches that makes them no longer than `size`."""
-    longest = max(np.linalg.norm(np.diff(nodes_of(patch, 4), axis=axis), axis=2).sum(axis=axis).max()
-                  for patch in patches for axis in (0, 1))
-    return max(1, int(np.ceil(longest / size)))
+def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> np.ndarray:
+    """Return the numbers of parts (n, 2) of the patches along v and u that make them no longer than `size`: the same
+    for opposite sides and for patches that share a side."""
+    grids = [nodes_of(patch, 4, 4) for patch in patches]
+    sides = np.array([[grid[0], grid[-1], grid[:, 0], grid[:, -1]] for grid in grids]).reshape(-1, 9, 3)
+    length = np.linalg.norm(np.diff(sides, axis=1), axis=2).sum(axis=1)
+    ends, middle = sides[:, [0, -1]].sum(axis=1), sides[:, 4]
+    near = 1e-6 * max(float(np.ptp(sides.reshape(-1, 3), axis=0).max()), 1e-300)
+    shared = cKDTree(np.hstack([ends, 2 * middle])).query_pairs(4 * near, output_type="ndarray")
+    opposite = np.arange(len(sides)).reshape(-1, 2)
+    pairs = np.vstack([shared, opposite])
+    links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(sides), len(sides)))
+    _, group = connected_components(links, directed=False)
+    longest = np.zeros(group.max() + 1)
+    np.maximum.at(longest, group, length)
+    count = np.maximum(1, np.ceil(longest / size)).astype(int)[group].reshape(-1, 4)
+    return np.asarray(count[:, [2, 0]])
 
 
 def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray) -> Surface:
     """Return a tool's surface, divided, with its points moved. `place` is its displacement where the displacement of
     its points is given."""
     patches = read_surface(path)
-    count = divisions(patches, size)
-    nodes = np.stack([nodes_of(patch, count) for patch in patches])
+    blocks, face = [], []
+    for number, (patch, (in_v, in_u)) in enumerate(zip(patches, divisions(patches, size))):
+        nodes = nodes_of(patch, in_v, in_u)
+        blocks += [nodes[2 * i:2 * i + 3, 2 * j:2 * j + 3] for i in range(in_v) for j in range(in_u)]
+        face += [number] * (in_v * in_u)
+    nodes = np.stack(blocks)
     nodes = nodes + displacement(nodes.reshape(-1, 3) + place).reshape(nodes.shape)
-    blocks = [nodes[:, 2 * i:2 * i + 3, 2 * j:2 * j + 3] for i in range(count) for j in range(count)]
-    net = from_nodes(np.stack(blocks, axis=1).reshape(-1, 3, 3, 3))
-    return Surface(net, np.repeat(np.arange(len(patches)), count * count),
-                   [f"patch {number}" for number in range(1, len(patches) + 1)])
+    return Surface(from_nodes(nodes), np.array(face), [f"patch {number}" for number in range(1, len(patches) + 1)])
 
 
 def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
     """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
-    multiquadrics through the means of cells of the size `reach`, which stay bounded away from the points.
+    multiquadrics through means of it, with the weights of a normal distribution of the standard deviation `reach`, at
+    places as far apart. It stays bounded away from the points.
 
     Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
     """
@@ -183,9 +236,32 @@ def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[
         if len(count) <= MOST_POINTS:
             break
         size *= 1.25
-    places, values = (np.stack([np.bincount(cell.ravel(), part[:, axis]) / count for axis in range(3)], axis=1)
-                      for part in (whole, given))
+    places = np.stack([np.bincount(cell.ravel(), whole[:, axis]) / count for axis in range(3)], axis=1)
+    near = cKDTree(places).sparse_distance_matrix(cKDTree(whole), FARTHEST * size, output_type="coo_matrix").tocsr()
+    near.data = np.exp(-0.5 * (near.data / size)**2)
+    values = (near @ given) / (near @ np.ones(len(given)))[:, None]
     return RBFInterpolator(places, values, kernel="multiquadric", epsilon=1 / size, degree=0)
+
+
+def along_sheet(field: Any, sheet: Any, thickness: float) -> Any:
+    """Return the displacement of the points of tools: that of the sheet's lower face beside them, with their distance
+    along its normal kept up to two thicknesses, so that the gaps between the tools stay."""
+    def displacement(points: np.ndarray) -> np.ndarray:
+        _, closest = sheet.find_closest_cell(points, return_closest_point=True)
+        offset = points - closest
+        distance = np.linalg.norm(offset, axis=1)
+        normal = offset / np.maximum(distance, 1e-12)[:, None]
+        kept = np.minimum(distance, 2 * thickness)
+        place = points - kept[:, None] * normal
+        first = np.cross(normal, np.eye(3)[abs(normal).argmin(axis=1)])
+        first /= np.maximum(np.linalg.norm(first, axis=1), 1e-12)[:, None]
+        second, step = np.cross(normal, first), 0.1 * thickness
+        in_first, in_second = ((field(place + step * axis) - field(place - step * axis)) / (2 * step)
+                               for axis in (first, second))
+        turned = np.cross(first + in_first, second + in_second)
+        turned /= np.maximum(np.linalg.norm(turned, axis=1), 1e-12)[:, None]
+        return np.asarray(field(place) + np.where(distance > 1e-9, kept, 0.0)[:, None] * (turned - normal))
+    return displacement
 
 
 def write_step(path: Path, surface: Surface) -> None:
@@ -219,8 +295,9 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     run_process(program, process, threads)
     job = read_job(operations[0].folder)
     tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
-    length = size or 10 * max(job["sheet"]["thickness"])
-    wanted, found, folders = wanted_surface(process), [], []
+    thickness = max(job["sheet"]["thickness"])
+    length = size or 5 * thickness
+    wanted, found, folders = drawn_surface(process), [], []
     for loop in range(loops + 1):
         shapes = shapes_of(process)
         place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
@@ -231,7 +308,8 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
               flush=True)
         if found[-1][0] <= tolerance or loop == loops:
             break
-        move = smooth_field(shapes.drawn, factor * (goal - place), mirror, length)
+        move = along_sheet(smooth_field(shapes.drawn, factor * (goal - place), mirror, length),
+                           drawn_surface(process, BEYOND * thickness), thickness)
         folder = made_folder(work / f"loop_{loop + 1}")
         for name, path in tools.items():
             surface = moved_surface(path, move, length if loop == 0 else np.inf, shapes.tools[name])
@@ -266,7 +344,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--mirror", nargs="+", default=[], choices=list(AXES), metavar="AXIS",
                         help="planes of symmetry")
     parser.add_argument("--size", type=float, metavar="LENGTH",
-                        help="largest side of the patches that are moved, mm (10 thicknesses)")
+                        help="largest side of the patches that are moved, mm (5 thicknesses)")
     parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
     if options.loops < 0:

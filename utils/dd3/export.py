@@ -4,23 +4,28 @@
     dd3 export cup.out drawn.inp --at draw       the drawn mesh, which *MESH reads
     dd3 export cup.out part.vtu                  the last step with all fields: ParaView
     dd3 export cup.out dynain.k                  LS-DYNA: solids with stresses and plastic strains
-    dd3 export cup.out dynain.k --shells         its mid-surface: shells with thicknesses and plastic strains
+    dd3 export cup.out dynain.k --shells         its mid-surface: shells with thicknesses, stresses and plastic strains
 
-Lengths are in mm, stresses in MPa. Stresses are those in the middle of the elements: bending moments are lost.
+Lengths are in mm, stresses in MPa. At the end of a run of elements solid_shell the shells have the stresses and strains
+of all points through the thickness, each the mean over its height; otherwise those in the middle of the elements, and
+bending moments are lost.
 """
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields
 from dd3.mesh import read_run, write_inp
+from dd3.sheet_state import COLUMNS, SheetState, read_state
 
 MOST = 99_999_999  # a label in 8 columns
 # Corners of the faces of a hexahedron that are opposite along each natural axis.
 FACES = (((0, 3, 7, 4), (1, 2, 6, 5)), ((0, 1, 5, 4), (3, 2, 6, 7)), ((0, 1, 2, 3), (4, 5, 6, 7)))
+LONGER = 1.5  # edges through the thickness over the shortest ones, below this
 HEXAHEDRON = 12  # type of VTK
 
 
@@ -44,7 +49,10 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
     plastic = fields.values(step, "equivalent_plastic_strain", at_cells=True)[0]
     if shells:
         thickness = fields.values(step, "thickness")[0]
-        lines = shell_lines(fields.path, points, cells, thickness, stress, plastic)
+        rows = np.concatenate((np.zeros((len(cells), 1)), stress, plastic.reshape(-1, 1)), axis=1)[:, None]
+        if step == fields.last and (state := state_at_end(fields, points)):
+            rows = layer_rows(state)
+        lines = shell_lines(fields.path, points, cells, thickness, rows)
     else:
         lines = [*node_lines(points), "*ELEMENT_SOLID",
                  *("".join(f"{value:8d}" for value in (i, 1, *(cell + 1))) for i, cell in enumerate(cells, 1)),
@@ -67,10 +75,30 @@ def row(values: Iterable[float]) -> str:
     return "".join(f"{value:10.3e}" for value in values)
 
 
-def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np.ndarray, stress: np.ndarray,
-                plastic: np.ndarray) -> list[str]:
+def state_at_end(fields: Fields, points: np.ndarray) -> SheetState | None:
+    """Return the state in the restart file of a run, if it is of elements solid_shell and of the last step."""
+    try:
+        state = read_state(fields.path.parent)
+    except Problem:
+        return None
+    return state if state.points.shape == points.shape and np.allclose(state.points, points, atol=1e-4) else None
+
+
+def layer_rows(state: SheetState) -> np.ndarray:
+    """Return height (-1 to 1), stresses xx yy zz xy yz zx and plastic strain (m, heights, 8), means over the points at
+    each height."""
+    count = len(state.elements)
+    stress = state.stress.reshape(count, COLUMNS, state.column, 3, 3).mean(axis=1)
+    strain = state.strain.reshape(count, COLUMNS, state.column).mean(axis=1)
+    heights = np.broadcast_to(leggauss(state.column)[0], strain.shape)
+    parts = [stress[..., i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
+    return np.stack((heights, *parts, strain), axis=-1)
+
+
+def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np.ndarray, rows: np.ndarray
+                ) -> list[str]:
     """Return the mid-surface of a sheet of one layer, its thickness given at the nodes: nodes, shells with their
-    thicknesses, stresses and strains."""
+    thicknesses, and rows (m, heights, 8) of height, stresses and plastic strain."""
     lower, upper = sides(path, points, cells)
     ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
     number = np.zeros(len(points), int)
@@ -81,20 +109,21 @@ def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np
         lines += ["".join(f"{value:8d}" for value in (i, 1, *corners)),
                   "".join(f"{thickness[corner - 1]:16.9e}" for corner in corners)]
     lines.append("*INITIAL_STRESS_SHELL")
-    for i, (tensor, strain) in enumerate(zip(stress, plastic), 1):
-        lines += [f"{i:10d}{1:10d}{1:10d}", row((0.0, *tensor, strain))]
+    for i, layers in enumerate(rows, 1):
+        lines += [f"{i:10d}{1:10d}{len(layers):10d}", *(row(values) for values in layers)]
     return lines
 
 
 def sides(path: Path, points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes of the elements on the two faces of a sheet of one layer (n, 4): along the shortest edges, whose
-    faces no two elements share."""
+    """Return the nodes of the elements on the two faces of a sheet of one layer (n, 4): along the shortest edges of
+    those along which no two elements share a face."""
     length = [np.linalg.norm(points[cells[:, b]] - points[cells[:, a]], axis=2).mean() for a, b in FACES]
-    lower, upper = FACES[int(np.argmin(length))]
-    faces = np.sort(np.concatenate([cells[:, lower], cells[:, upper]]), axis=1)
-    if len(np.unique(faces, axis=0)) < len(faces):
-        raise Problem(f"{path}: --shells takes a sheet of one layer of elements")
-    return cells[:, lower], cells[:, upper]
+    for axis in np.argsort(length):
+        lower, upper = (cells[:, face] for face in FACES[axis])
+        faces = np.sort(np.concatenate([lower, upper]), axis=1)
+        if length[axis] < LONGER * min(length) and len(np.unique(faces, axis=0)) == len(faces):
+            return lower, upper
+    raise Problem(f"{path}: --shells takes a sheet of one layer of elements")
 
 
 WRITERS: dict[str, Callable[[Fields, int, Path, bool], None]] = {
