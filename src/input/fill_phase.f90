@@ -6,9 +6,7 @@ module dd3_input_fill_phase
   use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
-      newton_spec_t, tool_gap_t, tool_name_t, tool_turn_t, tool_vector_t, displace_spec_t, &
-      free_spec_t, load_spec_t, motion_spec_t, pressure_spec_t, until_spec_t, &
-      until_displacement, until_force
+      newton_spec_t, tool_name_t, tool_vector_t, until_spec_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact
@@ -41,17 +39,7 @@ contains
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
     phase%unload = block%number("unload") > 0.5_wp
-    call fill_tool_names(phase%hold, case, block, "hold")
-    call fill_tool_names(phase%release, case, block, "release")
-    call fill_tool_vectors(phase%move, case, block, "move")
-    call fill_tool_vectors(phase%press, case, block, "press")
-    call fill_gaps(phase%gap, case, block)
-    call fill_turns(phase%turn, case, block)
-    call fill_displacements(phase%displace, block)
-    call fill_freed(phase%free, block)
-    call fill_loads(phase%load, block)
-    call fill_motions(phase%motion, block)
-    call fill_pressures(phase%pressure, block)
+    call fill_entries(phase, case, block)
     phase%has_gravity = block%has("gravity")
     if (phase%has_gravity) phase%gravity = block%numbers("gravity")
     phase%table = block%numbers("table")
@@ -73,193 +61,90 @@ contains
     tool_position = 0
   end function tool_position
 
-  !> Return the positions of the valid entries with a key.
-  pure function entries(block, key) result(position)
-    type(block_t), intent(in) :: block
-    character(len=*), intent(in) :: key
-    integer, allocatable :: position(:)
-
-    integer :: i
-
-    position = pack([(i, i=1, block%n_entry)], [(block%entry(i)%key == key .and. &
-        block%entry(i)%valid, i=1, block%n_entry)])
-  end function entries
-
-  subroutine fill_tool_names(list, case, block, key)
-    type(tool_name_t), allocatable, intent(out) :: list(:)
-    !> Its tools must be filled.
-    type(case_t), intent(in) :: case
-    type(block_t), intent(in) :: block
-    character(len=*), intent(in) :: key
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, key)
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (word => block%entry(position(i))%value(1))
-        list(i)%tool = tool_position(case, word%text)
-        list(i)%at = word%at
-      end associate
-    end do
-  end subroutine fill_tool_names
-
-  subroutine fill_tool_vectors(list, case, block, key)
-    type(tool_vector_t), allocatable, intent(out) :: list(:)
-    !> Its tools must be filled.
-    type(case_t), intent(in) :: case
-    type(block_t), intent(in) :: block
-    character(len=*), intent(in) :: key
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, key)
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%tool = tool_position(case, entry%value(1)%text)
-        list(i)%vector = entry%number(:3)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_tool_vectors
-
-  subroutine fill_displacements(list, block)
-    type(displace_spec_t), allocatable, intent(out) :: list(:)
-    type(block_t), intent(in) :: block
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, "displace")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%set = entry%value(1)%text
-        list(i)%axis = nint(entry%number(1))
-        list(i)%value = entry%number(2)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_displacements
-
-  subroutine fill_freed(list, block)
-    type(free_spec_t), allocatable, intent(out) :: list(:)
-    type(block_t), intent(in) :: block
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, "free")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%set = entry%value(1)%text
-        list(i)%direction(nint(entry%number)) = .true.
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_freed
-
-  subroutine fill_loads(list, block)
-    type(load_spec_t), allocatable, intent(out) :: list(:)
-    type(block_t), intent(in) :: block
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, "load")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%set = entry%value(1)%text
-        list(i)%force = entry%number(:3)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_loads
-
-  !> Fill the rotations, then the bends.
-  subroutine fill_motions(list, block)
-    type(motion_spec_t), allocatable, intent(out) :: list(:)
-    type(block_t), intent(in) :: block
-
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = [entries(block, "rotate"), entries(block, "bend")]
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%set = entry%value(1)%text
-        list(i)%bends = entry%key == "bend"
-        list(i)%value = entry%number(:7)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_motions
-
-  subroutine fill_gaps(list, case, block)
-    type(tool_gap_t), allocatable, intent(out) :: list(:)
+  !> Fill what a phase may have several of: an entry each.
+  subroutine fill_entries(phase, case, block)
+    type(phase_spec_t), intent(inout) :: phase
     !> Its tools must be filled.
     type(case_t), intent(in) :: case
     type(block_t), intent(in) :: block
 
-    integer, allocatable :: position(:)
-    integer :: i
+    integer :: e, i, tool
 
-    position = entries(block, "gap")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%tool = tool_position(case, entry%value(1)%text)
-        list(i)%other = tool_position(case, entry%value(2)%text)
-        list(i)%value = entry%number(1)
-        list(i)%in_thicknesses = size(entry%value) > 3
-        list(i)%at = entry%value(1)%at
+    allocate (phase%hold(n_valid("hold")), phase%release(n_valid("release")))
+    allocate (phase%move(n_valid("move")), phase%press(n_valid("press")))
+    allocate (phase%gap(n_valid("gap")), phase%turn(n_valid("turn")))
+    allocate (phase%displace(n_valid("displace")), phase%free(n_valid("free")))
+    allocate (phase%load(n_valid("load")), phase%pressure(n_valid("pressure")))
+    allocate (phase%motion(n_valid("rotate") + n_valid("bend")))
+    do e = 1, block%n_entry
+      associate (entry => block%entry(e))
+        if (.not. entry%valid .or. size(entry%value) == 0) cycle
+        i = n_valid(entry%key, e)
+        tool = tool_position(case, entry%value(1)%text)
+        associate (name => entry%value(1)%text, at => entry%value(1)%at, number => entry%number)
+          select case (entry%key)
+          case ("hold")
+            phase%hold(i) = tool_name_t(tool, at)
+          case ("release")
+            phase%release(i) = tool_name_t(tool, at)
+          case ("move")
+            phase%move(i) = tool_vector_t(tool, number(:3), at)
+          case ("press")
+            phase%press(i) = tool_vector_t(tool, number(:3), at)
+          case ("gap")
+            phase%gap(i)%tool = tool
+            phase%gap(i)%other = tool_position(case, entry%value(2)%text)
+            phase%gap(i)%value = number(1)
+            phase%gap(i)%in_thicknesses = size(entry%value) > 3
+            phase%gap(i)%at = at
+          case ("turn")
+            phase%turn(i)%tool = tool
+            phase%turn(i)%value = number(:7)
+            phase%turn(i)%at = at
+          case ("displace")
+            phase%displace(i)%set = name
+            phase%displace(i)%axis = nint(number(1))
+            phase%displace(i)%value = number(2)
+            phase%displace(i)%at = at
+          case ("free")
+            phase%free(i)%set = name
+            phase%free(i)%direction(nint(number)) = .true.
+            phase%free(i)%at = at
+          case ("load")
+            phase%load(i)%set = name
+            phase%load(i)%force = number(:3)
+            phase%load(i)%at = at
+          case ("pressure")
+            phase%pressure(i)%set = name
+            phase%pressure(i)%value = number(1)
+            phase%pressure(i)%at = at
+          case ("rotate", "bend")
+            ! The bends follow the rotations.
+            if (entry%key == "bend") i = i + n_valid("rotate")
+            phase%motion(i)%set = name
+            phase%motion(i)%bends = entry%key == "bend"
+            phase%motion(i)%value = number(:7)
+            phase%motion(i)%at = at
+          end select
+        end associate
       end associate
     end do
-  end subroutine fill_gaps
 
-  subroutine fill_turns(list, case, block)
-    type(tool_turn_t), allocatable, intent(out) :: list(:)
-    !> Its tools must be filled.
-    type(case_t), intent(in) :: case
-    type(block_t), intent(in) :: block
+  contains
 
-    integer, allocatable :: position(:)
-    integer :: i
+    !> Return the number of valid entries with a key, up to entry `last` if given.
+    pure integer function n_valid(key, last)
+      character(len=*), intent(in) :: key
+      integer, intent(in), optional :: last
 
-    position = entries(block, "turn")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%tool = tool_position(case, entry%value(1)%text)
-        list(i)%value = entry%number(:7)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_turns
+      integer :: k, n
 
-  subroutine fill_pressures(list, block)
-    type(pressure_spec_t), allocatable, intent(out) :: list(:)
-    type(block_t), intent(in) :: block
+      n = block%n_entry
+      if (present(last)) n = last
+      n_valid = count([(block%entry(k)%key == key .and. block%entry(k)%valid, k=1, n)])
+    end function n_valid
 
-    integer, allocatable :: position(:)
-    integer :: i
-
-    position = entries(block, "pressure")
-    allocate (list(size(position)))
-    do i = 1, size(position)
-      associate (entry => block%entry(position(i)))
-        list(i)%set = entry%value(1)%text
-        list(i)%value = entry%number(1)
-        list(i)%at = entry%value(1)%at
-      end associate
-    end do
-  end subroutine fill_pressures
+  end subroutine fill_entries
 
   subroutine fill_until(until, case, block)
     type(until_spec_t), intent(inout) :: until

@@ -6,9 +6,19 @@ import json
 import ezdxf
 import numpy as np
 import pytest
+import pyvista as pv
 from helpers import call
 
-from dd3.compensate import divisions, moved_surface, nodes_of, read_surface, smooth_field, write_step
+from dd3.compensate import (
+    along_sheet,
+    continued,
+    divisions,
+    moved_surface,
+    nodes_of,
+    read_surface,
+    smooth_field,
+    write_step,
+)
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
 from dd3.outline import Outline, Rim, excess, moved
@@ -196,8 +206,6 @@ def test_moved_surface(tmp_path):
     points = rng.uniform((0, 0, -5), (25, 10, 0), (200, 3))
     values = np.column_stack((0.01 * points[:, 0], 0.02 * points[:, 1], 0.1 * np.cos(points[:, 0] / 8)))
     move = smooth_field(points, values, ["y"], 4.0)
-    far = move(np.array([[500.0, 300.0, -200.0]]))
-    assert abs(far).max() < 1.0
     surface = moved_surface(path, move, 5.0, np.zeros(3))
     nodes = np.stack([nodes_of((net[..., :3], net[..., 3]), 1, 1) for net in surface.net]).reshape(-1, 3)
     assert len(surface.net) == 24
@@ -213,6 +221,46 @@ def test_moved_surface(tmp_path):
     write_step(tmp_path / "tool.step", surface)
     with session(tmp_path / "tool.step") as gmsh:
         assert len(gmsh.model.getEntities(2)) == 24
+
+
+def test_smooth_field():
+    """A linear displacement is kept, inside and beyond the points, also of points in a plane; a symmetric one stays so;
+    noise is smoothed."""
+    rng = np.random.default_rng(5)
+    points = rng.uniform((0, 0, 0), (30, 20, 4), (3000, 3))
+    slope = np.array([[0.01, 0.02, -0.03], [0.0, 0.05, 0.01], [0.04, 0.0, 0.02]])
+    field = smooth_field(points, 0.3 + points @ slope, [], 3.0)
+    places = np.array([[10, 5, 2], [60, 5, 2], [-20, 40, 2.0]])
+    assert np.allclose(field(places), 0.3 + places @ slope, atol=1e-6)
+    flat = points * (1, 1, 0)
+    assert np.allclose(smooth_field(flat, 0.3 + flat @ slope, [], 3.0)(places * (1, 1, 0)),
+                       0.3 + (places * (1, 1, 0)) @ slope, atol=1e-6)
+    field = smooth_field(points, np.abs(points) * (0, 0, 1) + np.sin(points), ["x"], 3.0)
+    mirrored = np.array([1, -1, -1]) * -1.0
+    assert np.allclose(field(places * mirrored), field(places) * mirrored, atol=1e-6)
+    noise = smooth_field(points, rng.standard_normal(points.shape), [], 3.0)(points)
+    assert np.sqrt((noise**2).mean()) < 0.2
+
+
+def test_gap():
+    """Tools beside a sheet keep their gap where it is bent and turned, along the sheet and beyond its border."""
+    x, y = (part.ravel() for part in np.meshgrid(np.linspace(0, 20, 11), np.linspace(0, 8, 5), indexing="ij"))
+    number = np.arange(55).reshape(11, 5)
+    quads = np.stack([number[i, j].ravel() for i, j in ((np.s_[:-1], np.s_[:-1]), (np.s_[1:], np.s_[:-1]),
+                                                        (np.s_[1:], np.s_[1:]), (np.s_[:-1], np.s_[1:]))], axis=1)
+    points, quads = continued(np.column_stack((x, y, 0 * x)), quads, 10.0)
+    assert np.allclose((points.min(axis=0), points.max(axis=0)), ((-10, -10, 0), (30, 18, 0)))
+    sheet = pv.PolyData.from_regular_faces(points, quads).triangulate()
+    radius = 30.0
+
+    def bend(place):
+        angle, height = place[:, 0] / radius, radius - place[:, 2]
+        return np.column_stack((height * np.sin(angle), place[:, 1], radius - height * np.cos(angle))) - place
+    move = along_sheet(bend, sheet, 1.0)
+    below = np.random.default_rng(1).uniform((-8, -8, 0), (28, 16, 0), (40, 3))
+    above = below + (0, 0, 1.3)
+    gap = np.linalg.norm(above + move(above) - below - move(below), axis=1)
+    assert np.allclose(gap, 1.3, atol=1e-3)
 
 
 def test_refused(tmp_path, program):

@@ -119,7 +119,7 @@ def test_refusals(run, tmp_path):
     """Check that requests that cannot be met give one line each."""
     top = ("--field", "stress", "--view", "top", "--size", 300, 200)
     call("plot", "sheet", run, "--mirror", "x", "--mirror", "y", *top, "--output", tmp_path / "mirrored.png")
-    call("plot", "sheet", run, "--mirror", "xy", *top, "--output", tmp_path / "both.png")
+    call("plot", "sheet", run, "--mirror", "x", "y", *top, "--output", tmp_path / "both.png")
     assert (tmp_path / "mirrored.png").read_bytes() == (tmp_path / "both.png").read_bytes()
     (tmp_path / "text.vtkhdf").write_text("no fields")
     for arguments, said in (

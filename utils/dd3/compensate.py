@@ -45,6 +45,7 @@ from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Surface, from_nodes, read_lines, write
 
 MOST_POINTS = 2000  # of the smooth function
+THIN = 1e-4  # extent of a direction that counts as none, over the largest
 FARTHEST = 3.0  # points in a mean, over its standard deviation
 BEYOND = 50.0  # continuation of the sheet for the tools, over its thickness
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
@@ -223,11 +224,11 @@ def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray)
 
 
 def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
-    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
-    multiquadrics through means of it, with the weights of a normal distribution of the standard deviation `reach`, at
-    places as far apart. It stays bounded away from the points.
+    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given: cubic
+    radial functions through means of place and displacement, with the weights of a normal distribution of the standard
+    deviation `reach`, at places as far apart. It goes on linearly beyond the points, as a natural spline does.
 
-    Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
+    Source: Duchon, Springer Lect. Notes Math. 571 (1977) 85-100.
     """
     whole, given = np.concatenate(images(points, mirror)), np.concatenate(images(displacement, mirror))
     size = reach
@@ -239,8 +240,13 @@ def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[
     places = np.stack([np.bincount(cell.ravel(), whole[:, axis]) / count for axis in range(3)], axis=1)
     near = cKDTree(places).sparse_distance_matrix(cKDTree(whole), FARTHEST * size, output_type="coo_matrix").tocsr()
     near.data = np.exp(-0.5 * (near.data / size)**2)
-    values = (near @ given) / (near @ np.ones(len(given)))[:, None]
-    return RBFInterpolator(places, values, kernel="multiquadric", epsilon=1 / size, degree=0)
+    weight = (near @ np.ones(len(given)))[:, None]
+    places, values = near @ whole / weight, near @ given / weight  # a linear function is kept
+    # Directions without extent, as across a strip in plane strain, are left out.
+    _, extent, axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
+    axes = axes[extent > THIN * extent[0]].T
+    spline = RBFInterpolator(places @ axes, values, kernel="cubic", degree=1)
+    return lambda place: spline(place @ axes)
 
 
 def along_sheet(field: Any, sheet: Any, thickness: float) -> Any:

@@ -253,8 +253,8 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
     parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
-    parser.add_argument("--mirror", action="append", default=[], choices=["x", "y", "z", "xy"],
-                        help="planes of symmetry to complete the model at: x, y or xy; may be repeated")
+    parser.add_argument("--mirror", nargs="+", action="extend", default=[], choices=["x", "y", "z", "xy"],
+                        metavar="AXIS", help="planes of symmetry to complete the model at, such as x y")
     parser.add_argument("--tool", action="append", default=[], metavar="NAME=FILE", help="surface of a tool")
     parser.add_argument("--hide", action="append", default=[], metavar="NAME",
                         help="tool or draw-bead to leave out, or 'all'")
