@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tables, status.csv, blocks of shape files and runs of a stand-in program."""
 
+import fcntl
 import json
 import stat
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from test_study import DECK as BAR
 
 import dd3
 from dd3 import programs, tables
@@ -135,3 +139,18 @@ def test_runs(tmp_path):
     assert done.wall > 0 and done.cpu > 0 and done.memory > 1
     refused("not finished after 1 s", programs.launch, [*words, "--sleep"], 1)
     refused("exit code 0, and no results", programs.run_points, "true", "*POINT p\n")
+
+
+def test_killed(program):
+    """A run that was killed says so; one whose log a program holds goes on."""
+    Path("bar.dat").write_text(BAR)
+    subprocess.run([program, "--quiet", "bar.dat"], check=True, capture_output=True)
+    path = Path("bar.out/run.json")
+    job = json.loads(path.read_text())
+    assert dd3.open("bar.out").job["outcome"]["state"] == "reached"
+    job["outcome"]["state"] = "running"
+    path.write_text(json.dumps(job))
+    with Path("bar.out/job.log").open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        assert dd3.open("bar.out").job["outcome"]["state"] == "running"
+    assert dd3.open("bar.out").job["outcome"]["state"] == "killed"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
+import fcntl
 import json
 from functools import cached_property
 from pathlib import Path
@@ -78,7 +79,8 @@ def read_frame(run: str | Path, name: str = "history.csv", *needed: str) -> "pd.
 
 
 def read_job(folder: Path) -> dict[str, Any]:
-    """Return the description of a run."""
+    """Return the description of a run. A run that says that it goes on, although no program holds its log, was killed:
+    its state is `killed`."""
     path = folder / "run.json"
     try:
         job: dict[str, Any] = json.loads(read_text(path))
@@ -86,7 +88,21 @@ def read_job(folder: Path) -> dict[str, Any]:
         raise Problem(f"{path}: not a description of a run") from None
     if job.get("format") != FORMAT or job.get("format_version") != VERSION:
         raise Problem(f"{path}: expected {FORMAT!r} of version {VERSION}")
+    if job.get("outcome", {}).get("state") == "running" and not is_held(folder / "job.log"):
+        job["outcome"]["state"] = "killed"
     return job
+
+
+def is_held(path: Path) -> bool:
+    """Tell whether a program may write a file: it holds a lock on it, or that cannot be found out."""
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False
 
 
 def file_of(job: dict[str, Any], folder: Path, name: str) -> Path:
