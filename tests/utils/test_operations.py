@@ -2,6 +2,8 @@
 """Operations: curves of CAD files, processes, outlines of blanks, tools that are corrected for springback."""
 
 import json
+import shutil
+from pathlib import Path
 
 import ezdxf
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 import pyvista as pv
 from helpers import call
 
+import dd3
 from dd3.compensate import (
     along_sheet,
     continued,
@@ -261,6 +264,25 @@ def test_gap():
     above = below + (0, 0, 1.3)
     gap = np.linalg.norm(above + move(above) - below - move(below), axis=1)
     assert np.allclose(gap, 1.3, atol=1e-3)
+
+
+def test_stopped_loop(tmp_path, program):
+    """Where a corrected tool starts inside the blank, the loops end, and the best tools and the operations with them are
+    there."""
+    for name in ("hat", "materials"):
+        shutil.copytree(Path(__file__).parents[2] / "input_files" / name, tmp_path / name)
+    deck = tmp_path / "hat/hat.dat"
+    text = deck.read_text()
+    for old, new in (("200 1 1", "40 1 1"), ("points = 9", "points = 3"), ("0 0 12", "0 0 0.05"), ("0 0 20", "0 0 8"),
+                     ("0 0 -50", "0 0 -38")):
+        assert old in text
+        text = text.replace(old, new)
+    deck.write_text(text)
+    said = call("compensate", tmp_path / "hat/hat.toml", "--tools", "tools", "--mirror", "x", "--program", program, expect=2)
+    assert "loop 1 stopped" in said and "starts inside the sheet" in said and "tools of loop 0" in said
+    folder = tmp_path / "hat/hat.compensate"
+    assert len((folder / "deviations.csv").read_text().splitlines()) == 2 and (folder / "die.step").is_file()
+    assert dd3.open(tmp_path / "hat/hat.out").job["outcome"]["state"] == "reached"
 
 
 def test_refused(tmp_path, program):

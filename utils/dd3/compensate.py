@@ -32,7 +32,16 @@ from scipy.special import comb
 
 from dd3.errors import Problem
 from dd3.gmsh_session import session
-from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process, write_report
+from dd3.process import (
+    Operation,
+    Process,
+    check_deck,
+    process_parser,
+    read_process,
+    run_process,
+    write_deviations,
+    write_report,
+)
 from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
@@ -303,7 +312,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
     thickness = max(job["sheet"]["thickness"])
     length = size or 5 * thickness
-    wanted, found, folders = drawn_surface(process), [], []
+    wanted, found, folders, stopped = drawn_surface(process), [], [], ""
     for loop in range(loops + 1):
         shapes = shapes_of(process)
         place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
@@ -323,18 +332,23 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         tools = {name: folder / name for name in tools}
         for operation in operations:
             operation.settings[parameter] = str(folder.resolve())
-        run_process(program, process, threads)
+        try:
+            run_process(program, process, threads)
+        except Problem as problem:
+            stopped = str(problem)
+            break
     best = int(np.argmin([largest for largest, _ in found]))
-    if best < len(found) - 1:
+    if best < len(found) - 1 or stopped:
         for operation in operations:
             operation.settings[parameter] = str(next(iter(folders[best].values())).parent.resolve())
         run_process(program, process, threads)
     for name, path in folders[best].items():
         shutil.copy(path, work / name)
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
-    rows = ["loop,largest,rms", *(f"{loop},{a:.6g},{b:.6g}" for loop, (a, b) in enumerate(found))]
-    (work / "deviations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    write_deviations(work / "deviations.csv", "loop,largest,rms", found, 0)
     print(f"tools of loop {best} in {work}")
+    if stopped:
+        raise Problem(f"loop {len(found)} stopped: {stopped}")
     return found
 
 
@@ -351,7 +365,6 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="planes of symmetry")
     parser.add_argument("--size", type=float, metavar="LENGTH",
                         help="largest side of the patches that are moved, mm (5 thicknesses)")
-    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
     if options.loops < 0:
         parser.error("--loops: takes 0 or more")

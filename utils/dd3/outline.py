@@ -24,7 +24,16 @@ import numpy as np
 
 from dd3.curve import read_curves, write_curves
 from dd3.errors import Problem
-from dd3.process import Operation, Process, check_deck, process_parser, read_process, run_process, write_report
+from dd3.process import (
+    Operation,
+    Process,
+    check_deck,
+    process_parser,
+    read_process,
+    run_process,
+    write_deviations,
+    write_report,
+)
 from dd3.programs import find_program, made_folder
 from dd3.sheet import Sheet
 
@@ -172,7 +181,7 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
     curves = read_curves(outline_file(program, first))
     wanted = Outline(read_curves(rim_file)[0]) if rim_file else None
     found: list[tuple[float, float]] = []
-    outlines = []
+    outlines, stopped = [], ""
     for draw in range(1, draws + 1):
         path = work / f"outline_{draw}.txt"
         write_curves(path, curves, f"draw {draw} of dd3 outline {process.path.name}")
@@ -180,7 +189,13 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         first.settings[name] = str(path.resolve())
         if not outline_file(program, first).samefile(path):
             raise Problem(f"{first.deck}: error: the parameter '{name}' is not the file of curves of its *TRIM")
-        run_process(program, process, threads)
+        try:
+            run_process(program, process, threads)
+        except Problem as problem:
+            if not found:
+                raise
+            stopped = str(problem)
+            break
         rim = rim_on(process.operations[-1].folder, curves[0])
         beyond = excess(rim, height, wanted)
         found.append((float(abs(beyond).max()), float(abs(beyond).mean())))
@@ -190,13 +205,14 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
             break
         curves = [moved(curves[0], rim, beyond), *curves[1:]]
     best = int(np.argmin([largest for largest, _ in found]))
-    if best < len(found) - 1:
+    if best < len(outlines) - 1:
         first.settings[name] = str((work / f"outline_{best + 1}.txt").resolve())
         run_process(program, process, threads)
     write_curves(work / "outline.txt", outlines[best], f"dd3 outline {process.path.name}")
-    rows = ["draw,largest,mean", *(f"{number},{a:.6g},{b:.6g}" for number, (a, b) in enumerate(found, 1))]
-    (work / "deviations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    write_deviations(work / "deviations.csv", "draw,largest,mean", found, 1)
     print(f"outline of draw {best + 1}: {work / 'outline.txt'}")
+    if stopped:
+        raise Problem(f"draw {len(outlines)} stopped: {stopped}")
     return found
 
 
@@ -211,7 +227,6 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--draws", type=int, default=5, help="draws at most (5)")
     parser.add_argument("--tolerance", type=float, default=0.3, metavar="LENGTH",
                         help="largest deviation of the rim that ends the draws, mm (0.3)")
-    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
     if options.draws < 1:
         parser.error("--draws: takes 1 or more")

@@ -223,13 +223,19 @@ def process_parser(name: str, text: str | None) -> argparse.ArgumentParser:
     parser.add_argument("file", type=Path, metavar="FILE", help="file of the process, .toml")
     parser.add_argument("--program", default="build/release/dd3imp", help="the program (build/release/dd3imp)")
     parser.add_argument("--threads", type=int, help="threads of a run (default: all cores)")
+    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     return parser
+
+
+def write_deviations(path: Path, names: str, found: Sequence[tuple[float, float]], first: int) -> None:
+    """Write a table of deviations by the number of the loop, from `first` on."""
+    rows = [names, *(f"{number},{a:.6g},{b:.6g}" for number, (a, b) in enumerate(found, first))]
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Run the process of the command line."""
     parser = process_parser("process", __doc__)
-    parser.add_argument("--report", action="store_true", help="write one report of all operations")
     options = parser.parse_args(words)
     process = read_process(options.file)
     run_process(find_program(options.program), process, options.threads)
