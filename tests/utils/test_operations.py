@@ -227,21 +227,21 @@ def test_moved_surface(tmp_path):
 
 
 def test_smooth_field():
-    """A linear displacement is kept, inside and beyond the points, also of points in a plane; a symmetric one stays so;
-    noise is smoothed."""
+    """A linear displacement is kept inside and some millimetres beyond the border, and fades to a constant far away; a
+    symmetric one stays so; noise is smoothed."""
     rng = np.random.default_rng(5)
-    points = rng.uniform((0, 0, 0), (30, 20, 4), (3000, 3))
-    slope = np.array([[0.01, 0.02, -0.03], [0.0, 0.05, 0.01], [0.04, 0.0, 0.02]])
-    field = smooth_field(points, 0.3 + points @ slope, [], 3.0)
-    places = np.array([[10, 5, 2], [60, 5, 2], [-20, 40, 2.0]])
-    assert np.allclose(field(places), 0.3 + places @ slope, atol=1e-6)
-    flat = points * (1, 1, 0)
-    assert np.allclose(smooth_field(flat, 0.3 + flat @ slope, [], 3.0)(places * (1, 1, 0)),
-                       0.3 + (places * (1, 1, 0)) @ slope, atol=1e-6)
-    field = smooth_field(points, np.abs(points) * (0, 0, 1) + np.sin(points), ["x"], 3.0)
-    mirrored = np.array([1, -1, -1]) * -1.0
+    x, y = rng.uniform((0, 0), (60, 40), (6000, 2)).T
+    points = np.column_stack((x, y, 0 * x))
+    given = np.outer(0.3 + 0.1 * x - 0.02 * y, (0, 0, 1))
+    field = smooth_field(points, given, [], 4.0)
+    assert np.allclose(field(points), given, atol=0.05)
+    assert np.allclose(field(np.array([[64.0, 20, 0], [-4, 20, 0]]))[:, 2], (6.3, -0.5), atol=0.08)
+    far = field(np.array([[500.0, 20, 0], [600.0, 20, 0]]))[:, 2]
+    assert abs(far).max() < 12 and abs(np.ptp(far)) < 0.2
+    field = smooth_field(points, np.abs(points) * (0, 0, 1) + np.sin(points), ["x"], 4.0)
+    places, mirrored = np.array([[10, 5, 2], [60, 5, 2], [20, 40, 2.0]]), np.array([-1, 1, 1])
     assert np.allclose(field(places * mirrored), field(places) * mirrored, atol=1e-6)
-    noise = smooth_field(points, rng.standard_normal(points.shape), [], 3.0)(points)
+    noise = smooth_field(points, rng.standard_normal(points.shape), [], 4.0)(points)
     assert np.sqrt((noise**2).mean()) < 0.2
 
 

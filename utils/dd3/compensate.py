@@ -54,7 +54,7 @@ from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Surface, from_nodes, read_lines, write
 
 MOST_POINTS = 2000  # of the smooth function
-THIN = 1e-4  # extent of a direction that counts as none, over the largest
+ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the places
 FARTHEST = 3.0  # points in a mean, over its standard deviation
 BEYOND = 50.0  # continuation of the sheet for the tools, over its thickness
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
@@ -63,10 +63,9 @@ UNKNOWN = "E115"  # code of the error of a parameter that an input file does not
 
 @dataclass
 class Shapes:
-    """The lower face of the sheet by its initial coordinates: under the tools, and free; positions of nodes, mm. The
-    displacements of the tools by the names of their files, under which the sheet was drawn."""
+    """The lower face of the part under the tools, and free: positions of nodes, mm. The displacements of the tools by
+    the names of their files, under which the sheet was drawn."""
 
-    initial: np.ndarray
     drawn: np.ndarray
     free: np.ndarray
     tools: dict[str, np.ndarray]
@@ -96,7 +95,7 @@ def shapes_of(process: Process) -> Shapes:
     start, drawn = lower_face(first, step)
     initial, free = lower_face(last, last.last)
     tools = tool_places(process.operations[0].folder, job, first, step)
-    return Shapes(initial, at_places(start, drawn, initial), free, tools)
+    return Shapes(at_places(start, drawn, initial), free, tools)
 
 
 def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
@@ -233,11 +232,11 @@ def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray)
 
 
 def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
-    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given: cubic
-    radial functions through means of place and displacement, with the weights of a normal distribution of the standard
-    deviation `reach`, at places as far apart. It goes on linearly beyond the points, as a natural spline does.
+    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
+    multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
+    deviation `reach`, at places as far apart. Its slopes go on beyond the points and fade over some `reach`.
 
-    Source: Duchon, Springer Lect. Notes Math. 571 (1977) 85-100.
+    Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
     """
     whole, given = np.concatenate(images(points, mirror)), np.concatenate(images(displacement, mirror))
     size = reach
@@ -251,11 +250,7 @@ def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[
     near.data = np.exp(-0.5 * (near.data / size)**2)
     weight = (near @ np.ones(len(given)))[:, None]
     places, values = near @ whole / weight, near @ given / weight  # a linear function is kept
-    # Directions without extent, as across a strip in plane strain, are left out.
-    _, extent, axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
-    axes = axes[extent > THIN * extent[0]].T
-    spline = RBFInterpolator(places @ axes, values, kernel="cubic", degree=1)
-    return lambda place: spline(place @ axes)
+    return RBFInterpolator(places, values, kernel="multiquadric", epsilon=1 / (ROUND * size), degree=0)
 
 
 def along_sheet(field: Any, sheet: Any, thickness: float) -> Any:
@@ -323,8 +318,8 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
               flush=True)
         if found[-1][0] <= tolerance or loop == loops:
             break
-        move = along_sheet(smooth_field(shapes.drawn, factor * (goal - place), mirror, length),
-                           drawn_surface(process, BEYOND * thickness), thickness)
+        field = smooth_field(shapes.drawn, factor * (goal - place), mirror, length)
+        move = along_sheet(field, drawn_surface(process, BEYOND * thickness), thickness)
         folder = made_folder(work / f"loop_{loop + 1}")
         for name, path in tools.items():
             surface = moved_surface(path, move, length if loop == 0 else np.inf, shapes.tools[name])

@@ -79,7 +79,7 @@ class Sheet:
 
 
 def of_cad(path: Path, size: float | None, side: str, words: Sequence[str] | None) -> Triangles:
-    """Return the faces of a CAD file as triangles with sides of `size` mm, or a hundredth of its largest extent."""
+    """Return the faces of a CAD file as triangles with sides of `size` mm, or a fiftieth of its largest extent."""
     with session() as gmsh:
         load(gmsh, path)
         sew(gmsh, path, 0.01, wanted=False)
@@ -91,10 +91,10 @@ def of_cad(path: Path, size: float | None, side: str, words: Sequence[str] | Non
         gmsh.model.removeEntities(gmsh.model.getEntities(3))
         gmsh.model.removeEntities([(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in tags])
         box = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-        length = size or 0.01 * float(np.ptp(box, axis=0).max())
+        length = size or 0.02 * float(np.ptp(box, axis=0).max())
         gmsh.option.setNumber("Mesh.MeshSizeMax", length)
-        gmsh.option.setNumber("Mesh.MeshSizeMin", 0.2 * length)
-        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 24)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", 0.3 * length)
+        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 16)
         gmsh.model.mesh.generate(2)
         labels, places, _ = gmsh.model.mesh.getNodes()
         row = np.zeros(int(labels.max()) + 1, int)
@@ -419,7 +419,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--mirror", nargs="+", default=[], choices=["x", "y"], metavar="AXIS",
                         help="planes of symmetry of which the part is one side")
     parser.add_argument("--size", type=float, metavar="LENGTH",
-                        help="sides of the triangles of a CAD file, mm (a hundredth of the part)")
+                        help="sides of the triangles of a CAD file, mm (a fiftieth of the part)")
     parser.add_argument("--side", choices=["upper", "lower"], default="lower", help="of a solid (lower)")
     parser.add_argument("--faces", nargs="+", metavar="N", help="faces of a CAD file, with all that join them smoothly")
     parser.add_argument("--fields", type=Path, metavar="VTP", help="file of the part with thinning and strains")
