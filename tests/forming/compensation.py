@@ -40,8 +40,6 @@ def main():
     rail = copied(options.work / "rail", "rail")
     process = read_process(rail / "rail.toml")
     process.operations[0].settings["divisions"] = "60 36 1"
-    for operation in process.operations:
-        operation.settings["material"] = "dc06"
     found = compensate.compensate(options.program, process, "tools", 4, 0.1, 1.0, [], None)
     check(min(found)[0] <= 0.1, f"rail: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))
