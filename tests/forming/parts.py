@@ -49,7 +49,7 @@ def check_rail(options):
 def check_tools(work):
     """Check that the tools are those of the shape files."""
     shapes = sorted((ROOT / "input_files").glob("*/*.shape"))
-    assert len(shapes) == 16, shapes
+    assert len(shapes) == 19, shapes
     for shape in shapes:
         target = work / f"{shape.stem}.bez"
         subprocess.run([sys.executable, "-m", "dd3", "tool", shape, target], check=True, capture_output=True)
