@@ -18,7 +18,7 @@ DEPTH, BELOW = 30.0, 80.0  # of the panel below the binder; of the solids, mm
 
 
 def binder(x, y):
-    """Return the height of the binder: a saddle, 24 mm high along x and 12 mm along y."""
+    """Return the height of the binder: a saddle that rises by 18 mm along x and falls by 12 mm along y."""
     return 18 * (x / SIZE[0])**2 - 12 * (y / SIZE[1])**2
 
 

@@ -5,8 +5,8 @@
 
     hood.py --program build/release/dd3imp --work build/hood_test
 
-The force on the die under gravity is the weight; the binder closes on the blank with the force that is given; the middle
-of the panel is as deep as the punch moves below the blank; the run ends.
+The force on the die under gravity is the weight; the middle of the panel is where the face of the punch ends; the run
+reaches its end.
 """
 import subprocess
 import sys
@@ -41,8 +41,7 @@ def main():
     middle = points[np.linalg.norm(points[:, :2], axis=1) < 1e-3]
     # The face of the punch is at -30 - 10 - 8 mm there, on the upper side of the sheet.
     check_values(Value("force on the die under gravity, N", -WEIGHT, run.last("die_fz", "gravity"), 1e-5),
-                 Value("force on the holder, N", 75000, run.last("holder_fz", "draw"), 1e-3),
-                 Value("lower face in the middle of the panel, mm", -48, float(middle[:, 2].min()), 0.5, absolute=True))
+                 Value("lower face in the middle of the panel, mm", -48, float(middle[:, 2].min()), 0.2, absolute=True))
 
 
 if __name__ == "__main__":

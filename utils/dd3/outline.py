@@ -5,10 +5,10 @@
     dd3 outline cup.toml --curve outline --rim flange.txt --tolerance 0.3 --draws 5
 
 The first input file of the process cuts its blank by *TRIM along a file of curves; --curve names its parameter with the
-name of that file, whose first curve is the outline to start from. After each draw
-the sheet reaches beyond the wanted rim by some length along it, or ends before: a plane z = --height, for the rim of a
-cup, or a closed curve in plan, --rim, for that of a flange. The outline is moved by as much in the initial sheet, by
-the stretch of the outermost elements, and the process runs again.
+name of that file, whose first curve is the outline to start from. After each draw the sheet reaches beyond the wanted
+rim by some length along it, or ends before: a plane z = --height, for the rim of a cup, or a closed curve in plan,
+--rim, for that of a flange. The outline is moved by as much in the initial sheet, by the stretch of the outermost
+elements, and the process runs again.
 
 The results are in <process>.outline: the outline of each draw, deviations.csv, and the best one, outline.txt. The
 operations are left as they are with this; --report writes their report.

@@ -78,7 +78,7 @@ class Sheet:
         return np.asarray((secant * (1 + self.r)**2 / (1 + 2 * self.r))[:, None, None] * (strain + q * other))
 
 
-def of_cad(path: Path, size: float | None, side: str, words: Sequence[str] | None) -> Triangles:
+def of_cad(path: Path, size: float | None, side: str | None, words: Sequence[str] | None) -> Triangles:
     """Return the faces of a CAD file as triangles with sides of `size` mm, or a fiftieth of its largest extent."""
     with session() as gmsh:
         load(gmsh, path)
@@ -186,7 +186,7 @@ def frames(mesh: Triangles) -> tuple[np.ndarray, np.ndarray]:
     return axes, np.einsum("mik,mkj->mij", axes, np.stack((b - a, c - a), axis=2))
 
 
-def tutte_map(path: Path, mesh: Triangles, border: Sequence[np.ndarray]) -> np.ndarray:
+def tutte_map(mesh: Triangles, border: Sequence[np.ndarray]) -> np.ndarray:
     """Return places in the plane without folds: the longest rim on a circle, all others in the mean of those beside
     them, holes filled by a node each."""
     size = [np.linalg.norm(np.diff(mesh.nodes[np.append(rim, rim[:1])], axis=0), axis=1) for rim in border]
@@ -209,8 +209,6 @@ def tutte_map(path: Path, mesh: Triangles, border: Sequence[np.ndarray]) -> np.n
     matrix = coo_array((weights.sum(axis=1), (np.arange(total), np.arange(total))), shape=(total, total)) - weights
     rows = csr_array(matrix)[inner]
     places[inner] = splu(csc_array(rows[:, inner])).solve(-(rows[:, outer] @ places[outer]))
-    if np.bincount(mesh.triangles.ravel(), minlength=count).min() == 0:
-        raise Problem(f"{path}: nodes without triangles")
     return places[:count]
 
 
@@ -333,7 +331,7 @@ def unfolded(path: Path, balance: Balance) -> np.ndarray:
     at the least one that has.
     """
     mesh = balance.mesh
-    places = rigid_map(mesh, tutte_map(path, mesh, rims(path, mesh.triangles)))
+    places = rigid_map(mesh, tutte_map(mesh, rims(path, mesh.triangles)))
 
     if not upright(mesh, places):
         raise Problem(f"{path}: the surface cannot be laid flat without folds")
@@ -420,7 +418,7 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="planes of symmetry of which the part is one side")
     parser.add_argument("--size", type=float, metavar="LENGTH",
                         help="sides of the triangles of a CAD file, mm (a fiftieth of the part)")
-    parser.add_argument("--side", choices=["upper", "lower"], default="lower", help="of a solid (lower)")
+    parser.add_argument("--side", choices=["upper", "lower"], help="of a solid (lower)")
     parser.add_argument("--faces", nargs="+", metavar="N", help="faces of a CAD file, with all that join them smoothly")
     parser.add_argument("--fields", type=Path, metavar="VTP", help="file of the part with thinning and strains")
     options = parser.parse_args(words)
@@ -429,8 +427,8 @@ def main(words: Sequence[str] | None = None) -> None:
     if not options.part.is_file():
         raise Problem(f"{options.part}: No such file")
     facets = options.part.suffix.lower() in SUFFIXES
-    if facets and (options.size or options.faces):
-        parser.error("--size, --faces: only of a CAD file")
+    if facets and (options.size or options.faces or options.side):
+        parser.error("--size, --faces, --side: only of a CAD file")
     mesh = of_facets(options.part) if facets else of_cad(options.part, options.size, options.side, options.faces)
     mesh = prepared(options.part, mesh, ["xyz".index(axis) for axis in options.mirror])
     balance = Balance(mesh, Sheet(options.exponent, options.r))
