@@ -267,18 +267,19 @@ def test_gap():
 
 
 def test_stopped_loop(tmp_path, program):
-    """Where a corrected tool starts inside the blank, the loops end, and the best tools and the operations with them are
-    there."""
+    """Where a corrected tool starts inside the blank, less of the correction is tried; where that is in vain, the loops
+    end, and the best tools and the operations with them are there."""
     for name in ("hat", "materials"):
         shutil.copytree(Path(__file__).parents[2] / "input_files" / name, tmp_path / name)
     deck = tmp_path / "hat/hat.dat"
     text = deck.read_text()
-    for old, new in (("200 1 1", "40 1 1"), ("points = 9", "points = 3"), ("0 0 12", "0 0 0.05"), ("0 0 20", "0 0 8"),
+    for old, new in (("200 1 1", "40 1 1"), ("points = 9", "points = 3"), ("0 0 12", "0 0 0.005"), ("0 0 20", "0 0 8"),
                      ("0 0 -50", "0 0 -38")):
         assert old in text
         text = text.replace(old, new)
     deck.write_text(text)
     said = call("compensate", tmp_path / "hat/hat.toml", "--tools", "tools", "--mirror", "x", "--program", program, expect=2)
+    assert all(f"loop 1 with {part} of the correction stopped" in said for part in ("1", "0.5", "0.25")), said
     assert "loop 1 stopped" in said and "starts inside the sheet" in said and "tools of loop 0" in said
     folder = tmp_path / "hat/hat.compensate"
     assert len((folder / "deviations.csv").read_text().splitlines()) == 2 and (folder / "die.step").is_file()

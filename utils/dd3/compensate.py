@@ -8,7 +8,8 @@ The displacement adjustment: where the free part, aligned as a whole, lies besid
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
 at the end of the draw in the first loop; the free part is that at the end of the last operation. The displacement is a
 smooth function along the drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between
-tools stay. --mirror names the planes of symmetry x = 0, y = 0.
+tools stay. Where the process stops with the corrected tools, half of the correction is tried, then a quarter.
+--mirror names the planes of symmetry x = 0, y = 0.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
 in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
@@ -58,6 +59,7 @@ ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the
 FARTHEST = 3.0  # points in a mean, over its standard deviation
 BEYOND = 50.0  # continuation of the sheet for the tools, over its thickness
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
+PARTS = (1.0, 0.5, 0.25)  # of a correction, one after the other until the process runs to its end
 UNKNOWN = "E115"  # code of the error of a parameter that an input file does not have
 
 
@@ -297,9 +299,43 @@ def with_parameter(program: Path, process: Process, name: str) -> list[Operation
     return found
 
 
+@dataclass
+class Loop:
+    """The files of the tools by their names, and the largest deviation of the part and its root mean square, mm."""
+    tools: dict[str, Path]
+    largest: float
+    rms: float
+
+    @property
+    def folder(self) -> str:
+        """The folder of the tools."""
+        return str(next(iter(self.tools.values())).parent.resolve())
+
+
+def run_with(program: Path, process: Process, settings: dict[str, str], operations: Sequence[Operation],
+             threads: int | None) -> str:
+    """Run the process with settings of some operations; return what stopped it, empty if nothing did."""
+    for operation in operations:
+        operation.settings.update(settings)
+    try:
+        run_process(program, process, threads)
+    except Problem as problem:
+        return str(problem)
+    return ""
+
+
+def write_moved(folder: Path, loop: Loop, places: dict[str, np.ndarray], move: Any, size: float,
+                note: str) -> dict[str, Path]:
+    """Write the tools of a loop with their points moved; return the files by the names of the tools."""
+    for name, path in loop.tools.items():
+        write(folder / name, moved_surface(path, move, size, places[name]), [f"{name} of {note}"])
+    return {name: folder / name for name in loop.tools}
+
+
 def compensate(program: Path, process: Process, parameter: str, loops: int, tolerance: float, factor: float,
                mirror: Sequence[str], size: float | None, threads: int | None = None) -> list[tuple[float, float]]:
-    """Run the loops; return the largest deviation of each and its root mean square, mm."""
+    """Run the loops; return the largest deviation of each and its root mean square, mm. Where the process stops with
+    the corrected tools, the correction is halved."""
     work = made_folder(process.path.parent / f"{process.path.stem}.compensate")
     operations = with_parameter(program, process, parameter)
     run_process(program, process, threads)
@@ -307,44 +343,42 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
     thickness = max(job["sheet"]["thickness"])
     length = size or 5 * thickness
-    wanted, found, folders, stopped = drawn_surface(process), [], [], ""
-    for loop in range(loops + 1):
+    wanted, found, stopped = drawn_surface(process), [], ""
+    while True:
         shapes = shapes_of(process)
         place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
         deviation = np.linalg.norm(goal - place, axis=1)
-        found.append((float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
-        folders.append(dict(tools))
-        print(f"loop {loop}: largest deviation {found[-1][0]:.4g} mm, root mean square {found[-1][1]:.4g} mm",
-              flush=True)
-        if found[-1][0] <= tolerance or loop == loops:
+        found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
+        print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
+              f"{found[-1].rms:.4g} mm", flush=True)
+        if found[-1].largest <= tolerance or len(found) > loops:
             break
-        field = smooth_field(shapes.drawn, factor * (goal - place), mirror, length)
-        move = along_sheet(field, drawn_surface(process, BEYOND * thickness), thickness)
-        folder = made_folder(work / f"loop_{loop + 1}")
-        for name, path in tools.items():
-            surface = moved_surface(path, move, length if loop == 0 else np.inf, shapes.tools[name])
-            write(folder / name, surface, [f"{name} of loop {loop + 1} of dd3 compensate {process.path.name}"])
-        tools = {name: folder / name for name in tools}
-        for operation in operations:
-            operation.settings[parameter] = str(folder.resolve())
-        try:
-            run_process(program, process, threads)
-        except Problem as problem:
-            stopped = str(problem)
+        folder = made_folder(work / f"loop_{len(found)}")
+        surface = drawn_surface(process, BEYOND * thickness)
+        for part in PARTS:
+            field = smooth_field(shapes.drawn, part * factor * (goal - place), mirror, length)
+            tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
+                                length if len(found) == 1 else np.inf,
+                                f"loop {len(found)} of dd3 compensate {process.path.name}")
+            stopped = run_with(program, process, {parameter: str(folder.resolve())}, operations, threads)
+            if not stopped:
+                break
+            print(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}", flush=True)
+        if stopped:
             break
-    best = int(np.argmin([largest for largest, _ in found]))
-    if best < len(found) - 1 or stopped:
-        for operation in operations:
-            operation.settings[parameter] = str(next(iter(folders[best].values())).parent.resolve())
-        run_process(program, process, threads)
-    for name, path in folders[best].items():
+    best = min(found, key=lambda loop: loop.largest)
+    if best is not found[-1] or stopped:
+        again = run_with(program, process, {parameter: best.folder}, operations, threads)
+        stopped = stopped or again
+    for name, path in best.tools.items():
         shutil.copy(path, work / name)
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
-    write_deviations(work / "deviations.csv", "loop,largest,rms", found, 0)
-    print(f"tools of loop {best} in {work}")
+    deviations = [(loop.largest, loop.rms) for loop in found]
+    write_deviations(work / "deviations.csv", "loop,largest,rms", deviations, 0)
+    print(f"tools of loop {found.index(best)} in {work}")
     if stopped:
         raise Problem(f"loop {len(found)} stopped: {stopped}")
-    return found
+    return deviations
 
 
 def main(words: Sequence[str] | None = None) -> None:
