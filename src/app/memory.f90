@@ -9,7 +9,9 @@
 !> latter is called. Neither may allocate memory, so that texts are written piece by piece. Module
 !> variables hold what the procedures need, as they have no arguments for it.
 module dd3_app_memory
-  use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_null_char, c_size_t
+  use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_int, c_null_char, c_size_t
+  use dd3_base_posix, only : c_atexit, c_exit, posix_creat, posix_exit, posix_rename, &
+      posix_write
   implicit none
   private
   public :: watch_memory, watch_log, watch_run_file, end_program, ended_message
@@ -35,42 +37,6 @@ module dd3_app_memory
   integer(c_int), save :: log_descriptor = -1
   !> Whether the program ends as it should; whether a message is being written.
   logical, save :: finished = .false., ending = .false.
-
-  interface
-    !> atexit(3).
-    integer(c_int) function c_atexit(handler) bind(c, name="atexit")
-      import :: c_funptr, c_int
-      type(c_funptr), value :: handler
-    end function c_atexit
-    !> exit(3).
-    subroutine c_exit(code) bind(c, name="exit")
-      import :: c_int
-      integer(c_int), value :: code
-    end subroutine c_exit
-    !> _exit(2): end at once.
-    subroutine posix_exit(code) bind(c, name="_exit")
-      import :: c_int
-      integer(c_int), value :: code
-    end subroutine posix_exit
-    !> write(2).
-    integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
-      import :: c_char, c_int, c_size_t
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: buffer(*)
-      integer(c_size_t), value :: count
-    end function posix_write
-    !> creat(2).
-    integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
-    end function posix_creat
-    !> rename(2).
-    integer(c_int) function posix_rename(from, to) bind(c, name="rename")
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: from(*), to(*)
-    end function posix_rename
-  end interface
 
 contains
 

@@ -3,8 +3,8 @@
 !> of the address space they fail, and the program waits for them at its end for ever. There the
 !> program starts itself again with a single one.
 module dd3_app_one_blas_thread
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_long, c_null_char, &
-      c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only : c_int, c_loc, c_long, c_null_char, c_null_ptr, c_ptr
+  use dd3_base_posix, only : posix_execv, posix_getrlimit, posix_setenv
   use dd3_base_text, only : text_t
   implicit none
   private
@@ -17,31 +17,6 @@ module dd3_app_one_blas_thread
   character(len=*), parameter :: backtrace = "GFORTRAN_ERROR_BACKTRACE"
   !> Resource number of the address space (Linux).
   integer(c_int), parameter :: rlimit_as = 9
-
-  interface
-    !> getrlimit(2).
-    integer(c_int) function posix_getrlimit(resource, limits) bind(c, name="getrlimit")
-      import :: c_int, c_long
-      integer(c_int), value :: resource
-      !> Soft and hard limit.
-      integer(c_long), intent(out) :: limits(2)
-    end function posix_getrlimit
-    !> setenv(3).
-    integer(c_int) function posix_setenv(name, value, overwrite) bind(c, name="setenv")
-      import :: c_char, c_int
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: name(*), value(*)
-      integer(c_int), value :: overwrite
-    end function posix_setenv
-    !> execv(3): returns only if it fails.
-    integer(c_int) function posix_execv(path, arguments) bind(c, name="execv")
-      import :: c_char, c_int, c_ptr
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*)
-      !> Null-terminated texts, then a null pointer.
-      type(c_ptr), intent(in) :: arguments(*)
-    end function posix_execv
-  end interface
 
 contains
 

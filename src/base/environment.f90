@@ -1,28 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Surroundings of the program: time, machine, working directory.
 module dd3_base_environment
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char, c_ptr, c_associated, c_size_t
+  use, intrinsic :: iso_c_binding, only : c_char, c_null_char, c_associated, c_size_t
+  use dd3_base_posix, only : posix_getcwd, posix_gethostname
   implicit none
   private
   public :: host_name, local_time, working_directory
 
   !> Longest path and name.
   integer, parameter :: longest = 4096
-
-  interface
-    !> getcwd(3).
-    type(c_ptr) function posix_getcwd(buffer, size) bind(c, name="getcwd")
-      import :: c_char, c_ptr, c_size_t
-      character(kind=c_char), intent(out) :: buffer(*)
-      integer(c_size_t), value :: size
-    end function posix_getcwd
-    !> gethostname(2).
-    integer(c_int) function posix_gethostname(buffer, size) bind(c, name="gethostname")
-      import :: c_char, c_int, c_size_t
-      character(kind=c_char), intent(out) :: buffer(*)
-      integer(c_size_t), value :: size
-    end function posix_gethostname
-  end interface
 
 contains
 

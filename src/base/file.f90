@@ -15,6 +15,8 @@ module dd3_base_file
   use dd3_base_clock, only : wall_time
   use dd3_base_identity, only : is_at, is_same_file
   use dd3_base_lock, only : open_locked
+  use dd3_base_posix, only : linux_fallocate, posix_close, posix_creat, posix_ftruncate, &
+      posix_getrlimit, posix_lseek, posix_mkdir, posix_readlink, posix_unlink, posix_write
   use dd3_base_system_error, only : errno, system_message
   use dd3_base_text, only : newline
   implicit none
@@ -70,77 +72,6 @@ module dd3_base_file
     procedure :: release => file_release
     procedure :: close => file_close
   end type file_t
-
-  interface
-    !> creat(2).
-    integer(c_int) function posix_creat(path, mode) bind(c, name="creat")
-      import :: c_char, c_int
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
-    end function posix_creat
-    !> write(2).
-    integer(c_size_t) function posix_write(descriptor, buffer, count) bind(c, name="write")
-      import :: c_char, c_int, c_size_t
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: buffer(*)
-      integer(c_size_t), value :: count
-    end function posix_write
-    !> ftruncate(2).
-    integer(c_int) function posix_ftruncate(descriptor, length) bind(c, name="ftruncate")
-      import :: c_int, c_long
-      integer(c_int), value :: descriptor
-      integer(c_long), value :: length
-    end function posix_ftruncate
-    !> lseek(2).
-    integer(c_long) function posix_lseek(descriptor, offset, whence) bind(c, name="lseek")
-      import :: c_int, c_long
-      !> `whence` is the origin of the offset.
-      integer(c_int), value :: descriptor, whence
-      integer(c_long), value :: offset
-    end function posix_lseek
-    !> close(2).
-    integer(c_int) function posix_close(descriptor) bind(c, name="close")
-      import :: c_int
-      integer(c_int), value :: descriptor
-    end function posix_close
-    !> fallocate(2).
-    integer(c_int) function linux_fallocate(descriptor, mode, offset, length) &
-        bind(c, name="fallocate")
-      import :: c_int, c_long
-      integer(c_int), value :: descriptor, mode
-      integer(c_long), value :: offset, length
-    end function linux_fallocate
-    !> getrlimit(2).
-    integer(c_int) function posix_getrlimit(resource, limits) bind(c, name="getrlimit")
-      import :: c_int, c_long
-      integer(c_int), value :: resource
-      !> Soft and hard limit.
-      integer(c_long), intent(out) :: limits(2)
-    end function posix_getrlimit
-    !> mkdir(2).
-    integer(c_int) function posix_mkdir(path, mode) bind(c, name="mkdir")
-      import :: c_char, c_int
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
-    end function posix_mkdir
-    !> unlink(2).
-    integer(c_int) function posix_unlink(path) bind(c, name="unlink")
-      import :: c_char, c_int
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*)
-    end function posix_unlink
-    !> readlink(2).
-    integer(c_size_t) function posix_readlink(path, buffer, size) bind(c, name="readlink")
-      import :: c_char, c_int, c_size_t
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*)
-      !> Target of the link.
-      character(kind=c_char), intent(out) :: buffer(*)
-      integer(c_size_t), value :: size
-    end function posix_readlink
-  end interface
 
 contains
 

@@ -1,27 +1,15 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Operations on whole files: read, replace by another, synchronise with the disk.
 module dd3_base_file_system
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_int, c_null_char
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_file, only : file_t, remove_file
   use dd3_base_kinds, only : i8
+  use dd3_base_posix, only : posix_fsync, posix_rename
   use dd3_base_system_error, only : errno, system_message
   implicit none
   private
   public :: read_file, replace_file, keep_file, sync_file, write_file, part_of
-
-  interface
-    !> rename(2).
-    integer(c_int) function posix_rename(from, to) bind(c, name="rename")
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: from(*), to(*)
-    end function posix_rename
-    !> fsync(2).
-    integer(c_int) function posix_fsync(descriptor) bind(c, name="fsync")
-      import :: c_int
-      integer(c_int), value :: descriptor
-    end function posix_fsync
-  end interface
 
 contains
 

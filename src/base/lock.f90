@@ -3,8 +3,10 @@
 !> truncated. The system releases the lock when the program ends, however it ends. File systems
 !> without locks give the file without one.
 module dd3_base_lock
-  use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_long, c_null_char, c_ptr
+  use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_long, c_null_char, c_ptr
   use dd3_base_identity, only : is_regular
+  use dd3_base_posix, only : c_fclose, c_fopen, linux_flock, posix_close, posix_dup, &
+      posix_fileno, posix_ftruncate
   use dd3_base_system_error, only : errno
   implicit none
   private
@@ -14,46 +16,6 @@ module dd3_base_lock
   integer(c_int), parameter :: exclusive = 2, at_once = 4
   !> Error number of Linux: the lock is held by another program.
   integer(c_int), parameter :: ewouldblock = 11
-
-  interface
-    !> fopen(3): unlike open(2), it has no variable arguments.
-    type(c_ptr) function c_fopen(path, mode) bind(c, name="fopen")
-      import :: c_char, c_ptr
-      !> Null-terminated.
-      character(kind=c_char), intent(in) :: path(*), mode(*)
-    end function c_fopen
-    !> fileno(3).
-    integer(c_int) function posix_fileno(stream) bind(c, name="fileno")
-      import :: c_int, c_ptr
-      type(c_ptr), value :: stream
-    end function posix_fileno
-    !> fclose(3).
-    integer(c_int) function c_fclose(stream) bind(c, name="fclose")
-      import :: c_int, c_ptr
-      type(c_ptr), value :: stream
-    end function c_fclose
-    !> dup(2).
-    integer(c_int) function posix_dup(descriptor) bind(c, name="dup")
-      import :: c_int
-      integer(c_int), value :: descriptor
-    end function posix_dup
-    !> flock(2).
-    integer(c_int) function linux_flock(descriptor, operation) bind(c, name="flock")
-      import :: c_int
-      integer(c_int), value :: descriptor, operation
-    end function linux_flock
-    !> ftruncate(2).
-    integer(c_int) function posix_ftruncate(descriptor, length) bind(c, name="ftruncate")
-      import :: c_int, c_long
-      integer(c_int), value :: descriptor
-      integer(c_long), value :: length
-    end function posix_ftruncate
-    !> close(2).
-    integer(c_int) function posix_close(descriptor) bind(c, name="close")
-      import :: c_int
-      integer(c_int), value :: descriptor
-    end function posix_close
-  end interface
 
 contains
 

@@ -6,6 +6,7 @@ module dd3_base_log
   use dd3_base_error, only : error_t, keep_first
   use dd3_base_file, only : file_t, standard_output
   use dd3_base_message, only : message_list_t, message_t, new_message
+  use dd3_base_posix, only : posix_isatty
   use dd3_base_ranks, only : this_rank
   use dd3_base_text, only : newline
   implicit none
@@ -46,14 +47,6 @@ module dd3_base_log
     procedure :: descriptor => log_descriptor
     procedure :: close => log_close
   end type log_t
-
-  interface
-    !> isatty(3).
-    integer(c_int) function posix_isatty(descriptor) bind(c, name="isatty")
-      import :: c_int
-      integer(c_int), value :: descriptor
-    end function posix_isatty
-  end interface
 
 contains
 

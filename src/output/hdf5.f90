@@ -2,8 +2,9 @@
 !> Growing datasets of an HDF5 file. Its files remain readable after a kill only with the default
 !> version of the library's format, and if data, flush, number of steps, flush follow in this order.
 module dd3_output_hdf5
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_int, c_loc, c_null_char
   use dd3_base_kinds, only : wp, i8
+  use dd3_base_posix, only : posix_setenv
   use hdf5, only : hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5screate_simple_f, &
       h5screate_f, h5sclose_f, h5sselect_hyperslab_f, h5dcreate_f, h5dclose_f, h5dwrite_f, &
       h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, h5pclose_f, h5acreate_f, &
@@ -48,14 +49,6 @@ module dd3_output_hdf5
     integer(c_int) function h5_dont_atexit() bind(c, name="H5dont_atexit")
       import :: c_int
     end function h5_dont_atexit
-    !> setenv(3).
-    integer(c_int) function c_setenv(name, value, overwrite) bind(c, name="setenv")
-      import :: c_char, c_int
-      !> Ended by a null.
-      character(kind=c_char), intent(in) :: name(*), value(*)
-      !> Replace an existing value.
-      integer(c_int), value :: overwrite
-    end function c_setenv
   end interface
 
 contains
@@ -68,7 +61,7 @@ contains
     integer :: status
     integer(c_int) :: set
 
-    set = c_setenv("HDF5_USE_FILE_LOCKING"//c_null_char, "FALSE"//c_null_char, 0_c_int)
+    set = posix_setenv("HDF5_USE_FILE_LOCKING"//c_null_char, "FALSE"//c_null_char, 0_c_int)
     set = h5_dont_atexit()
     call h5open_f(status)
     ok = status >= 0

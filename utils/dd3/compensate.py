@@ -40,6 +40,7 @@ from dd3.process import (
     process_parser,
     read_process,
     run_process,
+    run_with,
     write_deviations,
     write_report,
 )
@@ -312,18 +313,6 @@ class Loop:
         return str(next(iter(self.tools.values())).parent.resolve())
 
 
-def run_with(program: Path, process: Process, settings: dict[str, str], operations: Sequence[Operation],
-             threads: int | None) -> str:
-    """Run the process with settings of some operations; return what stopped it, empty if nothing did."""
-    for operation in operations:
-        operation.settings.update(settings)
-    try:
-        run_process(program, process, threads)
-    except Problem as problem:
-        return str(problem)
-    return ""
-
-
 def write_moved(folder: Path, loop: Loop, places: dict[str, np.ndarray], move: Any, size: float,
                 note: str) -> dict[str, Path]:
     """Write the tools of a loop with their points moved; return the files by the names of the tools."""
@@ -360,7 +349,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
             tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")
-            stopped = run_with(program, process, {parameter: str(folder.resolve())}, operations, threads)
+            stopped = run_with(program, process, operations, {parameter: str(folder.resolve())}, threads)
             if not stopped:
                 break
             print(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}", flush=True)
@@ -368,7 +357,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
             break
     best = min(found, key=lambda loop: loop.largest)
     if best is not found[-1] or stopped:
-        again = run_with(program, process, {parameter: best.folder}, operations, threads)
+        again = run_with(program, process, operations, {parameter: best.folder}, threads)
         stopped = stopped or again
     for name, path in best.tools.items():
         shutil.copy(path, work / name)

@@ -30,7 +30,7 @@ from dd3.process import (
     check_deck,
     process_parser,
     read_process,
-    run_process,
+    run_with,
     write_deviations,
     write_report,
 )
@@ -189,12 +189,10 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         first.settings[name] = str(path.resolve())
         if not outline_file(program, first).samefile(path):
             raise Problem(f"{first.deck}: error: the parameter '{name}' is not the file of curves of its *TRIM")
-        try:
-            run_process(program, process, threads)
-        except Problem as problem:
-            if not found:
-                raise
-            stopped = str(problem)
+        stopped = run_with(program, process, [], {}, threads)
+        if stopped and not found:
+            raise Problem(stopped)
+        if stopped:
             break
         rim = rim_on(process.operations[-1].folder, curves[0])
         beyond = excess(rim, height, wanted)
@@ -206,8 +204,8 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         curves = [moved(curves[0], rim, beyond), *curves[1:]]
     best = int(np.argmin([largest for largest, _ in found]))
     if best < len(outlines) - 1:
-        first.settings[name] = str((work / f"outline_{best + 1}.txt").resolve())
-        run_process(program, process, threads)
+        again = run_with(program, process, [first], {name: str((work / f"outline_{best + 1}.txt").resolve())}, threads)
+        stopped = stopped or again
     write_curves(work / "outline.txt", outlines[best], f"dd3 outline {process.path.name}")
     write_deviations(work / "deviations.csv", "draw,largest,mean", found, 1)
     print(f"outline of draw {best + 1}: {work / 'outline.txt'}")

@@ -186,6 +186,18 @@ def run_process(program: Path, process: Process, threads: int | None = None) -> 
               f"results in {operation.folder}", flush=True)
 
 
+def run_with(program: Path, process: Process, operations: Sequence[Operation], settings: Mapping[str, object],
+             threads: int | None = None) -> str:
+    """Run all operations, some of them with other settings; return what stopped them, empty if nothing did."""
+    for operation in operations:
+        operation.settings.update(settings)
+    try:
+        run_process(program, process, threads)
+    except Problem as problem:
+        return str(problem)
+    return ""
+
+
 def write_report(process: Process) -> Path:
     """Write the page of each operation, and one that leads to them."""
     target = made_folder(process.path.parent / f"{process.path.stem}.report")
