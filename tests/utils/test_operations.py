@@ -266,24 +266,43 @@ def test_gap():
     assert np.allclose(gap, 1.3, atol=1e-3)
 
 
-def test_stopped_loop(tmp_path, program):
-    """Where a corrected tool starts inside the blank, less of the correction is tried; where that is in vain, the loops
-    end, and the best tools and the operations with them are there."""
+def short_hat(folder, gap="12"):
+    """Copy the hat, with few elements and a shallow draw; return the file of the process."""
     for name in ("hat", "materials"):
-        shutil.copytree(Path(__file__).parents[2] / "input_files" / name, tmp_path / name)
-    deck = tmp_path / "hat/hat.dat"
+        shutil.copytree(Path(__file__).parents[2] / "input_files" / name, folder / name)
+    deck = folder / "hat/hat.dat"
     text = deck.read_text()
-    for old, new in (("200 1 1", "40 1 1"), ("points = 9", "points = 3"), ("0 0 12", "0 0 0.005"), ("0 0 20", "0 0 8"),
-                     ("0 0 -50", "0 0 -38")):
+    for old, new in (("200 1 1", "40 1 1"), ("points = 9", "points = 3"), ("0 0 12", f"0 0 {gap}")):
         assert old in text
         text = text.replace(old, new)
     deck.write_text(text)
-    said = call("compensate", tmp_path / "hat/hat.toml", "--tools", "tools", "--mirror", "x", "--program", program, expect=2)
-    assert all(f"loop 1 with {part} of the correction stopped" in said for part in ("1", "0.5", "0.25")), said
+    return folder / "hat/hat.toml"
+
+
+def test_no_room(tmp_path, program):
+    """Where a corrected tool starts inside the blank, the loops end, and the best tools and the operations with them are
+    there."""
+    path = short_hat(tmp_path, "0.05")
+    said = call("compensate", path, "--tools", "tools", "--mirror", "x", "--program", program, expect=2)
     assert "loop 1 stopped" in said and "starts inside the sheet" in said and "tools of loop 0" in said
     folder = tmp_path / "hat/hat.compensate"
     assert len((folder / "deviations.csv").read_text().splitlines()) == 2 and (folder / "die.step").is_file()
     assert dd3.open(tmp_path / "hat/hat.out").job["outcome"]["state"] == "reached"
+
+
+def test_stopped_loop(tmp_path, program):
+    """Where the run with corrected tools stops, half of the correction is tried."""
+    runs, script = tmp_path / "runs", tmp_path / "dd3imp"
+    script.write_text(f"""#!/bin/sh
+case "$*" in *--check*) exec {program} "$@";; esac
+echo run >>{runs}
+[ "$(wc -l <{runs})" -ne 2 ] || {{ echo "dd3imp: stopped E244: no equilibrium" >&2; exit 3; }}
+exec {program} "$@"
+""")
+    script.chmod(0o755)
+    said = call("compensate", short_hat(tmp_path), "--tools", "tools", "--mirror", "x", "--loops", "1", "--program", script)
+    assert "loop 1 with 1 of the correction stopped: hat: dd3imp: stopped E244" in said and "loop 1: largest" in said
+    assert len(runs.read_text().splitlines()) == 3
 
 
 def test_refused(tmp_path, program):

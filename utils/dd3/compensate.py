@@ -8,7 +8,8 @@ The displacement adjustment: where the free part, aligned as a whole, lies besid
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
 at the end of the draw in the first loop; the free part is that at the end of the last operation. The displacement is a
 smooth function along the drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between
-tools stay. Where the process stops with the corrected tools, half of the correction is tried, then a quarter.
+tools stay. Where a run stops with the corrected tools, half of the correction is tried, then a quarter. The input files
+place blank and tools; at the start they need room for what the surfaces are moved by.
 --mirror names the planes of symmetry x = 0, y = 0.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
@@ -36,6 +37,7 @@ from dd3.gmsh_session import session
 from dd3.process import (
     Operation,
     Process,
+    Stopped,
     check_deck,
     process_parser,
     read_process,
@@ -332,7 +334,9 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
     thickness = max(job["sheet"]["thickness"])
     length = size or 5 * thickness
-    wanted, found, stopped = drawn_surface(process), [], ""
+    wanted = drawn_surface(process)
+    found: list[Loop] = []
+    stopped: Problem | None = None
     while True:
         shapes = shapes_of(process)
         place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
@@ -350,7 +354,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")
             stopped = run_with(program, process, operations, {parameter: str(folder.resolve())}, threads)
-            if not stopped:
+            if not isinstance(stopped, Stopped):
                 break
             print(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}", flush=True)
         if stopped:

@@ -181,7 +181,8 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
     curves = read_curves(outline_file(program, first))
     wanted = Outline(read_curves(rim_file)[0]) if rim_file else None
     found: list[tuple[float, float]] = []
-    outlines, stopped = [], ""
+    outlines: list[list[np.ndarray]] = []
+    stopped: Problem | None = None
     for draw in range(1, draws + 1):
         path = work / f"outline_{draw}.txt"
         write_curves(path, curves, f"draw {draw} of dd3 outline {process.path.name}")
@@ -191,7 +192,7 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
             raise Problem(f"{first.deck}: error: the parameter '{name}' is not the file of curves of its *TRIM")
         stopped = run_with(program, process, [], {}, threads)
         if stopped and not found:
-            raise Problem(stopped)
+            raise stopped
         if stopped:
             break
         rim = rim_on(process.operations[-1].folder, curves[0])

@@ -41,7 +41,12 @@ STAMP = "operation.json"  # in the folder of an operation: what it has read
 KEYS: dict[str, type[Any]] = {"title": str, "report": dict, "operation": list}
 OPERATION_KEYS: dict[str, type[Any]] = {"deck": str, "name": str, "set": dict}
 REPORT_KEYS: dict[str, type[Any]] = {"mirror": list, "section": list}
+STOPPED = 3  # exit code of a run that cannot go on
 LATER = "E152"  # code of the error of a sheet that is not there yet
+
+
+class Stopped(Problem):
+    """A run that cannot go on; its input has no errors."""
 
 
 @dataclass
@@ -159,7 +164,8 @@ def run_operation(program: Path, operation: Operation, threads: int | None = Non
     if done.code == 2 and going_on:  # the restart file is that of another model
         done = launch(command(program, operation.deck, operation.folder, options, operation.settings), one_core=False)
     if done.code != 0:
-        raise Problem(f"{operation.name}: {done.errors.strip() or f'exit code {done.code}'}")
+        raise (Stopped if done.code == STOPPED else Problem)(
+            f"{operation.name}: {done.errors.strip() or f'exit code {done.code}'}")
     return True
 
 
@@ -187,15 +193,15 @@ def run_process(program: Path, process: Process, threads: int | None = None) -> 
 
 
 def run_with(program: Path, process: Process, operations: Sequence[Operation], settings: Mapping[str, object],
-             threads: int | None = None) -> str:
-    """Run all operations, some of them with other settings; return what stopped them, empty if nothing did."""
+             threads: int | None = None) -> Problem | None:
+    """Run all operations, some of them with other settings; return what stopped them, if anything did."""
     for operation in operations:
         operation.settings.update(settings)
     try:
         run_process(program, process, threads)
     except Problem as problem:
-        return str(problem)
-    return ""
+        return problem
+    return None
 
 
 def write_report(process: Process) -> Path:
