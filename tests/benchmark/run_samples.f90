@@ -13,12 +13,11 @@ module run_samples
   use dd3_model_build, only : new_model
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state, state_t
-  use dd3_process_increment, only : accept_increment, prepare_increment, shrink_increment, &
-      try_increment
+  use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
   use dd3_process_phase_end, only : phase_is_over
   use dd3_process_phase_start, only : begin_phase
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_step_control, only : stepper_t
+  use dd3_process_step_control, only : cut_back, stepper_t
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -146,7 +145,7 @@ contains
     do
       call try_increment(model, committed, trial, stepper)
       if (stepper%attempt%verdict%outcome == verdict_converged) exit
-      call shrink_increment(model%phase(committed%phase), stepper, again)
+      call cut_back(stepper%attempt, again)
       if (again) cycle
       trial%increment = -1
       return
