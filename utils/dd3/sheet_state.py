@@ -35,16 +35,16 @@ class SheetState:
     sets: dict[str, np.ndarray] = field(default_factory=dict)
 
 
-def read_state(folder: Path) -> SheetState:
-    """Return the last state of a run of elements solid_shell."""
+def read_state(folder: Path, element: str = "solid_shell") -> SheetState:
+    """Return the last state of a run of 8-node elements of a type."""
     path = folder / NAME
     try:
         with h5py.File(path) as file:
             mesh, state = file["mesh"], file["state"]
             kind = mesh.attrs["element"].decode().strip()
             nodes, count, corners, points, internal, column, _ = mesh["sizes"][...]
-            if kind != "solid_shell":
-                raise Problem(f"{path}: elements of type {kind}; expected solid_shell")
+            if kind != element:
+                raise Problem(f"{path}: elements of type {kind}; expected {element}")
             kelvin = state["stress"][...].reshape(count, points, 6) / FACTOR
             axes = np.swapaxes(state["orientation"][...].reshape(count, points, 3, 3), 2, 3)
             tensor = np.zeros((count, points, 3, 3))
