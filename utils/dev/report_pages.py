@@ -31,6 +31,7 @@ DECKS = ROOT / "input_files"
 PICTURES = ROOT / "docs" / "images" / "reports"
 PAGE = ROOT / "docs" / "reports" / "pages.md"
 HEAD = ["input file", "elements", "tools", "phases", "increments", "iterations", "warnings"]
+MADE_TOOLS = ("tutorial", "hood")  # folders of input files
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS = (1280, 520)
 TALLEST = 12000  # pixels of a screenshot
@@ -50,8 +51,8 @@ PROBE = """<script>addEventListener("load", () => {
 
 
 def decks():
-    """Return the input files with a blank by their names; that of the tutorial has no tools before its commands."""
-    return {path.stem: path for path in sorted(DECKS.glob("*/*.dat")) if path.parent.name != "tutorial"
+    """Return the input files with a blank by their names, without those whose tools are made by commands."""
+    return {path.stem: path for path in sorted(DECKS.glob("*/*.dat")) if path.parent.name not in MADE_TOOLS
             and re.search(r"^\*BLANK", path.read_text(encoding="utf-8"), re.MULTILINE | re.IGNORECASE)}
 
 
