@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Flags of the build types. They are the initial values of CMAKE_Fortran_FLAGS_<type>, so a user's -D has precedence.
 #
-# -fcheck=mem: lack of memory for a temporary ends the run with a message (src/app/memory.f90), not in a null pointer.
 # no-recursion: two threads in one procedure look like a recursion to the check.
 # -ffp-contract=off: with fused multiply-adds the last bits would depend on -march=native.
-set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O3 -ffp-contract=off -fcheck=mem")
+set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O3 -ffp-contract=off")
 set(CMAKE_Fortran_FLAGS_DEBUG_INIT "-O0 -g -fcheck=all,no-array-temps,no-recursion -ffpe-trap=invalid,zero,overflow")
 string(APPEND CMAKE_Fortran_FLAGS_DEBUG_INIT " -finit-real=snan -finit-derived -fbacktrace")
 

@@ -15,8 +15,10 @@ module dd3_external_mumps_library
   type :: dmumps_struc
     integer :: comm = 0, sym = 0, par = 0, job = 0, n = 0
     integer(i8) :: nnz = 0
-    integer, pointer :: irn(:) => null(), jcn(:) => null(), perm_in(:) => null()
+    integer, pointer :: irn(:) => null(), jcn(:) => null(), perm_in(:) => null(), &
+        pivnul_list(:) => null()
     real(wp), pointer :: a(:) => null(), rhs(:) => null()
+    real(wp) :: cntl(15) = 0.0_wp
     integer :: icntl(60) = 0, infog(80) = 0
   end type dmumps_struc
 

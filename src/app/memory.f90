@@ -2,14 +2,15 @@
 !> Ends of the program that no caller can handle, above all for lack of memory: a sentence on the
 !> error stream and in job.log, a run.json that was composed before, and exit code 3.
 !>
-!> gfortran checks the memory of each `allocate` without `stat`, of each automatic array and, by
-!> -fcheck=mem, of each temporary. If there is none, it calls `_gfortran_os_error_at`, which would
-!> end the program with exit code 1; the procedure of that name below takes its place. Any other end
-!> within a library is caught by a procedure that `exit` calls. With another compiler only the
-!> latter is called. Neither may allocate memory, so that texts are written piece by piece. Module
+!> The compiled program allocates through `malloc` and `realloc`, and gfortran does not check each
+!> of them: arrays that an assignment reallocates are written through a null pointer. So the linker
+!> directs both to the procedures below (`--wrap`, CMakeLists.txt), which end the program if there
+!> is no memory. An end within a library, which allocates for itself, is caught by a procedure that
+!> `exit` calls. Neither may allocate memory, so that texts are written piece by piece. Module
 !> variables hold what the procedures need, as they have no arguments for it.
 module dd3_app_memory
-  use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_int, c_null_char, c_size_t
+  use, intrinsic :: iso_c_binding, only : c_associated, c_funloc, c_int, c_null_char, c_ptr, &
+      c_size_t
   use dd3_base_posix, only : c_atexit, c_exit, posix_creat, posix_exit, posix_rename, &
       posix_write
   implicit none
@@ -20,8 +21,6 @@ module dd3_app_memory
   integer(c_int), parameter :: error_stream = 2
   !> Exit code of a run that stopped before its end.
   integer(c_int), parameter :: code_stopped = 3
-  !> Most characters shown of a place in the source.
-  integer, parameter :: longest_place = 200
   !> Remedy in the message.
   character(len=*), parameter :: remedy = "; a mesh with fewer elements needs less, or raise "// &
       "the limit (ulimit -v, the memory asked of a batch queue)"
@@ -37,6 +36,20 @@ module dd3_app_memory
   integer(c_int), save :: log_descriptor = -1
   !> Whether the program ends as it should; whether a message is being written.
   logical, save :: finished = .false., ending = .false.
+
+  interface
+    !> malloc(3) of the C library.
+    type(c_ptr) function c_malloc(bytes) bind(c, name="__real_malloc")
+      import :: c_ptr, c_size_t
+      integer(c_size_t), value :: bytes
+    end function c_malloc
+    !> realloc(3) of the C library.
+    type(c_ptr) function c_realloc(old, bytes) bind(c, name="__real_realloc")
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: old
+      integer(c_size_t), value :: bytes
+    end function c_realloc
+  end interface
 
 contains
 
@@ -78,33 +91,34 @@ contains
     call c_exit(int(code, c_int))
   end subroutine end_program
 
-  !> Called by the compiled program if an array cannot be allocated: `bytes` is given if the message
-  !> has a place for it.
-  subroutine end_without_memory(place, message, bytes) bind(c, name="_gfortran_os_error_at")
-    character(kind=c_char), intent(in) :: place(*), message(*)
+  !> Take the place of malloc(3) in the compiled program.
+  type(c_ptr) function checked_malloc(bytes) result(memory) bind(c, name="__wrap_malloc")
     integer(c_size_t), value :: bytes
 
-    character(len=*), parameter :: has_size = "Error allocating %lu"
+    memory = c_malloc(bytes)
+    if (.not. c_associated(memory) .and. bytes > 0) call end_without_memory(bytes)
+  end function checked_malloc
+
+  !> Take the place of realloc(3) in the compiled program.
+  type(c_ptr) function checked_realloc(old, bytes) result(memory) bind(c, name="__wrap_realloc")
+    type(c_ptr), value :: old
+    integer(c_size_t), value :: bytes
+
+    memory = c_realloc(old, bytes)
+    if (.not. c_associated(memory) .and. bytes > 0) call end_without_memory(bytes)
+  end function checked_realloc
+
+  !> End the program as an array cannot be allocated.
+  subroutine end_without_memory(bytes)
+    integer(c_size_t), intent(in) :: bytes
+
     integer(c_size_t), parameter :: megabyte = 1000000_c_size_t
-    integer :: i
 
     if (ending) call posix_exit(code_stopped)
     ending = .true.
-    call put("stopped E202: not enough memory")
-    do i = 1, len(has_size)
-      if (message(i) /= has_size(i:i)) exit
-    end do
-    if (i > len(has_size)) then
-      call put(": an array of ")
-      call put_integer(bytes/megabyte + merge(1_c_size_t, 0_c_size_t, bytes < megabyte))
-      call put(" MB could not be allocated")
-    end if
-    call put(" (")
-    do i = 1, longest_place
-      if (place(i) == c_null_char) exit
-      call put(place(i))
-    end do
-    call put(")"//remedy//new_line("a"))
+    call put("stopped E202: not enough memory: an array of ")
+    call put_integer(bytes/megabyte + merge(1_c_size_t, 0_c_size_t, bytes < megabyte))
+    call put(" MB could not be allocated"//remedy//new_line("a"))
     call write_run_file()
     call posix_exit(code_stopped)
   end subroutine end_without_memory

@@ -337,7 +337,9 @@ contains
     status = posix_mkdir(path//c_null_char, mode)
     if (status == 0) return
     cause = errno()
-    if (cause == eexist .and. is_folder(path)) return
+    if (cause == eexist) then
+      if (is_folder(path)) return
+    end if
     call fatal_error(error, "cannot create the directory '"//path//"': "//system_message(cause), &
         "E203")
   end subroutine make_directory

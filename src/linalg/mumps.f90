@@ -11,7 +11,7 @@ module dd3_linalg_mumps
   use dd3_external_mumps_library, only : dmumps, dmumps_struc
   use dd3_linalg_front_tree, only : choose_ordering
   use dd3_linalg_matrix, only : block_matrix_t, copy_values
-  use dd3_linalg_preconditioner, only : preconditioner_t
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t, preconditioner_t
   implicit none
   private
   public :: mumps_t
@@ -20,13 +20,19 @@ module dd3_linalg_mumps
   integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factorise = 2, &
       job_solve = 3
   !> Positions in `icntl`: units and amount of its messages, column permutation, ordering, scaling,
-  !> and additional workspace in percent of the estimate.
+  !> additional workspace in percent of the estimate, and whether it looks for null pivots.
   integer, parameter :: icntl_units(3) = [1, 2, 3], icntl_messages = 4, icntl_permutation = 6, &
-      icntl_ordering = 7, icntl_scaling = 8, icntl_workspace = 14
+      icntl_ordering = 7, icntl_scaling = 8, icntl_workspace = 14, icntl_null_pivots = 24
+  !> Position in `cntl`, and its value: largest null pivot (the rows of the matrix add up to one);
+  !> negative as it is not a fraction of the matrix's norm.
+  integer, parameter :: cntl_null_pivot = 3
+  real(wp), parameter :: null_pivot = -1.0e-13_wp
   !> Value of `icntl_ordering`: that of `perm_in`.
   integer, parameter :: ordering_given = 1
-  !> Positions in `infog`: status and its argument, and the memory estimated by the analysis, MB.
-  integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16
+  !> Positions in `infog`: status and its argument, the memory estimated by the analysis, MB, and the
+  !> number of null pivots.
+  integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16, &
+      infog_null_pivots = 28
   !> MUMPS's errors: no memory, workspace too small, singular pattern, singular matrix.
   integer, parameter :: error_memory(3) = [-5, -7, -13], error_workspace(2) = [-8, -9], &
       error_singular(2) = [-6, -10]
@@ -97,6 +103,8 @@ contains
       library%icntl(icntl_ordering) = ordering_given
       library%icntl(icntl_scaling) = 0
       library%icntl(icntl_workspace) = first_workspace
+      library%icntl(icntl_null_pivots) = 1
+      library%cntl(cntl_null_pivot) = null_pivot
     end associate
   end subroutine begin
 
@@ -144,6 +152,12 @@ contains
         library%icntl(icntl_workspace) = more_workspace*library%icntl(icntl_workspace)
       end do
       call set_verdict(library, verdict)
+      self%perturbed = perturbed_pivots_t()
+      if (verdict%outcome /= verdict_converged .or. library%infog(infog_null_pivots) == 0) return
+      associate (row => library%pivnul_list(1) - 1)
+        self%perturbed = perturbed_pivots_t(library%infog(infog_null_pivots), 1 + row/3, &
+            1 + modulo(row, 3))
+      end associate
     end associate
   end subroutine mumps_build
 

@@ -70,6 +70,7 @@ contains
 
     self%method = "mumps"
     call self%factors%build(matrix, verdict)
+    self%perturbed = self%factors%perturbed
   end subroutine mumps_solver_factor
 
   !> Solve and refine.
