@@ -38,4 +38,12 @@ contains
   module procedure broadcast_text
   end procedure broadcast_text
 
+  module procedure exchange_reals
+    receive(:n_receive(1)) = send(:n_send(1))
+  end procedure exchange_reals
+
+  module procedure gather_reals
+    all(:n(1)) = own(:n(1))
+  end procedure gather_reals
+
 end submodule dd3_absent_ranks

@@ -40,7 +40,7 @@ contains
   !> Run a job whose input has no errors.
   subroutine run_checked(options, start, case, model, exit_code)
     type(options_t), intent(in) :: options
-    type(run_start_t), intent(in) :: start
+    type(run_start_t), intent(inout) :: start
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
     !> One of the `exit_*` values.
@@ -77,7 +77,7 @@ contains
 
   !> Run a job whose log is open.
   subroutine run_logged(start, case, model, log, file, summary, error)
-    type(run_start_t), intent(in) :: start
+    type(run_start_t), intent(inout) :: start
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log

@@ -9,7 +9,7 @@ module dd3_base_ranks
   private
   public :: start_ranks, end_ranks, this_rank, n_ranks, ranks_present
   public :: sum_over_ranks, largest_over_ranks, broadcast_integers, broadcast_reals, &
-      broadcast_text, rank_of_smallest
+      broadcast_text, exchange_reals, gather_reals, rank_of_smallest
 
   ! Implemented in src/parallel/ranks.f90 or, without MPI, in cmake/absent/ranks.f90.
   interface
@@ -63,6 +63,24 @@ module dd3_base_ranks
       !> Has the same length on all ranks.
       character(len=*), intent(inout) :: text
     end subroutine broadcast_text
+
+    !> Send each rank some values and receive some from each.
+    module subroutine exchange_reals(n_send, send, n_receive, receive)
+      !> Numbers of values for and from each rank, `(n_ranks)`.
+      integer, intent(in) :: n_send(:), n_receive(:)
+      !> By ranks.
+      real(wp), intent(in) :: send(*)
+      real(wp), intent(inout) :: receive(*)
+    end subroutine exchange_reals
+
+    !> Gather values of all ranks on rank 0.
+    module subroutine gather_reals(n, own, all)
+      !> Number of values of each rank, `(n_ranks)`.
+      integer, intent(in) :: n(:)
+      real(wp), intent(in) :: own(*)
+      !> By ranks; only set on rank 0.
+      real(wp), intent(inout) :: all(*)
+    end subroutine gather_reals
   end interface
 
 contains

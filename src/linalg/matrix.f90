@@ -6,7 +6,7 @@ module dd3_linalg_matrix
   implicit none
   private
   public :: block_matrix_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-      multiply, clear, copy_blocks, copy_values, add_element
+      keep_rows, multiply, clear, copy_blocks, copy_values, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -20,7 +20,8 @@ module dd3_linalg_matrix
     integer, allocatable :: diagonal(:)
     !> Blocks: row component, column component, block, `(3, 3, :)`.
     real(wp), allocatable :: value(:, :, :)
-    !> Rank that holds the values of each block row, `(n)`; not allocated if this rank holds all.
+    !> Rank of each block row, `(n)`; not allocated if there is one rank. A rank has the rows of its
+    !> own and some others, to which it adds; the rest has no blocks.
     integer, allocatable :: owner(:)
   end type block_matrix_t
 
@@ -162,6 +163,32 @@ contains
     end subroutine add_diagonal
 
   end subroutine new_pattern_from_rows
+
+  !> Keep the blocks of some rows alone; the others have none, and no diagonal block.
+  subroutine keep_rows(self, kept)
+    type(block_matrix_t), intent(inout) :: self
+    logical, intent(in) :: kept(:)
+
+    integer, allocatable :: row_start(:)
+    integer :: i, n
+
+    allocate (row_start(self%n + 1))
+    row_start(1) = 1
+    do i = 1, self%n
+      n = 0
+      if (kept(i)) n = self%row_start(i + 1) - self%row_start(i)
+      row_start(i + 1) = row_start(i) + n
+      associate (moved => row_start(i) - self%row_start(i))
+        self%column(row_start(i):row_start(i + 1) - 1) = &
+            self%column(self%row_start(i):self%row_start(i) + n - 1)
+        self%diagonal(i) = merge(self%diagonal(i) + moved, 0, kept(i))
+      end associate
+    end do
+    self%row_start = row_start
+    self%column = self%column(:row_start(self%n + 1) - 1)
+    deallocate (self%value)
+    allocate (self%value(3, 3, size(self%column)), source=0.0_wp)
+  end subroutine keep_rows
 
   !> Invert lists: list j of the result holds the numbers of the lists that hold j.
   subroutine transpose_lists(lists, n, transposed)

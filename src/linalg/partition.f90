@@ -8,28 +8,29 @@ module dd3_linalg_partition
   use dd3_linalg_metis, only : partition_graph
   implicit none
   private
-  public :: distribute_rows, holds_row, order_by_owner, own_rows
+  public :: divide_rows, holds_row, order_by_owner, own_rows
 
 contains
 
-  !> Set the owner of each block row if there are several ranks.
-  subroutine distribute_rows(matrix)
-    type(block_matrix_t), intent(inout) :: matrix
+  !> Divide the block rows among the ranks.
+  subroutine divide_rows(matrix, owner)
+    !> Its values are not used.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Rank of each block row, `(n)`.
+    integer, intent(out) :: owner(:)
 
-    integer, allocatable :: owner(:)
+    integer, allocatable :: part(:)
     logical :: found
-    integer :: i, parts
+    integer :: i
 
-    parts = n_ranks()
-    if (parts == 1) return
-    call partition_graph(matrix, parts, owner, found)
+    call partition_graph(matrix, n_ranks(), part, found)
     ! Without METIS: strips of the numbering, which follows the sheet.
-    if (.not. found) owner = [(int(real(i - 1)/real(matrix%n)*real(parts)), i=1, matrix%n)]
-    call broadcast_integers(0, size(owner), owner)
-    call move_alloc(owner, matrix%owner)
-  end subroutine distribute_rows
+    if (.not. found) part = [(int(real(i - 1)/real(matrix%n)*real(n_ranks())), i=1, matrix%n)]
+    call broadcast_integers(0, size(part), part)
+    owner = part
+  end subroutine divide_rows
 
-  !> Whether this rank holds a block row.
+  !> Whether a block row is one of this rank.
   logical function holds_row(matrix, row)
     type(block_matrix_t), intent(in) :: matrix
     integer, intent(in) :: row

@@ -8,7 +8,7 @@ module dd3_linalg_scaled_system
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular
   use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_linalg_partition, only : own_rows
+  use dd3_linalg_partition, only : holds_row, own_rows
   implicit none
   private
   public :: scaled_system_t
@@ -34,7 +34,7 @@ module dd3_linalg_scaled_system
 
 contains
 
-  !> Build the pattern of the copy.
+  !> Build the pattern of the copy, with the rows of this rank.
   subroutine scaled_system_setup(self, matrix, order)
     class(scaled_system_t), intent(out) :: self
     type(block_matrix_t), intent(in) :: matrix
@@ -42,14 +42,18 @@ contains
     integer, intent(in) :: order(:)
 
     integer, allocatable :: rank(:)
-    integer :: i, k, n, next, first
+    integer :: i, k, n, n_block, next, first
 
     n = matrix%n
+    n_block = 0
+    do i = 1, n
+      if (holds_row(matrix, i)) n_block = n_block + matrix%row_start(i + 1) - matrix%row_start(i)
+    end do
     self%order = order
     if (allocated(matrix%owner)) self%matrix%owner = matrix%owner(order)
-    allocate (rank(n), self%source(size(matrix%column)), self%scale(3, n))
+    allocate (rank(n), self%source(n_block), self%scale(3, n))
     allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n))
-    allocate (self%matrix%column(size(matrix%column)), self%matrix%value(3, 3, size(matrix%column)))
+    allocate (self%matrix%column(n_block), self%matrix%value(3, 3, n_block))
     self%matrix%n = n
     self%matrix%value = 0.0_wp
     self%scale = 1.0_wp
@@ -58,6 +62,8 @@ contains
     do i = 1, n
       first = next
       self%matrix%row_start(i) = first
+      self%matrix%diagonal(i) = 0
+      if (.not. holds_row(matrix, order(i))) cycle
       do k = matrix%row_start(order(i)), matrix%row_start(order(i) + 1) - 1
         self%matrix%column(next) = rank(matrix%column(k))
         self%source(next) = k

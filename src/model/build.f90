@@ -25,6 +25,7 @@ module dd3_model_build
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : new_part
   use dd3_model_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
       rigid_motion_t
@@ -313,6 +314,7 @@ contains
     end do
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
+    call new_part(model%part, mesh%n_node, mesh%connectivity)
     call set_columns(model)
     if (model%element%n_enhanced > 0) &
         model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])

@@ -2,6 +2,7 @@
 !> Energies of the sheet from the stresses and internal variables at its points.
 module dd3_model_energy
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
@@ -18,23 +19,27 @@ module dd3_model_energy
 contains
 
   !> Return the elastic energy of the stresses, mJ.
-  pure real(wp) function elastic_energy(model, state)
+  real(wp) function elastic_energy(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    real(wp) :: volume(model%element%n_point)
-    integer :: e, p
+    real(wp) :: volume(model%element%n_point), energy(1)
+    integer :: i, p
 
-    elastic_energy = 0.0_wp
-    do e = 1, model%n_element
-      call point_volumes(model%element, state%x(:, model%connectivity(:, e)), volume)
-      associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
-        do p = 1, size(volume)
-          elastic_energy = elastic_energy + 0.5_wp*volume(p)*dot_product(state%stress(:, p, e), &
-              elastic_strain(elasticity, state%stress(:, p, e)))
-        end do
+    energy = 0.0_wp
+    do i = 1, size(model%part%element)
+      associate (e => model%part%element(i))
+        call point_volumes(model%element, state%x(:, model%connectivity(:, e)), volume)
+        associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
+          do p = 1, size(volume)
+            energy = energy + 0.5_wp*volume(p)*dot_product(state%stress(:, p, i), &
+                elastic_strain(elasticity, state%stress(:, p, i)))
+          end do
+        end associate
       end associate
     end do
+    call sum_over_ranks(1, energy)
+    elastic_energy = energy(1)
   end function elastic_energy
 
   !> Return the energy stored in the contact layers, mJ. The normal force is that along the tool's
@@ -80,23 +85,26 @@ contains
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.
-  pure real(wp) function plastic_work_increment(model, old, new) result(work)
+  real(wp) function plastic_work_increment(model, old, new) result(work)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: old, new
 
-    real(wp) :: volume(model%element%n_point), strain(model%element%n_point)
-    integer :: e, p
+    real(wp) :: volume(model%element%n_point), strain(model%element%n_point), total(1)
+    integer :: e, i, p
 
-    work = 0.0_wp
-    do e = 1, model%n_element
-      strain = new%internal_variables(1, :, e) - old%internal_variables(1, :, e)
+    total = 0.0_wp
+    do i = 1, size(model%part%element)
+      e = model%part%element(i)
+      strain = new%internal_variables(1, :, i) - old%internal_variables(1, :, i)
       if (all(strain <= 0.0_wp)) cycle
       call point_volumes(model%element, new%x(:, model%connectivity(:, e)), volume)
       do p = 1, size(volume)
         if (strain(p) <= 0.0_wp) cycle
-        work = work + 0.5_wp*volume(p)*strain(p)*(equivalent(old) + equivalent(new))
+        total = total + 0.5_wp*volume(p)*strain(p)*(equivalent(old) + equivalent(new))
       end do
     end do
+    call sum_over_ranks(1, total)
+    work = total(1)
 
   contains
 
@@ -105,7 +113,7 @@ contains
       type(state_t), intent(in) :: state
 
       equivalent = model%material(model%material_of(e))%equivalent_stress( &
-          state%stress(:, p, e), state%internal_variables(:, p, e))
+          state%stress(:, p, i), state%internal_variables(:, p, i))
     end function equivalent
 
   end function plastic_work_increment

@@ -13,6 +13,7 @@ module dd3_model_model
   use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
   use dd3_model_loads, only : load_set_t, pressure_set_t
+  use dd3_model_part, only : part_t
   use dd3_model_phase, only : phase_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
@@ -44,6 +45,8 @@ module dd3_model_model
     real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
+    !> Elements of this rank.
+    type(part_t) :: part
     !> Node sets of the sheet itself, of which there are `n_sheet_set`, then those of the input.
     type(node_set_t), allocatable :: set(:)
     integer :: n_sheet_set = 0

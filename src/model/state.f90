@@ -191,17 +191,18 @@ contains
     end associate
     call new_beads(self, model)
     self%x(:, :) = model%start_positions()
-    do e = 1, model%n_element
+    do e = 1, size(model%part%element)
       do p = 1, model%element%n_point
-        self%orientation(:, :, p, e) = model%axes(:, :, model%material_of(e))
+        self%orientation(:, :, p, e) = model%axes(:, :, model%material_of(model%part%element(e)))
       end do
     end do
     if (present(sheet)) then
       if (sheet%has_state) then
-        self%stress(:, :, :) = sheet%stress
-        self%orientation(:, :, :, :) = sheet%orientation
-        associate (n => min(model%n_internal, size(sheet%internal_variables, 1)))
-          self%internal_variables(:n, :, :) = sheet%internal_variables(:n, :, :)
+        associate (e => model%part%element, &
+            n => min(model%n_internal, size(sheet%internal_variables, 1)))
+          self%stress(:, :, :) = sheet%stress(:, :, e)
+          self%orientation(:, :, :, :) = sheet%orientation(:, :, :, e)
+          self%internal_variables(:n, :, :) = sheet%internal_variables(:n, :, e)
         end associate
       end if
     end if
@@ -216,7 +217,8 @@ contains
     type(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
-    associate (n_node => model%n_node, n_point => model%element%n_point, n => model%n_element)
+    associate (n_node => model%n_node, n_point => model%element%n_point, &
+        n => size(model%part%element))
       allocate (self%x(3, n_node), self%internal_force(3, n_node), source=0.0_wp)
       allocate (self%external_force(3, n_node), self%load(3, size(model%load_set)), source=0.0_wp)
       allocate (self%pressure(size(model%pressure_set)), source=0.0_wp)

@@ -15,7 +15,11 @@ module dd3_model_state_walk
   contains
     procedure(visit_reals_interface), deferred :: reals
     procedure(visit_integers_interface), deferred :: integers
+    !> Components that hold values of the elements of this rank; these are consecutive.
+    procedure :: reals_of_elements
+    procedure :: integers_of_elements
     procedure, private :: logicals
+    procedure, private :: logicals_of_elements
     procedure, private :: one_real
     procedure, private :: one_integer
     procedure, private :: one_logical
@@ -63,12 +67,15 @@ contains
     call visitor%reals("external_force", size(state%external_force), state%external_force)
     call visitor%reals("load", size(state%load), state%load)
     call visitor%reals("pressure", size(state%pressure), state%pressure)
-    call visitor%reals("stress", size(state%stress), state%stress)
-    call visitor%reals("internal_variables", size(state%internal_variables), &
-        state%internal_variables)
-    call visitor%reals("orientation", size(state%orientation), state%orientation)
-    call visitor%reals("enhanced", size(state%enhanced), state%enhanced)
-    call visitor%logicals("plastic", size(state%plastic), state%plastic)
+    associate (n => size(state%plastic, 2), n_point => size(state%plastic, 1), &
+        n_variable => size(state%internal_variables, 1))
+      call visitor%reals_of_elements("stress", 6*n_point, n, state%stress)
+      call visitor%reals_of_elements("internal_variables", n_variable*n_point, n, &
+          state%internal_variables)
+      call visitor%reals_of_elements("orientation", 9*n_point, n, state%orientation)
+      call visitor%reals_of_elements("enhanced", size(state%enhanced, 1), n, state%enhanced)
+      call visitor%logicals_of_elements("plastic", n_point, n, state%plastic)
+    end associate
     call visitor%reals("lambda", size(state%lambda), state%lambda)
     call visitor%integers("status", size(state%status), state%status)
     call visitor%integers("contact_tool", size(state%contact_tool), state%contact_tool)
@@ -126,7 +133,8 @@ contains
     call visitor%reals("start_pressure_end", size(start%pressure_end), start%pressure_end)
     call visitor%reals("start_x", size(start%x), start%x)
     call visitor%reals("start_fading", size(start%fading), start%fading)
-    call visitor%reals("start_plastic_strain", size(start%plastic_strain), start%plastic_strain)
+    call visitor%reals_of_elements("start_plastic_strain", size(start%plastic_strain, 1), &
+        size(start%plastic_strain, 2), start%plastic_strain)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
 
@@ -176,6 +184,43 @@ contains
     call self%integers(name, n, number)
     values = number /= 0
   end subroutine logicals
+
+  !> Visit real numbers of the elements as any others.
+  subroutine reals_of_elements(self, name, n, n_element, values)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements.
+    integer, intent(in) :: n, n_element
+    real(wp), intent(inout) :: values(n, n_element)
+
+    call self%reals(name, size(values), values)
+  end subroutine reals_of_elements
+
+  !> Visit integers of the elements as any others.
+  subroutine integers_of_elements(self, name, n, n_element, values)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements.
+    integer, intent(in) :: n, n_element
+    integer, intent(inout) :: values(n, n_element)
+
+    call self%integers(name, size(values), values)
+  end subroutine integers_of_elements
+
+  !> Visit logical values of the elements as integers 0 and 1.
+  subroutine logicals_of_elements(self, name, n, n_element, values)
+    class(state_visitor_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements.
+    integer, intent(in) :: n, n_element
+    logical, intent(inout) :: values(n, n_element)
+
+    integer, allocatable :: number(:, :)
+
+    number = merge(1, 0, values)
+    call self%integers_of_elements(name, n, n_element, number)
+    values = number /= 0
+  end subroutine logicals_of_elements
 
   !> Visit a scalar.
   subroutine one_real(self, name, value)

@@ -49,7 +49,8 @@ module dd3_output_field_table
       import :: model_t, state_t, wp
         type(model_t), intent(in) :: model
         type(state_t), intent(in) :: state
-      !> `(components, n_node)`, or `(components, n_point*n_element)`, points first.
+      !> `(components, n_node)`, or those of the elements of this rank, `(components,
+      !> n_point*n_element)`, points first.
       real(wp), intent(out) :: value(:, :)
     end subroutine fill_interface
 
@@ -240,7 +241,7 @@ contains
     integer :: p, e, i
 
     i = 0
-    do e = 1, model%n_element
+    do e = 1, size(model%part%element)
       do p = 1, model%element%n_point
         i = i + 1
         q = state%orientation(:, :, p, e)
@@ -259,7 +260,7 @@ contains
     integer :: e, n
 
     n = model%element%n_point
-    do e = 1, model%n_element
+    do e = 1, size(model%part%element)
       value(1, (e - 1)*n + 1:e*n) = state%internal_variables(1, :, e)
     end do
   end subroutine fill_plastic_strain
@@ -272,8 +273,8 @@ contains
     integer :: p, e, i, m
 
     i = 0
-    do e = 1, model%n_element
-      m = model%material_of(e)
+    do e = 1, size(model%part%element)
+      m = model%material_of(model%part%element(e))
       do p = 1, model%element%n_point
         i = i + 1
         value(1, i) = model%material(m)%equivalent_stress(state%stress(:, p, e), &
@@ -294,10 +295,11 @@ contains
     integer :: p, e, i
 
     i = 0
-    do e = 1, model%n_element
+    do e = 1, size(model%part%element)
       do p = 1, model%element%n_point
         i = i + 1
-        value(:, i) = global_components(model%internal_variable(variable), model%material_of(e), &
+        value(:, i) = global_components(model%internal_variable(variable), &
+            model%material_of(model%part%element(e)), &
             state%internal_variables(:, p, e), state%orientation(:, :, p, e))
       end do
     end do

@@ -7,14 +7,15 @@ module dd3_output_field_values
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, &
-      fill_internal_variable
+      field_table, fill_internal_variable
   implicit none
   private
-  public :: field_values, cell_offsets
+  public :: field_values, give_values, cell_offsets
 
 contains
 
-  !> Evaluate a field.
+  !> Evaluate a field on rank 0. For a field of the integration points the other ranks give their
+  !> values, see `give_values`.
   subroutine field_values(field, model, state, strain, nodal, cell)
     type(field_t), intent(in) :: field
     type(model_t), intent(in) :: model
@@ -64,29 +65,62 @@ contains
     real(wp) :: weight, whole
     integer :: n, e, p, a, node
 
+    call gather_points(field, model, state, value)
     whole = sum(model%element%weight)
-    n = model%element%n_point
-    allocate (value(field%components, n*model%n_element))
-    if (field%variable > 0) then
-      call fill_internal_variable(field%variable, model, state, value)
-    else
-      call field%fill(model, state, value)
-    end if
+    n = field%components
     call count_sharing(model, sharing)
     do e = 1, model%n_element
       cell(:, e) = 0.0_wp
-      do p = 1, n
-        weight = model%element%weight(p)/whole
-        cell(:, e) = cell(:, e) + weight*value(:, (e - 1)*n + p)
-        do a = 1, model%element%n_node
-          node = model%connectivity(a, e)
-          weight = model%element%extrapolation(a, p)/real(sharing(node), wp)
-          nodal(:, node) = nodal(:, node) + weight*value(:, (e - 1)*n + p)
-        end do
+      do p = 1, model%element%n_point
+        associate (at_point => value(n*(p - 1) + 1:n*p, e))
+          weight = model%element%weight(p)/whole
+          cell(:, e) = cell(:, e) + weight*at_point
+          do a = 1, model%element%n_node
+            node = model%connectivity(a, e)
+            weight = model%element%extrapolation(a, p)/real(sharing(node), wp)
+            nodal(:, node) = nodal(:, node) + weight*at_point
+          end do
+        end associate
       end do
     end do
     if (field%positive) nodal = max(nodal, 0.0_wp)
   end subroutine point_values
+
+  !> Evaluate a field at the integration points of this rank and gather it on rank 0.
+  subroutine gather_points(field, model, state, value)
+    type(field_t), intent(in) :: field
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> `(components*n_point, n_element)` on rank 0.
+    real(wp), allocatable, intent(out) :: value(:, :)
+
+    real(wp), allocatable :: own(:, :)
+
+    associate (n_point => model%element%n_point)
+      allocate (own(field%components, n_point*size(model%part%element)))
+      if (field%variable > 0) then
+        call fill_internal_variable(field%variable, model, state, own)
+      else
+        call field%fill(model, state, own)
+      end if
+      call model%part%gather(field%components*n_point, own, value)
+    end associate
+  end subroutine gather_points
+
+  !> Give rank 0 the values of the integration points of this rank for all fields.
+  subroutine give_values(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    type(field_t), allocatable :: field(:)
+    real(wp), allocatable :: unused(:, :)
+    integer :: i
+
+    field = field_table(model)
+    do i = 1, size(field)
+      if (field(i)%location == at_points) call gather_points(field(i), model, state, unused)
+    end do
+  end subroutine give_values
 
   !> Count the elements that share each node.
   subroutine count_sharing(model, sharing)

@@ -5,15 +5,16 @@
 !> data, flush, number of steps, flush. Readers rely on the number of steps.
 module dd3_output_fields
   use dd3_base_kinds, only : wp, i8
-  use dd3_base_error, only : error_t
+  use dd3_base_error, only : error_t, share_error
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : keep_file, part_of, replace_file
+  use dd3_base_ranks, only : broadcast_integers, this_rank
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : tool_origins
   use dd3_output_csv, only : suffix_kept
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, field_table
-  use dd3_output_field_values, only : cell_offsets, field_values
+  use dd3_output_field_values, only : cell_offsets, field_values, give_values
   use dd3_output_field_series, only : append, close_attribute, close_group, close_target, &
       copy_series, copy_target, count_steps, make_targets, put_constant, step_chunk, target_t
   use dd3_output_forming_fields, only : evaluate_strains
@@ -294,14 +295,44 @@ contains
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp), allocatable :: nodal(:, :), cell(:, :), strain(:, :, :)
-    integer :: i, i_cell
+    integer :: due(1)
     logical :: ok
 
-    if (self%file < 0 .or. state%increment == self%last_increment) return
-    call reserve_step(self, model, error)
+    due = merge(0, 1, self%file < 0 .or. state%increment == self%last_increment)
+    call broadcast_integers(0, 1, due)
+    if (due(1) == 0) return
+    if (this_rank() == 0) call reserve_step(self, model, error)
+    call share_error(error)
     if (allocated(error)) return
     ok = .true.
+    if (this_rank() > 0) then
+      call give_values(model, state)
+    else
+      call append_values(self, model, state, ok)
+      call append_step(self, state, ok)
+      call flush_hdf5(self%file, ok)
+      call append_time(self, state%travel, ok)
+      call rewrite_attribute(self%step_count, [self%n_step + 1], ok)
+      call flush_hdf5(self%file, ok)
+      if (ok) then
+        self%n_step = self%n_step + 1
+      else
+        call give_up(self, error)
+      end if
+    end if
+    call share_error(error)
+  end subroutine fields_write
+
+  !> Append positions and fields.
+  subroutine append_values(self, model, state, ok)
+    type(field_record_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    logical, intent(inout) :: ok
+
+    real(wp), allocatable :: nodal(:, :), cell(:, :), strain(:, :, :)
+    integer :: i, i_cell
+
     call append(self%points, reshape(state%x, [size(state%x)]), ok)
     call evaluate_strains(model, state, strain)
     i_cell = 0
@@ -312,17 +343,7 @@ contains
       i_cell = i_cell + 1
       call append(self%at_cell(i_cell), reshape(cell, [size(cell)]), ok)
     end do
-    call append_step(self, state, ok)
-    call flush_hdf5(self%file, ok)
-    call append_time(self, state%travel, ok)
-    call rewrite_attribute(self%step_count, [self%n_step + 1], ok)
-    call flush_hdf5(self%file, ok)
-    if (ok) then
-      self%n_step = self%n_step + 1
-    else
-      call give_up(self, error)
-    end if
-  end subroutine fields_write
+  end subroutine append_values
 
   !> Reserve room for a step: a full disk is found before the file is touched.
   subroutine reserve_step(self, model, error)

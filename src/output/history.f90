@@ -56,11 +56,13 @@ contains
   end subroutine history_open
 
   !> Make the file with the rows of an earlier run up to a restart.
-  subroutine history_resume(self, model, state, source, directory, found, error)
+  subroutine history_resume(self, model, state, elastic, source, directory, found, error)
     class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> State of the restart.
     type(state_t), intent(in) :: state
+    !> Its elastic energy, mJ.
+    real(wp), intent(in) :: elastic
     !> Folders of the earlier results, and of the results.
     character(len=*), intent(in) :: source, directory
     !> The earlier rows are in the file; otherwise it begins with the heading alone.
@@ -75,7 +77,7 @@ contains
         state%history_increment, found, error)
     if (allocated(error) .or. .not. found) return
     if (state%history_increment >= state%increment) return
-    call fill_row(self%table, model, state)
+    call fill_row(self%table, model, state, elastic)
     call self%table%take_row(self%waiting)
   end subroutine history_resume
 
@@ -130,11 +132,13 @@ contains
 
   !> Write the row of a committed state if it is due; keep it otherwise, until the phase ends or the
   !> next row replaces it.
-  subroutine history_write(self, model, state, error)
+  subroutine history_write(self, model, state, elastic, error)
     class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Gets the increment of the last row written.
     type(state_t), intent(inout) :: state
+    !> Its elastic energy, mJ: the first rank does not hold all elements.
+    real(wp), intent(in) :: elastic
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
@@ -150,7 +154,7 @@ contains
     self%increment = state%increment
     self%phase = state%phase
     self%waiting = ""
-    call fill_row(self%table, model, state)
+    call fill_row(self%table, model, state, elastic)
     if (due) then
       call self%table%end_row(error)
       state%history_increment = state%increment
@@ -160,10 +164,12 @@ contains
   end subroutine history_write
 
   !> Fill the row of a state.
-  subroutine fill_row(table, model, state)
+  subroutine fill_row(table, model, state, elastic)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    !> Elastic energy, mJ.
+    real(wp), intent(in) :: elastic
     integer :: i
 
     call table%add_integer(state%increment)
@@ -180,7 +186,7 @@ contains
       call table%add_real(torque(model, state, i))
     end do
     if (allocated(model%history)) call add_set_values(table, model, state)
-    call add_forming_values(table, model, state)
+    call add_forming_values(table, model, state, elastic)
   end subroutine fill_row
 
   !> Add the quantities of the node sets to a row.

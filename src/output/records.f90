@@ -3,7 +3,9 @@
 !> the first writes them, and gives the others its errors.
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
-  use dd3_base_ranks, only : this_rank
+  use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : broadcast_integers, this_rank
+  use dd3_model_energy, only : elastic_energy
   use dd3_model_model, only : fields_increments, model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t
@@ -46,16 +48,19 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
+    real(wp) :: elastic
+
     self%directory = directory
     self%restart_increment = state%increment
+    elastic = elastic_energy(model, state)
     if (this_rank() == 0) then
       call self%history%open(model, directory, error)
       if (.not. allocated(error)) call self%status%open(directory, error)
       if (.not. allocated(error)) call self%fields%open(model, directory, error)
-      if (.not. allocated(error)) call self%history%write(model, state, error)
-      if (.not. allocated(error)) call write_fields(self, model, state, error)
+      if (.not. allocated(error)) call self%history%write(model, state, elastic, error)
     end if
     call share_error(error)
+    if (.not. allocated(error)) call write_fields(self, model, state, error)
     self%restart_fields = state%fields_increment
   end subroutine records_open
 
@@ -73,43 +78,49 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
+    real(wp) :: elastic
+    integer :: fields_lost(1)
+
     self%directory = directory
     self%restart_increment = state%increment
     lost = ""
-    if (this_rank() == 0) call resume_files(self, model, source, state, lost, error)
+    elastic = elastic_energy(model, state)
+    if (this_rank() == 0) call resume_files(self, model, source, state, elastic, lost, error)
     call share_error(error)
+    if (allocated(error)) return
+    fields_lost = merge(1, 0, index(lost, "fields") > 0)
+    call broadcast_integers(0, 1, fields_lost)
+    if (fields_lost(1) > 0) call write_fields(self, model, state, error)
+    ! In another folder, or from another file, a restart file there would not fit the records.
+    if (.not. allocated(error)) call save_state(self, model, state, error)
     self%restart_fields = state%fields_increment
   end subroutine records_resume
 
   !> Continue the files; see `records_resume`.
-  subroutine resume_files(self, model, source, state, lost, error)
+  subroutine resume_files(self, model, source, state, elastic, lost, error)
     type(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     character(len=*), intent(in) :: source
     type(state_t), intent(inout) :: state
+    !> Elastic energy of the state, mJ.
+    real(wp), intent(in) :: elastic
     character(len=:), allocatable, intent(inout) :: lost
     type(error_t), allocatable, intent(out) :: error
 
     logical :: found
 
-    call self%history%resume(model, state, source, self%directory, found, error)
+    call self%history%resume(model, state, elastic, source, self%directory, found, error)
     if (allocated(error)) return
     if (.not. found) then
       lost = lost//" history.csv"
-      call self%history%write(model, state, error)
+      call self%history%write(model, state, elastic, error)
     end if
     if (.not. allocated(error)) call self%status%resume(state, source, self%directory, found, &
         error)
     if (allocated(error)) return
     if (.not. found) lost = lost//" status.csv"
     call self%fields%resume(model, state, source, self%directory, found, error)
-    if (allocated(error)) return
-    if (.not. found) then
-      lost = lost//" fields.vtkhdf"
-      call write_fields(self, model, state, error)
-    end if
-    ! In another folder, or from another file, a restart file there would not fit the records.
-    if (.not. allocated(error)) call write_restart(self%directory, model, state, .false., error)
+    if (.not. (allocated(error) .or. found)) lost = lost//" fields.vtkhdf"
   end subroutine resume_files
 
   !> Add the row of an attempt to status.csv.
@@ -123,7 +134,7 @@ contains
     call share_error(error)
   end subroutine add_attempt
 
-  !> Write an accepted increment.
+  !> Write an accepted increment to the files that are due.
   subroutine write_increment(self, model, state, fields_due, error)
     class(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -134,21 +145,12 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    if (this_rank() == 0) call write_due(self, model, state, fields_due, error)
-    call share_error(error)
-  end subroutine write_increment
-
-  !> Write an accepted increment to the files that are due.
-  subroutine write_due(self, model, state, fields_due, error)
-    type(records_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    logical, intent(in) :: fields_due
-    type(error_t), allocatable, intent(out) :: error
-
+    real(wp) :: elastic
     logical :: due
 
-    call self%history%write(model, state, error)
+    elastic = elastic_energy(model, state)
+    if (this_rank() == 0) call self%history%write(model, state, elastic, error)
+    call share_error(error)
     if (allocated(error)) return
     due = fields_due
     if (model%output%fields == fields_increments) &
@@ -156,7 +158,7 @@ contains
     if (due) call write_fields(self, model, state, error)
     if (allocated(error)) return
     if (every(model%output%restart_every, state)) call save(self, model, state, error)
-  end subroutine write_due
+  end subroutine write_increment
 
   !> Whether an output of every n-th increment is due.
   pure logical function every(n, state)
@@ -177,19 +179,17 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    if (this_rank() == 0) then
-      call write_fields(self, model, state, error)
-      self%ended = state%phase == size(model%phase)
-      if (self%ended) self%restart_increment = -1
-      if (.not. allocated(error)) call save(self, model, state, error)
-    end if
-    call share_error(error)
+    call write_fields(self, model, state, error)
+    self%ended = state%phase == size(model%phase)
+    if (self%ended) self%restart_increment = -1
+    if (.not. allocated(error)) call save(self, model, state, error)
   end subroutine write_phase_end
 
-  !> Write the fields of a state.
+  !> Write the fields of a state that a restart keeps.
   subroutine write_fields(self, model, state, error)
     type(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> Gets the increment of the fields.
     type(state_t), intent(inout) :: state
     type(error_t), allocatable, intent(out) :: error
 
@@ -197,43 +197,43 @@ contains
     if (.not. allocated(error)) state%fields_increment = state%increment
   end subroutine write_fields
 
-  !> Write the restart file, once per increment and again when its fields have been written since;
-  !> the rows before it go to the disk first.
+  !> Write the restart file, once per increment and again when its fields have been written since.
   subroutine save(self, model, state, error)
     type(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. model%output%restart) return
     if (state%increment == self%restart_increment .and. &
         state%fields_increment == self%restart_fields) return
-    call self%history%flush(error)
-    if (.not. allocated(error)) call self%status%flush(error)
-    if (.not. allocated(error)) call write_restart(self%directory, model, state, self%ended, error)
+    call save_state(self, model, state, error)
     if (allocated(error)) return
     self%restart_increment = state%increment
     self%restart_fields = state%fields_increment
   end subroutine save
+
+  !> Write the restart file; the rows before it go to the disk first.
+  subroutine save_state(self, model, state, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    if (this_rank() == 0) call self%history%flush(error)
+    if (this_rank() == 0 .and. .not. allocated(error)) call self%status%flush(error)
+    call share_error(error)
+    if (.not. allocated(error)) &
+        call write_restart(self%directory, model, state, self%ended, error)
+  end subroutine save_state
 
   !> Write the last state and close the records. The fields of the last state are no output that was
   !> asked for: a restart drops them.
   subroutine records_close(self, model, state, error)
     class(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
     !> Reason of the end of the run; set if it is not yet and a record cannot be closed.
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (this_rank() == 0) call close_files(self, model, state, error)
-    call share_error(error)
-  end subroutine records_close
-
-  !> Close the files; see `records_close`.
-  subroutine close_files(self, model, state, error)
-    type(records_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(inout) :: error
 
     type(error_t), allocatable :: late
@@ -242,6 +242,17 @@ contains
     call keep_first(error, late)
     call self%fields%write(model, state, late)
     call keep_first(error, late)
+    if (this_rank() == 0) call close_files(self, error)
+    call share_error(error)
+  end subroutine records_close
+
+  !> Close the files.
+  subroutine close_files(self, error)
+    type(records_t), intent(inout) :: self
+    type(error_t), allocatable, intent(inout) :: error
+
+    type(error_t), allocatable :: late
+
     call self%history%close(late)
     call keep_first(error, late)
     call self%status%close(late)

@@ -3,14 +3,16 @@
 !> another run can take the sheet over (dd3_output_sheet_file). The file is written aside, synced
 !> and renamed, so that a run that is killed leaves the last whole one.
 module dd3_output_restart
-  use dd3_base_error, only : error_t, fatal_error
+  use dd3_base_error, only : error_t, fatal_error, share_error
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : part_of, replace_file, sync_file
   use dd3_base_kinds, only : wp, i8
+  use dd3_base_ranks, only : this_rank
   use dd3_base_text, only : join, newline, to_text
   use dd3_base_version, only : program_version
   use dd3_model_fingerprint, only : changed_parts, fingerprint_t, model_fingerprint
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : part_t
   use dd3_model_state, only : new_state, state_t
   use dd3_model_state_walk, only : state_visitor_t, visit_state
   use dd3_output_hdf5, only : integer_attribute, kind_int, kind_real, make_group, series_t, &
@@ -45,9 +47,12 @@ module dd3_output_restart
     !> Counts the bytes instead of writing them.
     logical :: counting = .false.
     integer(i8) :: bytes = 0
+    type(part_t) :: part
   contains
     procedure :: reals => write_reals
     procedure :: integers => write_integers
+    procedure :: reals_of_elements => write_reals_of_elements
+    procedure :: integers_of_elements => write_integers_of_elements
   end type writer_t
 
   !> Visitor that reads the components from a group.
@@ -55,9 +60,12 @@ module dd3_output_restart
     integer(hid_t) :: file = -1
     !> What is wrong with the first unreadable component; empty if none is.
     character(len=:), allocatable :: problem
+    type(part_t) :: part
   contains
     procedure :: reals => reader_reals
     procedure :: integers => reader_integers
+    procedure :: reals_of_elements => reader_reals_of_elements
+    procedure :: integers_of_elements => reader_integers_of_elements
   end type reader_t
 
 contains
@@ -67,40 +75,47 @@ contains
     !> Folder of the results.
     character(len=*), intent(in) :: directory
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    !> Only read, but handed to a visitor.
+    type(state_t), intent(inout) :: state
     !> Whether the state is the end of the last phase.
     logical, intent(in) :: ended
     !> Set if the file cannot be written; an older one is left as it is.
     type(error_t), allocatable, intent(out) :: error
 
     type(file_t) :: guard
-    type(state_t) :: copy
     type(writer_t) :: writer
     character(len=:), allocatable :: path
     type(error_t), allocatable :: ignored
 
     path = directory//"/"//restart_name
-    copy = state
+    writer%part = model%part
     writer%counting = .true.
-    call visit_state(copy, writer)
+    call visit_state(state, writer)
     call visit_mesh(model, ended, writer)
-    call guard%create(part_of(path), error)
-    if (allocated(error)) return
-    call guard%reserve(0_i8, writer%bytes + overhead, error)
+    if (this_rank() == 0) then
+      call guard%create(part_of(path), error)
+      if (.not. allocated(error)) call guard%reserve(0_i8, writer%bytes + overhead, error)
+    end if
+    call share_error(error)
     if (.not. allocated(error)) then
-      call write_content(part_of(path), model, ended, copy, writer%ok)
-      if (writer%ok) then
+      call write_content(part_of(path), model, ended, state, writer%ok)
+      if (this_rank() > 0) then
+        continue
+      else if (writer%ok) then
         call sync_file(guard)
         call replace_file(path, guard, error)
       else
         call guard%refuse("cannot write '"//path//"': the disk is full or cannot be reached", error)
       end if
     end if
-    call guard%release()
-    call guard%close(ignored)
+    if (this_rank() == 0) then
+      call guard%release()
+      call guard%close(ignored)
+    end if
+    call share_error(error)
   end subroutine write_restart
 
-  !> Write marks, fingerprint and state into a new file.
+  !> Write marks, fingerprint and state into a new file. The other ranks give their elements.
   subroutine write_content(path, model, ended, state, ok)
     character(len=*), intent(in) :: path
     type(model_t), intent(in) :: model
@@ -113,10 +128,15 @@ contains
     integer(hid_t) :: file, attribute
     integer :: status
 
+    ok = .true.
+    writer%part = model%part
+    if (this_rank() > 0) then
+      call visit_state(state, writer)
+      return
+    end if
     call start_hdf5(ok)
-    if (.not. ok) return
     call h5fcreate_f(path, H5F_ACC_TRUNC_F, file, status)
-    ok = status >= 0
+    ok = ok .and. status >= 0
     call text_attribute(file, "program", mark, ok)
     call integer_attribute(file, "format", [format_version], attribute, ok)
     if (ok) call h5aclose_f(attribute, status)
@@ -215,6 +235,7 @@ contains
 
     self%bytes = self%bytes + 8*int(n, i8)
     if (self%counting) return
+    if (this_rank() > 0) return
     call series%create(self%group, name, kind_real, 1, .false., max(1, n), self%ok)
     if (n > 0) call series%append_reals(values, self%ok)
     call series%close()
@@ -231,10 +252,49 @@ contains
 
     self%bytes = self%bytes + 4*int(n, i8)
     if (self%counting) return
+    if (this_rank() > 0) return
     call series%create(self%group, name, kind_int, 1, .false., max(1, n), self%ok)
     if (n > 0) call series%append_integers(values, self%ok)
     call series%close()
   end subroutine write_integers
+
+  !> Write real numbers of the elements of all ranks.
+  subroutine write_reals_of_elements(self, name, n, n_element, values)
+    class(writer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements of this rank.
+    integer, intent(in) :: n, n_element
+    real(wp), intent(inout) :: values(n, n_element)
+
+    real(wp), allocatable :: all(:, :)
+
+    if (self%counting) then
+      self%bytes = self%bytes + 8*size(self%part%owner, kind=i8)*int(n, i8)
+    else
+      call self%part%gather(n, values, all)
+      call self%reals(name, size(all), all)
+    end if
+  end subroutine write_reals_of_elements
+
+  !> Write integers of the elements of all ranks.
+  subroutine write_integers_of_elements(self, name, n, n_element, values)
+    class(writer_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements of this rank.
+    integer, intent(in) :: n, n_element
+    integer, intent(inout) :: values(n, n_element)
+
+    real(wp), allocatable :: all(:, :)
+    integer, allocatable :: number(:, :)
+
+    if (self%counting) then
+      self%bytes = self%bytes + 4*size(self%part%owner, kind=i8)*int(n, i8)
+    else
+      call self%part%gather(n, real(values, wp), all)
+      number = nint(all)
+      call self%integers(name, size(number), number)
+    end if
+  end subroutine write_integers_of_elements
 
   !> Read a restart file for a model.
   subroutine read_restart(path, model, state, error)
@@ -342,6 +402,7 @@ contains
 
     call new_state(state, model)
     reader%file = file
+    reader%part = model%part
     reader%problem = ""
     call visit_state(state, reader)
     if (len(reader%problem) > 0) call fatal_error(error, "'"//path//"': "//reader%problem, "E204")
@@ -396,6 +457,36 @@ contains
     call read_integers(self%file, "state/"//name, values, ok)
     if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
   end subroutine reader_integers
+
+  !> Read real numbers of the elements of this rank.
+  subroutine reader_reals_of_elements(self, name, n, n_element, values)
+    class(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements of this rank.
+    integer, intent(in) :: n, n_element
+    real(wp), intent(inout) :: values(n, n_element)
+
+    real(wp), allocatable :: all(:, :)
+
+    allocate (all(n, size(self%part%owner)), source=0.0_wp)
+    call self%reals(name, size(all), all)
+    values = all(:, self%part%element)
+  end subroutine reader_reals_of_elements
+
+  !> Read integers of the elements of this rank.
+  subroutine reader_integers_of_elements(self, name, n, n_element, values)
+    class(reader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    !> Number of values of an element, and of the elements of this rank.
+    integer, intent(in) :: n, n_element
+    integer, intent(inout) :: values(n, n_element)
+
+    integer, allocatable :: all(:, :)
+
+    allocate (all(n, size(self%part%owner)), source=0)
+    call self%integers(name, size(all), all)
+    values = all(:, self%part%element)
+  end subroutine reader_integers_of_elements
 
   !> Record a component of the wrong size.
   subroutine note_size(self, name, found, expected)

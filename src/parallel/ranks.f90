@@ -2,8 +2,9 @@
 !> Ranks by MPI, which PETSc starts.
 submodule (dd3_base_ranks) dd3_parallel_ranks
   use, intrinsic :: iso_c_binding, only : c_int
-  use mpi_f08, only : mpi_allreduce, mpi_bcast, mpi_character, mpi_comm_rank, mpi_comm_size, &
-      mpi_comm_world, mpi_double_precision, mpi_in_place, mpi_integer, mpi_max, mpi_reduce, mpi_sum
+  use mpi_f08, only : mpi_allreduce, mpi_alltoallv, mpi_bcast, mpi_character, mpi_comm_rank, &
+      mpi_comm_size, mpi_comm_world, mpi_double_precision, mpi_gatherv, mpi_in_place, mpi_integer, &
+      mpi_max, mpi_reduce, mpi_sum
   implicit none
 
   ! Of PETSc; the functions return an error code.
@@ -90,6 +91,35 @@ contains
   module procedure broadcast_text
     if (n_ranks() > 1) call mpi_bcast(text, len(text), mpi_character, rank, mpi_comm_world)
   end procedure broadcast_text
+
+  module procedure exchange_reals
+    if (n_ranks() == 1) then
+      receive(:n_receive(1)) = send(:n_send(1))
+    else
+      call mpi_alltoallv(send, n_send, offsets(n_send), mpi_double_precision, receive, n_receive, &
+          offsets(n_receive), mpi_double_precision, mpi_comm_world)
+    end if
+  end procedure exchange_reals
+
+  module procedure gather_reals
+    if (n_ranks() == 1) then
+      all(:n(1)) = own(:n(1))
+    else
+      call mpi_gatherv(own, n(this_rank() + 1), mpi_double_precision, all, n, offsets(n), &
+          mpi_double_precision, 0, mpi_comm_world)
+    end if
+  end procedure gather_reals
+
+  !> Return where the values of each rank begin, 0-based.
+  pure function offsets(n)
+    !> Number of values of each rank.
+    integer, intent(in) :: n(:)
+    integer :: offsets(size(n))
+
+    integer :: i
+
+    offsets = [(sum(n(:i - 1)), i=1, size(n))]
+  end function offsets
 
   !> Whether MPI is started: unit tests do without.
   logical function is_started()

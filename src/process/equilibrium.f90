@@ -6,6 +6,7 @@
 module dd3_process_equilibrium
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
@@ -203,16 +204,16 @@ contains
     class(equilibrium_t), intent(in) :: self
     real(wp) :: work
 
-    real(wp) :: force(3, self%model%n_node), by_element(self%model%n_element)
+    real(wp) :: force(3, self%model%n_node), inner(1)
     integer :: tool
 
     associate (model => self%model, problem => self%system%problem, step => self%step, &
         phase => self%model%phase(self%trial%phase))
       force = problem%residual &
           + model%nodal_contact_forces(self%trial%x, problem%contact_residual)
-      by_element = sum(self%system%enhanced%residual*step%enhanced, dim=1)
-      call self%system%partition%share_elements(size(by_element), by_element)
-      work = sum(force*step%x, mask=.not. phase%prescribed) + sum(by_element)
+      inner = sum(sum(self%system%enhanced%residual*step%enhanced, dim=1))
+      call sum_over_ranks(1, inner)
+      work = sum(force*step%x, mask=.not. phase%prescribed) + inner(1)
       do tool = 1, model%n_tool
         if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
             *dot_product(phase%direction(:, tool), step%tool(:, tool))

@@ -19,7 +19,6 @@ module dd3_process_increment
   use dd3_process_predictor, only : predict
   use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
   use dd3_process_work, only : add_work
-  use dd3_system_partition, only : share_state
   use dd3_system_linear_problem, only : linear_problem_t
   implicit none
   private
@@ -144,7 +143,6 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(state_t), intent(inout) :: committed
 
-    call share_state(stepper%system%partition, trial)
     call add_work(model, stepper%system%contact, committed, trial)
     call observe_passages(model, committed, trial)
     committed = trial

@@ -100,15 +100,15 @@ contains
 
     associate (n => real(model%element%n_node, wp), m => real(model%element%n_enhanced, wp))
       bytes = real_bytes*per_point*points(model) &
-          + real(model%n_element, wp)*(integer_bytes*n**2 + real_bytes*m*(3.0_wp*n + 4.0_wp))
+          + real(size(model%part%element), wp)*(integer_bytes*n**2 + real_bytes*m*(3.0_wp*n + 4.0_wp))
     end associate
   end function element_bytes
 
-  !> Return the number of integration points.
+  !> Return the number of integration points of this rank.
   pure real(wp) function points(model)
     type(model_t), intent(in) :: model
 
-    points = real(model%element%n_point, wp)*real(model%n_element, wp)
+    points = real(model%element%n_point, wp)*real(size(model%part%element), wp)
   end function points
 
   !> Return the size as text for the user.

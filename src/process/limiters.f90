@@ -124,21 +124,22 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: bound, largest(model%n_element)
-    integer :: e, point(model%n_element)
+    real(wp) :: bound, largest(size(model%part%element))
+    integer :: e, point(size(model%part%element))
 
+    if (size(largest) == 0) return
     associate (allowed => model%phase(state%phase)%limits%strain)
       if (.not. allowed%active) return
       bound = max(allowed%value/stepper%attempt%limit%r, &
           least_principal*sqrt(maxval(sum(stepper%prediction%strain**2, dim=1))))
       !$omp parallel do num_threads(model%element_threads()) private(e)
-      do e = 1, model%n_element
+      do e = 1, size(largest)
         call largest_strain(stepper%prediction%strain(:, :, e), bound, largest(e), point(e))
       end do
       !$omp end parallel do
       e = maxloc(largest, dim=1)
       if (largest(e) > bound) &
-          limit = limit_t(r=allowed%value/largest(e), element=e, point=point(e))
+          limit = limit_t(r=allowed%value/largest(e), element=model%part%element(e), point=point(e))
     end associate
   end function strain_limit
 
@@ -176,10 +177,12 @@ contains
 
     associate (allowed => model%phase(state%phase)%limits%rotation)
       if (.not. allowed%active) return
+      if (size(stepper%prediction%rotation) == 0) return
       place = maxloc(stepper%prediction%rotation)
       associate (largest => stepper%prediction%rotation(place(1), place(2)))
         if (largest <= 0.0_wp) return
-        limit = limit_t(r=allowed%value*pi/180.0_wp/largest, element=place(2), point=place(1))
+        limit = limit_t(r=allowed%value*pi/180.0_wp/largest, &
+            element=model%part%element(place(2)), point=place(1))
       end associate
     end associate
   end function rotation_limit
@@ -192,9 +195,10 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: inverse(2), bound(model%n_element)
-    integer :: e, point(model%n_element)
+    real(wp) :: inverse(2), bound(size(model%part%element))
+    integer :: e, point(size(model%part%element))
 
+    if (size(bound) == 0) return
     associate (limits => model%phase(state%phase)%limits)
       if (.not. (limits%stress_tangential%active .or. limits%stress_normal%active)) return
       inverse = 0.0_wp
@@ -202,12 +206,13 @@ contains
       if (limits%stress_normal%active) inverse(2) = 1.0_wp/limits%stress_normal%value
     end associate
     !$omp parallel do num_threads(model%element_threads()) private(e)
-    do e = 1, model%n_element
+    do e = 1, size(bound)
       call smallest_stress_bound(model, state, stepper, e, inverse, bound(e), point(e))
     end do
     !$omp end parallel do
     e = minloc(bound, dim=1)
-    if (point(e) > 0) limit = limit_t(r=bound(e), element=e, point=point(e))
+    if (point(e) > 0) &
+        limit = limit_t(r=bound(e), element=model%part%element(e), point=point(e))
   end function stress_limit
 
   !> Find the smallest bound by the stress at the points of an element.
@@ -215,6 +220,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(stepper_t), intent(in) :: stepper
+    !> Number in the part.
     integer, intent(in) :: e
     !> Inverse limits, tangential and normal; 0 for none.
     real(wp), intent(in) :: inverse(2)
@@ -227,7 +233,7 @@ contains
 
     smallest = huge(1.0_wp)
     point = 0
-    associate (material => model%material(model%material_of(e)))
+    associate (material => model%material(model%material_of(model%part%element(e))))
       do p = 1, model%element%n_point
         change = matmul(stepper%system%tangent(:, :, p, e), stepper%prediction%strain(:, p, e))
         magnitude = norm2(change)

@@ -12,14 +12,15 @@
 !> spacing**2/12 and the squares of their forces add.
 module dd3_process_norm
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_partition, only : holds_row
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_process_forces, only : evaluate_forces
   use dd3_system_linear_problem, only : unknowns_t
-  use dd3_system_partition, only : partition_t
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -112,7 +113,7 @@ contains
     type(system_t), intent(in) :: system
     type(residual_t), intent(out) :: found
 
-    real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares
+    real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares, inner(1)
     integer :: node, c, tool
 
     associate (phase => model%phase(trial%phase), problem => system%problem)
@@ -124,8 +125,9 @@ contains
       end do
       found%worst_node = maxloc(contribution, dim=1)
       found%worst = sqrt(max(contribution(found%worst_node), 0.0_wp))
-      sum_of_squares = sum(contribution) &
-          + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
+      inner = sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
+      call sum_over_ranks(1, inner)
+      sum_of_squares = sum(contribution) + inner(1)
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. trial%touches(tool)) &
             sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
@@ -150,10 +152,10 @@ contains
       scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2)
       if (force >= convergence_tolerance(phase)*scale .and. force < largest_round_off*scale) then
-        if (phase%mixed) then
-          round_off = attainable_residual(system%stiffness, trial%x, system%partition)
+        if (allocated(system%stiffness%value) .and. phase%mixed) then
+          round_off = attainable_residual(system%stiffness, trial%x)
         else
-          round_off = attainable_residual(system%reduced, trial%x, system%partition)
+          round_off = attainable_residual(system%matrix, trial%x)
         end if
         scale = max(scale, round_off/convergence_tolerance(phase))
       end if
@@ -162,32 +164,31 @@ contains
   end subroutine scale_norm
 
   !> Return the norm of the residual below which it is round-off, N.
-  function attainable_residual(stiffness, x, partition) result(residual)
+  function attainable_residual(stiffness, x) result(residual)
     !> Of the sheet; its first rows are those of the nodes, N/mm.
     type(block_matrix_t), intent(in) :: stiffness
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    type(partition_t), intent(in) :: partition
     real(wp) :: residual
 
-    real(wp) :: variance(3, size(x, 2)), square(1, size(x, 2))
+    real(wp) :: variance(3, size(x, 2)), square(1)
     integer :: node, k, i
 
     variance = spacing(x)**2/12.0_wp
     square = 0.0_wp
     do node = 1, size(x, 2)
+      if (.not. holds_row(stiffness, node)) cycle
       do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
         associate (neighbour => stiffness%column(k))
           if (neighbour > size(x, 2)) cycle
           do i = 1, 3
-            square(1, node) = square(1, node) &
-                + sum(stiffness%value(:, i, k)**2)*variance(i, neighbour)
+            square = square + sum(stiffness%value(:, i, k)**2)*variance(i, neighbour)
           end do
         end associate
       end do
     end do
-    call partition%share_nodes(square)
-    residual = multiple*sqrt(sum(square))
+    call sum_over_ranks(1, square)
+    residual = multiple*sqrt(square(1))
   end function attainable_residual
 
   !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has

@@ -4,6 +4,7 @@
 !> those on chosen supports and on tools.
 module dd3_process_phase_warnings
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
@@ -67,7 +68,7 @@ contains
 
     if (ended) then
       call notes%add_new("W105", until_warning(model%phase(state%phase), state))
-      call notes%add_new("W106", release_warning(model%phase(state%phase), state))
+      call notes%add_new("W106", release_warning(model, state))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
       if (state%phase == size(model%phase)) &
@@ -209,23 +210,26 @@ contains
 
   !> Return a warning if the sheet yields while forces of released tools fade: then the free shape
   !> depends on how they fade; empty otherwise.
-  function release_warning(phase, state) result(text)
-    type(phase_t), intent(in) :: phase
+  function release_warning(model, state) result(text)
+    type(model_t), intent(in) :: model
     !> State at the end of the phase.
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
-    real(wp) :: increase(size(state%plastic, 1), size(state%plastic, 2))
-    integer :: place(2)
+    real(wp) :: increase(model%n_element)
+    integer :: e
 
     text = ""
     if (all(abs(state%start%fading) <= 0.0_wp)) return
-    increase = state%internal_variables(1, :, :) - state%start%plastic_strain
-    place = maxloc(increase)
-    if (increase(place(1), place(2)) > notable_strain) text = "in phase '"// &
-        phase%name//"' the plastic strain of element "//to_text(place(2))//" increased by "// &
-        to_text(increase(place(1), place(2)), 3)//" while the forces of released tools faded; "// &
-        "compare with tools withdrawn by `move`"
+    increase = 0.0_wp
+    increase(model%part%element) = &
+        maxval(state%internal_variables(1, :, :) - state%start%plastic_strain, dim=1)
+    call sum_over_ranks(size(increase), increase)
+    e = maxloc(increase, dim=1)
+    if (increase(e) > notable_strain) text = "in phase '"// &
+        model%phase(state%phase)%name//"' the plastic strain of element "//to_text(e)// &
+        " increased by "//to_text(increase(e), 3)// &
+        " while the forces of released tools faded; compare with tools withdrawn by `move`"
   end function release_warning
 
   !> Return a warning if the energy balance at the end of a run is far from closed; empty otherwise.

@@ -23,7 +23,6 @@ module dd3_process_predictor
   use dd3_system_drawbead, only : place_beads
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_linear_problem, only : unknowns_t
-  use dd3_system_partition, only : partition_t
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
@@ -55,15 +54,16 @@ contains
     type(prediction_t), intent(out) :: self
     type(model_t), intent(in) :: model
 
-    integer :: n_point
+    integer :: n_point, n
 
     n_point = model%element%n_point
+    n = size(model%part%element)
     allocate (self%step%x(3, model%n_node), self%step%lambda(3, model%n_contact), &
-        self%step%enhanced(model%element%n_enhanced, model%n_element), &
+        self%step%enhanced(model%element%n_enhanced, n), &
         self%step%tool(3, model%n_tool), source=0.0_wp)
-    allocate (self%strain(6, n_point, model%n_element), source=0.0_wp)
-    allocate (self%rotation(n_point, model%n_element), source=0.0_wp)
-    allocate (self%plastic(n_point, model%n_element), source=.false.)
+    allocate (self%strain(6, n_point, n), source=0.0_wp)
+    allocate (self%rotation(n_point, n), source=0.0_wp)
+    allocate (self%plastic(n_point, n), source=.false.)
   end subroutine new_prediction
 
   !> Solve for the trial increment of the running phase.
@@ -77,6 +77,7 @@ contains
     !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
+    real(wp) :: counts(2)
     integer :: switch, switched
 
     associate (phase => model%phase(committed%phase), &
@@ -99,9 +100,11 @@ contains
         call system%profile%start()
         call read_step(system, model, committed, self%step)
         call point_increments(self, model, committed, system)
-        call switch_unloading(self, model, committed, system%partition, switched)
+        call switch_unloading(self, model, committed, switched)
         if (.not. unloading%active) exit
-        if (real(switched, wp) <= unloading%value*real(count(committed%plastic), wp)) exit
+        counts = real([switched, count(committed%plastic)], wp)
+        call sum_over_ranks(2, counts)
+        if (counts(1) <= unloading%value*counts(2)) exit
       end do
       where (spread(system%contact%status == status_gap, 1, 3)) self%step%lambda = 0.0_wp
     end associate
@@ -195,9 +198,8 @@ contains
     integer :: e, p
 
     !$omp parallel do num_threads(model%element_threads()) private(e, p)
-    do e = 1, model%n_element
-      if (.not. system%partition%evaluated(e)) cycle
-      associate (material => model%material(model%material_of(e)))
+    do e = 1, size(model%part%element)
+      associate (material => model%material(model%material_of(model%part%element(e))))
         do p = 1, model%element%n_point
           call material%continuum_tangent(committed%stress(:, p, e), &
               committed%internal_variables(:, p, e), self%plastic(p, e), system%tangent(:, :, p, e))
@@ -222,10 +224,9 @@ contains
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     !$omp do
-    do e = 1, model%n_element
-      if (.not. system%partition%evaluated(e)) cycle
-      associate (nodes => model%connectivity(:, e), element => model%element, &
-          work => system%element(thread))
+    do e = 1, size(model%part%element)
+      associate (nodes => model%connectivity(:, model%part%element(e)), &
+          element => model%element, work => system%element(thread))
         work%x_committed(:, :) = committed%x(:, nodes)
         work%enhanced(:) = self%step%enhanced(:, e)
         work%x_initial(:, :) = model%x0(:, nodes)
@@ -241,23 +242,21 @@ contains
   end subroutine point_increments
 
   !> Make plastic points elastic if the trial strain unloads them: V : C : D <= 0.
-  subroutine switch_unloading(self, model, committed, partition, switched)
+  subroutine switch_unloading(self, model, committed, switched)
     type(prediction_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
-    type(partition_t), intent(in) :: partition
-    !> Number of these points.
+    !> Number of these points in the part.
     integer, intent(out) :: switched
 
-    real(wp) :: direction(6), total(1)
+    real(wp) :: direction(6)
     integer :: e, p
 
     switched = 0
     !$omp parallel do num_threads(model%element_threads()) &
     !$omp& private(direction, e, p) reduction(+: switched)
-    do e = 1, model%n_element
-      if (.not. partition%evaluated(e)) cycle
-      associate (material => model%material(model%material_of(e)))
+    do e = 1, size(model%part%element)
+      associate (material => model%material(model%material_of(model%part%element(e))))
         do p = 1, model%element%n_point
           if (.not. self%plastic(p, e)) cycle
           direction = material%plastic_direction(committed%stress(:, p, e), &
@@ -265,14 +264,11 @@ contains
           if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
               self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.
-          if (partition%own_element(e)) switched = switched + 1
+          switched = switched + 1
         end do
       end associate
     end do
     !$omp end parallel do
-    total = real(switched, wp)
-    call sum_over_ranks(1, total)
-    switched = nint(total(1))
   end subroutine switch_unloading
 
 end module dd3_process_predictor

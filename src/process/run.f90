@@ -8,7 +8,7 @@ module dd3_process_run
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
   use dd3_base_message, only : message_list_t
-  use dd3_base_ranks, only : n_ranks
+  use dd3_base_ranks, only : largest_over_ranks, n_ranks
   use dd3_base_text, only : axis_name, to_text
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
@@ -32,7 +32,6 @@ module dd3_process_run
   use dd3_process_predictor, only : new_prediction
   use dd3_process_taken_over, only : balance_sheet
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
-  use dd3_system_partition, only : partition_report
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -70,7 +69,8 @@ contains
   !> stops before.
   subroutine run_model(model, start, solver, log, summary, error)
     type(model_t), intent(in) :: model
-    type(run_start_t), intent(in) :: start
+    !> Its state is released.
+    type(run_start_t), intent(inout) :: start
     !> Linear solver, as `find_job_size` returns it; moved into the run.
     class(linear_solver_t), allocatable, intent(inout) :: solver
     type(log_t), intent(inout) :: log
@@ -81,20 +81,22 @@ contains
     type(run_t) :: run
     character(len=:), allocatable :: note
     real(wp) :: began
-    integer :: number
+    integer :: number, stressed(1)
 
     began = wall_time()
     call set_threads(start%threads)
     run%committed = start%state
-    call summary%start(size(model%phase), start%state)
+    start%state = state_t()
+    call summary%start(size(model%phase), run%committed)
     run%summary = summary
     call new_system(run%stepper%system, model, solver_options(start), error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
-    if (run%stepper%system%partition%divided) &
-        call log%note(partition_report(run%stepper%system%partition))
+    if (model%part%divided) call log%note(model%part%report())
     call new_prediction(run%stepper%prediction, model)
-    if (.not. run%committed%begun .and. any(abs(run%committed%stress) > 0.0_wp)) then
+    stressed = merge(1, 0, any(abs(run%committed%stress) > 0.0_wp))
+    call largest_over_ranks(1, stressed)
+    if (.not. run%committed%begun .and. stressed(1) > 0) then
       call balance_sheet(model, run%stepper%system, run%committed, note, error)
       if (allocated(error)) return
       call log%report("N106", note)

@@ -7,6 +7,7 @@
 module dd3_system_drawbead
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_partition, only : holds_row
   use dd3_model_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -159,6 +160,7 @@ contains
     do p = 1, size(point)
       associate (this => point(p))
         do a = 1, size(this%node)
+          if (.not. holds_row(stiffness, this%node(a))) cycle
           do b = 1, size(this%node)
             k = position_of(stiffness, this%node(a), this%node(b))
             do i = 1, 3

@@ -30,7 +30,7 @@ contains
     type(enhanced_t), intent(out) :: self
     type(model_t), intent(in) :: model
 
-    associate (m => model%element%n_enhanced, n => model%n_element)
+    associate (m => model%element%n_enhanced, n => size(model%part%element))
       allocate (self%residual(m, n), self%offset(m, n), source=0.0_wp)
       allocate (self%gain(m, 3, model%element%n_node, n), source=0.0_wp)
       allocate (self%force(3, model%n_node), source=0.0_wp)
@@ -41,6 +41,7 @@ contains
   subroutine store_condensation(self, model, e, work)
     type(enhanced_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> Number in the part.
     integer, intent(in) :: e
     type(element_work_t), intent(in) :: work
 
@@ -49,7 +50,7 @@ contains
     self%offset(:, e) = work%enhanced_offset
     self%gain(:, :, :, e) = work%enhanced_gain
     do a = 1, model%element%n_node
-      associate (node => model%connectivity(a, e))
+      associate (node => model%connectivity(a, model%part%element(e)))
         self%force(:, node) = self%force(:, node) + work%condensed_force(:, a)
       end associate
     end do
@@ -68,9 +69,9 @@ contains
 
     increment = 0.0_wp
     if (size(increment) == 0) return
-    do e = 1, model%n_element
+    do e = 1, size(model%part%element)
       do a = 1, model%element%n_node
-        node = model%connectivity(a, e)
+        node = model%connectivity(a, model%part%element(e))
         do i = 1, 3
           increment(:, e) = increment(:, e) - self%gain(:, i, a, e)*solution(3*node - 3 + i)
         end do

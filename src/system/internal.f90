@@ -7,6 +7,7 @@
 module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear, copy_values
@@ -36,11 +37,10 @@ contains
 
     trial%internal_force = 0.0_wp
     call visit_elements(system, model, committed, .true., with_stiffness, verdict, trial)
-    call share_verdict(system%partition, verdict)
+    call share_verdict(verdict)
     if (verdict%outcome /= verdict_converged) return
-    call system%partition%share_nodes(trial%internal_force)
-    call system%partition%share_elements(size(system%enhanced%residual), system%enhanced%residual)
-    if (with_stiffness) call system%partition%share_nodes(system%enhanced%force)
+    call sum_over_ranks(size(trial%internal_force), trial%internal_force)
+    if (with_stiffness) call sum_over_ranks(size(system%enhanced%force), system%enhanced%force)
   end subroutine update_material
 
   !> Assemble the exact stiffness of the trial configuration from the tangents of the last update
@@ -55,10 +55,10 @@ contains
     type(verdict_t) :: verdict
 
     call visit_elements(system, model, committed, .false., .true., verdict, trial)
-    call system%partition%share_nodes(system%enhanced%force)
+    call sum_over_ranks(size(system%enhanced%force), system%enhanced%force)
   end subroutine assemble_stiffness
 
-  !> Update all elements, or set their workspaces, and add their stiffness.
+  !> Update the elements of this rank, or set their workspaces, and add their stiffness.
   subroutine visit_elements(system, model, committed, updates, with_stiffness, verdict, trial)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
@@ -74,7 +74,7 @@ contains
 
     verdict%outcome = verdict_converged
     if (with_stiffness) then
-      call clear(system%stiffness)
+      call clear(system%matrix)
       system%enhanced%force = 0.0_wp
     end if
     !$omp parallel num_threads(model%element_threads()) default(shared) &
@@ -86,7 +86,6 @@ contains
       do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
         batch = system%batches%coloured(k)
         do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
-          if (.not. system%partition%evaluated(e)) cycle
           mine%outcome = verdict_converged
           if (updates) then
             call update_element(model, committed, trial, e, system%element(thread), &
@@ -97,7 +96,8 @@ contains
           end if
           if (mine%outcome /= verdict_converged) then
             !$omp critical (failed_element)
-            if (verdict%outcome == verdict_converged .or. e < verdict%element) verdict = mine
+            if (verdict%outcome == verdict_converged .or. mine%element < verdict%element) &
+                verdict = mine
             !$omp end critical (failed_element)
           else if (with_stiffness) then
             call add_stiffness(system, model, e, system%element(thread))
@@ -114,6 +114,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
     type(state_t), intent(inout) :: trial
+    !> Number in the part.
     integer, intent(in) :: e
     !> Workspace; on return it holds all that the stiffness needs but the tangents.
     type(element_work_t), intent(inout) :: work
@@ -121,16 +122,17 @@ contains
     real(wp), intent(inout) :: tangent(:, :, :)
     type(verdict_t), intent(out) :: verdict
 
-    integer :: p, a
+    integer :: number, p, a
 
-    associate (nodes => model%connectivity(:, e), element => model%element, &
-        material => model%material(model%material_of(e)))
+    number = model%part%element(e)
+    associate (nodes => model%connectivity(:, number), element => model%element, &
+        material => model%material(model%material_of(number)))
       work%x_committed(:, :) = committed%x(:, nodes)
       work%x_trial(:, :) = trial%x(:, nodes)
       work%enhanced(:) = trial%enhanced(:, e)
       work%x_initial(:, :) = model%x0(:, nodes)
       call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
-      verdict%element = e
+      verdict%element = number
       if (verdict%outcome /= verdict_converged) return
       do p = 1, model%element%n_point
         associate (n => material%n_internal)
@@ -138,7 +140,7 @@ contains
               work%strain(:, p), trial%stress(:, p, e), trial%internal_variables(:n, p, e), &
               tangent(:, :, p), trial%plastic(p, e), verdict)
         end associate
-        verdict%element = e
+        verdict%element = number
         verdict%point = p
         if (verdict%outcome /= verdict_converged) return
       end do
@@ -155,6 +157,7 @@ contains
   !> Set the workspace of an element to its trial configuration, or to the committed one.
   subroutine set_element(model, e, work, committed, trial)
     type(model_t), intent(in) :: model
+    !> Number in the part.
     integer, intent(in) :: e
     !> Gets all that the stiffness needs but the tangents.
     type(element_work_t), intent(inout) :: work
@@ -164,11 +167,11 @@ contains
 
     type(verdict_t) :: verdict
 
-    work%x_committed(:, :) = committed%x(:, model%connectivity(:, e))
-    work%x_initial(:, :) = model%x0(:, model%connectivity(:, e))
-    associate (element => model%element)
+    associate (element => model%element, nodes => model%connectivity(:, model%part%element(e)))
+      work%x_committed(:, :) = committed%x(:, nodes)
+      work%x_initial(:, :) = model%x0(:, nodes)
       if (present(trial)) then
-        work%x_trial(:, :) = trial%x(:, model%connectivity(:, e))
+        work%x_trial(:, :) = trial%x(:, nodes)
         work%enhanced(:) = trial%enhanced(:, e)
         call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
         work%stress(:, :) = trial%stress(:, :, e)
@@ -184,13 +187,14 @@ contains
   subroutine add_stiffness(system, model, e, work)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
+    !> Number in the part.
     integer, intent(in) :: e
     !> Holds kinematics, strain, axes and stresses.
     type(element_work_t), intent(inout) :: work
 
     call copy_values(size(work%tangent), system%tangent(:, :, :, e), work%tangent)
     call model%element%evaluate_stiffness(model%element, work)
-    call add_element(system%stiffness, model%element%n_node, system%position(:, :, e), &
+    call add_element(system%matrix, model%element%n_node, system%position(:, :, e), &
         work%stiffness)
     if (model%element%n_enhanced > 0) call store_condensation(system%enhanced, model, e, work)
   end subroutine add_stiffness

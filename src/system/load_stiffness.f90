@@ -4,6 +4,7 @@
 module dd3_system_load_stiffness
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : position_of
+  use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
   use dd3_model_loads, only : face_stiffness, fading_factor, spring_stiffness
   use dd3_model_model, only : model_t
@@ -24,7 +25,7 @@ contains
     type(state_t), intent(in) :: state
 
     call add_pressure_stiffness(system, model, state)
-    call add_bead_stiffness(system%stiffness, system%bead)
+    call add_bead_stiffness(system%matrix, system%bead)
     call add_release_stiffness(system, model, state)
   end subroutine add_load_stiffness
 
@@ -40,11 +41,12 @@ contains
     do s = 1, size(state%pressure)
       if (.not. abs(state%pressure(s)) > 0.0_wp) cycle
       do f = 1, size(model%pressure_set(s)%node, 2)
-        associate (node => model%pressure_set(s)%node(:, f), value => system%stiffness%value)
+        associate (node => model%pressure_set(s)%node(:, f), value => system%matrix%value)
           stiffness = state%pressure(s)*face_stiffness(model%element, state%x(:, node))
           do a = 1, size(node)
+            if (.not. holds_row(system%matrix, node(a))) cycle
             do b = 1, size(node)
-              k = position_of(system%stiffness, node(a), node(b))
+              k = position_of(system%matrix, node(a), node(b))
               value(:, :, k) = value(:, :, k) - stiffness(:, :, a, b)
             end do
           end do
@@ -63,12 +65,13 @@ contains
     integer :: node, k
 
     do node = 1, model%n_node
+      if (.not. holds_row(system%matrix, node)) cycle
       associate (fading => state%start%fading(:, node))
         if (all(abs(fading) <= 0.0_wp)) cycle
         stiffness = fading_factor(state%progress) &
             *spring_stiffness(fading, model%thickness_at(node))
-        k = system%stiffness%diagonal(node)
-        system%stiffness%value(:, :, k) = system%stiffness%value(:, :, k) + stiffness*identity
+        k = system%matrix%diagonal(node)
+        system%matrix%value(:, :, k) = system%matrix%value(:, :, k) + stiffness*identity
       end associate
     end do
   end subroutine add_release_stiffness

@@ -1,110 +1,144 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Partition of the work among the ranks. Each evaluates the elements at the nodes whose rows it
-!> holds, so that these rows and the forces on these nodes are complete without an exchange;
-!> elements between the nodes of two ranks are evaluated by both, with the same result.
+!> Rows of the system among the ranks. Each rank adds its elements to the rows of their nodes; the
+!> rows of nodes that belong to another rank are sent there and added.
 module dd3_system_partition
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, largest_over_ranks, n_ranks, &
-      rank_of_smallest, sum_over_ranks, this_rank
-  use dd3_base_text, only : to_text
+  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, exchange_reals, &
+      largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible, &
       cause_ranks_differ
-  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_matrix, only : block_matrix_t, copy_values
   use dd3_model_model, only : model_t
-  use dd3_model_state, only : state_t
   implicit none
   private
-  public :: partition_t, new_partition, partition_report, share_state, share_verdict
+  public :: partition_t, new_partition, rows_held, share_verdict
 
-  !> Partition of the work.
+  !> Several lists in one array: that of rank i is `item(start(i):start(i + 1) - 1)`.
+  type :: lists_t
+    integer, allocatable :: start(:), item(:)
+  end type lists_t
+
+  !> Exchange of rows.
   type :: partition_t
     !> Whether there are several ranks.
     logical :: divided = .false.
-    !> Whether this rank holds each block row, `(n_row)`; whether it evaluates each element and is
-    !> the one that hands its results on, `(n_element)`.
-    logical, allocatable :: own_row(:), evaluated(:), own_element(:)
+    !> Rows of each rank to which this one adds, and rows of this rank to which each other one adds.
+    type(lists_t), private :: sent, received
   contains
-    procedure :: share_nodes
-    procedure :: share_elements
+    procedure :: complete_rows
     procedure :: check_agreement
   end type partition_t
 
 contains
 
-  !> Derive the partition from that of the rows.
-  subroutine new_partition(self, model, matrix)
+  !> Return the rows that this rank holds: those of its nodes and of the nodes of its elements, and
+  !> those of the pressed tools, to which all ranks add.
+  function rows_held(model, n_row) result(held)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: n_row
+    !> `(n_row)`.
+    logical, allocatable :: held(:)
+
+    integer :: rank
+
+    allocate (held(n_row), source=.true.)
+    if (.not. model%part%divided) return
+    rank = this_rank()
+    held(:model%n_node) = model%part%node_owner == rank
+    held(:model%n_node) = held(:model%n_node) .or. model%part%holds_node(model%connectivity, rank)
+  end function rows_held
+
+  !> Find the rows to be exchanged.
+  subroutine new_partition(self, model)
     type(partition_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    type(block_matrix_t), intent(in) :: matrix
 
-    integer :: e
+    logical, allocatable :: mine(:), theirs(:)
+    integer :: rank, this
 
-    self%divided = allocated(matrix%owner)
-    allocate (self%own_row(matrix%n), self%evaluated(model%n_element), &
-        self%own_element(model%n_element), source=.true.)
+    self%divided = model%part%divided
     if (.not. self%divided) return
-    self%own_row = matrix%owner == this_rank()
-    do e = 1, model%n_element
-      self%evaluated(e) = any(self%own_row(model%connectivity(:, e)))
-      self%own_element(e) = self%own_row(model%connectivity(1, e))
+    self%sent%start = [1]
+    self%received%start = [1]
+    allocate (self%sent%item(0), self%received%item(0))
+    this = this_rank()
+    mine = model%part%holds_node(model%connectivity, this)
+    do rank = 0, n_ranks() - 1
+      theirs = model%part%holds_node(model%connectivity, rank)
+      associate (owner => model%part%node_owner)
+        call add_list(self%sent, mine .and. owner == rank .and. rank /= this)
+        call add_list(self%received, theirs .and. owner == this .and. rank /= this)
+      end associate
     end do
   end subroutine new_partition
 
-  !> Return the numbers of elements of the ranks as text.
-  function partition_report(self) result(text)
-    type(partition_t), intent(in) :: self
-    character(len=:), allocatable :: text
+  !> Add the list of the rows marked.
+  subroutine add_list(lists, marked)
+    type(lists_t), intent(inout) :: lists
+    logical, intent(in) :: marked(:)
 
-    real(wp), allocatable :: counts(:)
     integer :: i
 
-    allocate (counts(n_ranks()), source=0.0_wp)
-    counts(this_rank() + 1) = real(count(self%evaluated), wp)
-    call sum_over_ranks(size(counts), counts)
-    text = to_text(n_ranks())//" ranks, which evaluate of "//to_text(size(self%evaluated))// &
-        " elements"
+    lists%item = [lists%item, pack([(i, i=1, size(marked))], marked)]
+    lists%start = [lists%start, size(lists%item) + 1]
+  end subroutine add_list
+
+  !> Add to the rows of this rank what the other ranks hold of them. The rows of other ranks are not
+  !> complete, and not to be used.
+  subroutine complete_rows(self, matrix)
+    class(partition_t), intent(in) :: self
+    type(block_matrix_t), intent(inout) :: matrix
+
+    real(wp), allocatable :: sent(:), received(:)
+    integer, allocatable :: n_sent(:), n_received(:)
+    integer :: i, n, at
+
+    if (.not. self%divided) return
+    n_sent = counts(self%sent, matrix)
+    n_received = counts(self%received, matrix)
+    allocate (sent(sum(n_sent)), received(sum(n_received)))
+    at = 1
+    do i = 1, size(self%sent%item)
+      associate (first => matrix%row_start(self%sent%item(i)))
+        n = 9*(matrix%row_start(self%sent%item(i) + 1) - first)
+        call copy_values(n, matrix%value(1, 1, first), sent(at))
+      end associate
+      at = at + n
+    end do
+    call exchange_reals(n_sent, sent, n_received, received)
+    at = 1
+    do i = 1, size(self%received%item)
+      associate (first => matrix%row_start(self%received%item(i)))
+        n = 9*(matrix%row_start(self%received%item(i) + 1) - first)
+        call add_values(n, received(at), matrix%value(1, 1, first))
+      end associate
+      at = at + n
+    end do
+  end subroutine complete_rows
+
+  !> Return the number of values in the rows of each rank's list.
+  pure function counts(lists, matrix)
+    type(lists_t), intent(in) :: lists
+    type(block_matrix_t), intent(in) :: matrix
+    integer :: counts(size(lists%start) - 1)
+
+    integer :: i
+
     do i = 1, size(counts)
-      text = text//" "//to_text(nint(counts(i)))
+      associate (row => lists%item(lists%start(i):lists%start(i + 1) - 1))
+        counts(i) = 9*sum(matrix%row_start(row + 1) - matrix%row_start(row))
+      end associate
     end do
-  end function partition_report
+  end function counts
 
-  !> Give all ranks the values at the nodes, each from the rank that holds its row.
-  subroutine share_nodes(self, values)
-    class(partition_t), intent(in) :: self
-    !> `(:, n_node)`; size 0 is allowed.
-    real(wp), intent(inout) :: values(:, :)
-
-    if (.not. self%divided .or. size(values) == 0) return
-    call share(size(values, 1), size(values, 2), self%own_row, values)
-  end subroutine share_nodes
-
-  !> Give all ranks the values of the elements, each from one rank that evaluates it.
-  subroutine share_elements(self, n, values)
-    class(partition_t), intent(in) :: self
-    !> Number of values.
+  !> Kernel: add values as one contiguous array, whatever its shape.
+  pure subroutine add_values(n, values, sum)
     integer, intent(in) :: n
-    !> Those of an element are consecutive.
-    real(wp), intent(inout) :: values(n)
+    real(wp), intent(in) :: values(n)
+    real(wp), intent(inout) :: sum(n)
 
-    if (.not. self%divided .or. n == 0) return
-    associate (n_element => size(self%own_element))
-      call share(n/n_element, n_element, self%own_element, values)
-    end associate
-  end subroutine share_elements
-
-  !> Give all ranks values in groups, of which each rank owns some.
-  subroutine share(n_value, n_group, own, values)
-    integer, intent(in) :: n_value, n_group
-    logical, intent(in) :: own(n_group)
-    real(wp), intent(inout) :: values(n_value, n_group)
-
-    integer :: i
-
-    do i = 1, n_group
-      if (.not. own(i)) values(:, i) = 0.0_wp
-    end do
-    call sum_over_ranks(size(values), values)
-  end subroutine share
+    sum = sum + values
+  end subroutine add_values
 
   !> Check that all ranks have the same value, to the bit: they have evaluated the contact of their
   !> copies of the same positions, and processors of different kinds can differ.
@@ -127,32 +161,15 @@ contains
     verdict%cause = cause_ranks_differ
   end subroutine check_agreement
 
-  !> Give all ranks the state at the integration points of all elements.
-  subroutine share_state(self, state)
-    type(partition_t), intent(in) :: self
-    type(state_t), intent(inout) :: state
-
-    real(wp), allocatable :: plastic(:, :)
-
-    if (.not. self%divided) return
-    call self%share_elements(size(state%stress), state%stress)
-    call self%share_elements(size(state%internal_variables), state%internal_variables)
-    call self%share_elements(size(state%orientation), state%orientation)
-    plastic = merge(1.0_wp, 0.0_wp, state%plastic)
-    call self%share_elements(size(plastic), plastic)
-    state%plastic = plastic > 0.5_wp
-  end subroutine share_state
-
   !> Give all ranks the verdict of the failed element with the lowest number; converged if none
   !> failed.
-  subroutine share_verdict(self, verdict)
-    type(partition_t), intent(in) :: self
+  subroutine share_verdict(verdict)
     type(verdict_t), intent(inout) :: verdict
 
     integer, allocatable :: bits(:)
     integer :: rank
 
-    if (.not. self%divided) return
+    if (n_ranks() == 1) return
     rank = rank_of_smallest(merge(1.0_wp, 0.0_wp, verdict%outcome == verdict_converged), &
         verdict%element)
     bits = transfer(verdict, [0])

@@ -11,7 +11,6 @@ module dd3_system_point_rows
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : position_of
-  use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity, inverse
   use dd3_model_contact_point, only : contact_point_t, most_point_nodes
   use dd3_model_model, only : model_t
@@ -27,7 +26,8 @@ module dd3_system_point_rows
 
 contains
 
-  !> Add the contributions of all points.
+  !> Add the contributions of all points to the right-hand side, and those of the points at the
+  !> elements of this rank to the matrix.
   subroutine add_points(system, model, phase, x)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
@@ -36,7 +36,7 @@ contains
     real(wp), intent(in) :: x(:, :)
 
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3), force(3)
-    integer :: c, tool
+    integer :: c, e, tool
 
     associate (contact => system%contact, problem => system%problem, point => model%contact_point)
       do c = 1, model%n_contact
@@ -53,10 +53,14 @@ contains
             force = force - matmul(stiffness, problem%tool_prescribed(:, tool))
         call point(c)%gradient(x, b)
         call add_force(point(c), b, -force, problem%rhs)
-        call add_stiffness(system, point(c), x, b, stiffness, contact%force(:, c))
+        if (phase%pressed(tool)) call add_to_balance(problem%rhs, model%tool_row(tool), &
+            phase%direction(:, tool), matmul(weight - identity, problem%contact_residual(:, c)))
+        e = model%part%place(point(c)%element)
+        if (e == 0) cycle
+        call add_stiffness(system, point(c), system%position(:, :, e), x, b, stiffness, &
+            contact%force(:, c))
         if (phase%pressed(tool)) call couple_tool(system, point(c), model%tool_row(tool), &
-            phase%direction(:, tool), b, stiffness, &
-            matmul(weight - identity, problem%contact_residual(:, c)))
+            phase%direction(:, tool), b, stiffness)
       end do
     end associate
   end subroutine add_points
@@ -79,9 +83,11 @@ contains
   end subroutine add_force
 
   !> Add B^T C B + G of a point to the matrix.
-  pure subroutine add_stiffness(system, point, x, b, stiffness, force)
+  pure subroutine add_stiffness(system, point, position, x, b, stiffness, force)
     type(system_t), intent(inout) :: system
     type(contact_point_t), intent(in) :: point
+    !> Of the blocks of its element.
+    integer, intent(in) :: position(:, :)
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     real(wp), intent(in) :: b(3, 3, most_point_nodes)
@@ -91,8 +97,7 @@ contains
     real(wp) :: block(3, 3, most_point_nodes, most_point_nodes), right(3, 3)
     integer :: i, j, k
 
-    associate (position => system%position(:, :, point%element), local => point%local, &
-        value => system%reduced%value)
+    associate (local => point%local, value => system%matrix%value)
       if (point%n_node == 1) then
         k = position(local(1), local(1))
         value(:, :, k) = value(:, :, k) + stiffness
@@ -110,9 +115,22 @@ contains
     end associate
   end subroutine add_stiffness
 
-  !> Couple a point with its pressed tool: the tool's displacement in the rows of the nodes; theirs,
-  !> its own and the force of the point in its force balance.
-  subroutine couple_tool(system, point, block, line, b, stiffness, force)
+  !> Add the force of a point to the right-hand side of the force balance of its pressed tool.
+  pure subroutine add_to_balance(rhs, block, line, force)
+    real(wp), intent(inout) :: rhs(:)
+    !> Block row of the tool.
+    integer, intent(in) :: block
+    !> Unit vector along the line of its motion, and the force of the point, N.
+    real(wp), intent(in) :: line(3), force(3)
+
+    associate (balance => rhs(3*(block - 1) + force_row(line)))
+      balance = balance - dot_product(line, force)
+    end associate
+  end subroutine add_to_balance
+
+  !> Couple a point with its pressed tool: the tool's displacement in the rows of the nodes; theirs
+  !> and its own in its force balance.
+  subroutine couple_tool(system, point, block, line, b, stiffness)
     type(system_t), intent(inout) :: system
     type(contact_point_t), intent(in) :: point
     !> Block row of the tool.
@@ -120,23 +138,20 @@ contains
     !> Unit vector along the line of its motion.
     real(wp), intent(in) :: line(3)
     real(wp), intent(in) :: b(3, 3, most_point_nodes)
-    !> C, N/mm, and the force of the point, N.
-    real(wp), intent(in) :: stiffness(3, 3), force(3)
+    !> C, N/mm.
+    real(wp), intent(in) :: stiffness(3, 3)
 
     integer :: i, k, row
 
     row = force_row(line)
-    associate (reduced => system%reduced, balance => system%problem%rhs(3*(block - 1) + row))
-      balance = balance - dot_product(line, force)
+    associate (reduced => system%matrix)
       do i = 1, point%n_node
-        if (.not. holds_row(reduced, point%node(i))) cycle
         k = position_of(reduced, point%node(i), block)
         reduced%value(:, :, k) = reduced%value(:, :, k) - matmul(transpose(b(:, :, i)), stiffness)
         call add_to_tool_row(reduced, block, row, point%node(i), &
             matmul(matmul(line, stiffness), b(:, :, i)))
       end do
-      if (holds_row(reduced, block)) &
-          call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
+      call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
     end associate
   end subroutine couple_tool
 

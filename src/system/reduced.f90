@@ -30,27 +30,41 @@ module dd3_system_reduced
 
 contains
 
-  !> Build the reduced matrix, of several ranks each its rows, and the right-hand side.
+  !> Make the assembled stiffness the reduced matrix, of several ranks each its rows, and build the
+  !> right-hand side.
   subroutine reduce(system, model, state)
-    !> With stiffness, contact, residuals and prescribed values at the state.
+    !> With stiffness, newly assembled, contact, residuals and prescribed values at the state.
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
     associate (phase => model%phase(state%phase), problem => system%problem)
-      call copy_blocks(system%stiffness, system%reduced)
+      if (phase%mixed) call keep_stiffness(system)
       problem%rhs(:3*model%n_node) = -reshape(problem%residual, [3*model%n_node])
       call start_tool_rows(system, model, phase)
       if (phase%mixed) then
         call reduce_nodes(system, model, phase)
       else
         call add_points(system, model, phase, state%x)
+        call system%partition%complete_rows(system%matrix)
       end if
       if (system%partition%divided) call share_tool_rows(system, model, phase)
       call finish_tool_rows(system, model, phase)
       call prescribe(system, phase)
     end associate
   end subroutine reduce
+
+  !> Complete the stiffness of the sheet and keep a copy.
+  subroutine keep_stiffness(system)
+    type(system_t), intent(inout) :: system
+
+    call system%partition%complete_rows(system%matrix)
+    if (allocated(system%stiffness%value)) then
+      call copy_blocks(system%matrix, system%stiffness)
+    else
+      system%stiffness = system%matrix
+    end if
+  end subroutine keep_stiffness
 
   !> Reduce the rows of all candidates in the mixed formulation.
   subroutine reduce_nodes(system, model, phase)
@@ -89,7 +103,7 @@ contains
     tool = system%contact%tool(c)
     block = model%tool_row(tool)
     pressed = phase%pressed(tool)
-    associate (problem => system%problem, reduced => system%reduced, &
+    associate (problem => system%problem, reduced => system%matrix, &
         line => phase%direction(:, tool), d => system%contact%d(:, :, c), &
         e => system%contact%e(:, :, c))
       remaining = identity - e
@@ -153,13 +167,15 @@ contains
 
     integer :: node, i
 
-    associate (reduced => system%reduced)
+    associate (reduced => system%matrix)
       do node = 1, size(phase%prescribed, 2)
+        system%problem%rhs(3*node - 2:3*node) = merge(system%problem%prescribed(:, node), &
+            system%problem%rhs(3*node - 2:3*node), phase%prescribed(:, node))
+        if (.not. holds_row(reduced, node)) cycle
         do i = 1, 3
           if (.not. phase%prescribed(i, node)) cycle
           reduced%value(i, :, reduced%row_start(node):reduced%row_start(node + 1) - 1) = 0.0_wp
           reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
-          system%problem%rhs(3*(node - 1) + i) = system%problem%prescribed(i, node)
         end do
       end do
     end associate

@@ -46,7 +46,7 @@ contains
     call system%profile%start()
     call reduce(system, model, state)
     call system%profile%add(section_assembly)
-    call system%solver%factor(system%reduced, verdict)
+    call system%solver%factor(system%matrix, verdict)
     call system%profile%add(section_factorisation)
     call add_perturbed(system%solver%perturbed, info%perturbed)
     if (verdict%outcome == verdict_converged) then

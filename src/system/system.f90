@@ -5,8 +5,7 @@ module dd3_system_system
   use dd3_base_clock, only : profile_t
   use dd3_base_error, only : error_t
   use dd3_base_threads, only : most_threads
-  use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions
-  use dd3_linalg_partition, only : distribute_rows
+  use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions, keep_rows
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_element_work, only : element_work_t, new_element_work
@@ -14,7 +13,7 @@ module dd3_system_system
   use dd3_model_model, only : model_t
   use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
-  use dd3_system_partition, only : new_partition, partition_t
+  use dd3_system_partition, only : new_partition, partition_t, rows_held
   use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
@@ -37,12 +36,15 @@ module dd3_system_system
 
   !> Data of assembly and solution.
   type :: system_t
-    !> Stiffness of the sheet, and the reduced matrix on the same pattern: of several ranks each
-    !> has the values of its rows.
-    type(block_matrix_t) :: stiffness, reduced
+    !> Matrix, with the rows that this rank holds: the stiffness of the sheet, once assembled, which
+    !> `reduce` makes the reduced matrix.
+    type(block_matrix_t) :: matrix
+    !> Stiffness of the sheet, from which the contact forces of the mixed formulation follow; kept in
+    !> its phases alone.
+    type(block_matrix_t) :: stiffness
     type(partition_t) :: partition
-    !> Position of the blocks of an element in the matrix, `(n_element_node, n_element_node,
-    !> n_element)`: row node, column node.
+    !> Position of the blocks of an element of the part in the matrix, `(n_element_node,
+    !> n_element_node, n_element)`: row node, column node.
     integer, allocatable :: position(:, :, :)
     !> Tangent of the material at the points, MPa, Kelvin, material frame, `(6, 6, n_point,
     !> n_element)`.
@@ -71,19 +73,15 @@ contains
     type(solver_options_t), intent(in) :: options
     !> Set if the solver is unknown.
     type(error_t), allocatable, intent(out) :: error
-    !> Solver of these options, set up for the pattern of the stiffness; moved to the system unless
-    !> the rows are divided among ranks.
+    !> Solver of these options, set up for the pattern of the stiffness; moved to the system.
     class(linear_solver_t), allocatable, intent(inout), optional :: solver
 
     integer :: i
 
-    call new_stiffness_pattern(self%stiffness, model)
-    call distribute_rows(self%stiffness)
-    call new_partition(self%partition, model, self%stiffness)
-    call find_positions(self%stiffness, model%connectivity, self%position)
-    self%stiffness%value(:, :, :) = 0.0_wp
-    self%reduced = self%stiffness
-    allocate (self%tangent(6, 6, model%element%n_point, model%n_element), source=0.0_wp)
+    call new_stiffness_pattern(self%matrix, model)
+    call new_partition(self%partition, model)
+    call find_positions(self%matrix, model%connectivity(:, model%part%element), self%position)
+    allocate (self%tangent(6, 6, model%element%n_point, size(model%part%element)), source=0.0_wp)
     call new_thread_choice(self%threads, most_threads())
     call new_batches(self%batches, model)
     allocate (self%element(self%threads%all))
@@ -96,11 +94,11 @@ contains
     call new_enhanced(self%enhanced, model)
     call new_contact_work(self%contact, model%n_contact)
     allocate (self%bead(0))
-    call new_linear_problem(self%problem, model, self%stiffness%n)
-    if (present(solver) .and. .not. self%partition%divided) call move_alloc(solver, self%solver)
+    call new_linear_problem(self%problem, model, self%matrix%n)
+    if (present(solver)) call move_alloc(solver, self%solver)
     if (allocated(self%solver)) return
     call new_linear_solver(self%solver, options, error)
-    if (.not. allocated(error)) call self%solver%setup(self%reduced)
+    if (.not. allocated(error)) call self%solver%setup(self%matrix)
   end subroutine new_system
 
   !> Colour the batches greedily in their order: two colours for a mesh numbered section by section.
@@ -109,10 +107,11 @@ contains
     type(model_t), intent(in) :: model
 
     logical, allocatable :: left(:), taken(:)
-    integer :: i, n, n_batch
+    integer :: i, n, n_batch, n_element
 
-    n_batch = (model%n_element + batch_size - 1)/batch_size
-    self%start = [(min(1 + i*batch_size, model%n_element + 1), i=0, n_batch)]
+    n_element = size(model%part%element)
+    n_batch = (n_element + batch_size - 1)/batch_size
+    self%start = [(min(1 + i*batch_size, n_element + 1), i=0, n_batch)]
     allocate (self%coloured(n_batch), left(n_batch), taken(model%n_node))
     left = .true.
     self%colour_start = [1]
@@ -121,7 +120,8 @@ contains
       taken = .false.
       do i = 1, n_batch
         if (.not. left(i)) cycle
-        associate (nodes => model%connectivity(:, self%start(i):self%start(i + 1) - 1))
+        associate (nodes => model%connectivity(:, &
+            model%part%element(self%start(i):self%start(i + 1) - 1)))
           if (any(taken(reshape(nodes, [size(nodes)])))) cycle
           taken(reshape(nodes, [size(nodes)])) = .true.
         end associate
@@ -134,7 +134,8 @@ contains
   end subroutine new_batches
 
   !> Build the pattern of the stiffness, with the rows of the pressed tools: each couples with its
-  !> candidates and their neighbours.
+  !> candidates and their neighbours. Of several ranks each has the rows that it holds; the rows of
+  !> the tools belong to the first rank.
   subroutine new_stiffness_pattern(stiffness, model)
     type(block_matrix_t), intent(out) :: stiffness
     type(model_t), intent(in) :: model
@@ -159,6 +160,9 @@ contains
       first = [first, size(coupled) + 1]
     end do
     call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
+    if (.not. model%part%divided) return
+    call keep_rows(stiffness, rows_held(model, stiffness%n))
+    stiffness%owner = [model%part%node_owner, (0, i=1, size(first) - 1)]
   end subroutine new_stiffness_pattern
 
 end module dd3_system_system

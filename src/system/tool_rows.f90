@@ -54,11 +54,11 @@ contains
 
     integer :: tool, block, row, i, k
 
-    associate (problem => system%problem, contact => system%contact, value => system%reduced%value)
+    associate (problem => system%problem, contact => system%contact, value => system%matrix%value)
       do tool = 1, model%n_tool
         block = model%tool_row(tool)
         if (block == 0) cycle
-        k = system%reduced%diagonal(block)
+        k = system%matrix%diagonal(block)
         if (.not. phase%pressed(tool)) then
           value(:, :, k) = identity
           problem%rhs(3*block - 2:3*block) = problem%tool_prescribed(:, tool)
@@ -95,9 +95,9 @@ contains
 
     do tool = 1, model%n_tool
       if (.not. phase%pressed(tool)) cycle
-      first = system%reduced%row_start(model%tool_row(tool))
-      last = system%reduced%row_start(model%tool_row(tool) + 1) - 1
-      call sum_over_ranks(9*(last - first + 1), system%reduced%value(:, :, first:last))
+      first = system%matrix%row_start(model%tool_row(tool))
+      last = system%matrix%row_start(model%tool_row(tool) + 1) - 1
+      call sum_over_ranks(9*(last - first + 1), system%matrix%value(:, :, first:last))
     end do
   end subroutine share_tool_rows
 

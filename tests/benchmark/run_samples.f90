@@ -171,7 +171,7 @@ contains
     longer(:n) = sample
     call move_alloc(longer, sample)
     associate (this => sample(n + 1), status => stepper%system%contact%status)
-      this%matrix = stepper%system%reduced
+      this%matrix = stepper%system%matrix
       this%b = stepper%system%problem%rhs
       write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') &
           n + 1, model%phase(state%phase)%name, state%travel, state%increment, part, &

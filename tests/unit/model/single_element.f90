@@ -5,6 +5,7 @@ module single_element
   use dd3_base_kinds, only : wp
   use dd3_element_registry, only : new_element
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : new_part
   use dd3_model_thickness_columns, only : set_columns
   implicit none
   private
@@ -36,6 +37,7 @@ contains
     model%n_node = model%element%n_node
     allocate (model%connectivity(model%n_node, 1))
     model%connectivity(:, 1) = [(a, a=1, model%n_node)]
+    call new_part(model%part, model%n_node, model%connectivity)
     allocate (model%x0(3, model%n_node))
     model%x0(1, :) = 0.5_wp*length*model%element%node(1, :)
     model%x0(2, :) = model%element%node(2, :)

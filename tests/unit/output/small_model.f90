@@ -13,6 +13,7 @@ module small_model
   use dd3_material_material, only : new_material
   use dd3_model_contact_point, only : node_point
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : new_part
   use dd3_model_rim, only : set_rim
   use dd3_model_state, only : state_t, new_state
   use dd3_model_thickness_columns, only : set_columns
@@ -70,6 +71,7 @@ contains
       model%connectivity(:, k + 1) = [node(0, 0, k), node(1, 0, k), node(1, 1, k), node(0, 1, k), &
           node(0, 0, k + 1), node(1, 0, k + 1), node(1, 1, k + 1), node(0, 1, k + 1)]
     end do
+    call new_part(model%part, model%n_node, model%connectivity)
     call set_columns(model)
     call set_rim(model)
     criterion%name = "von_mises"
