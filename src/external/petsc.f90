@@ -13,7 +13,8 @@ module dd3_external_petsc
       vec_destroy
   public :: ksp_create, ksp_set_options_prefix, ksp_set_from_options, ksp_set_operators, &
       ksp_set_initial_guess_nonzero, ksp_set_up, ksp_solve, ksp_get_converged_reason, &
-      ksp_get_iteration_number, ksp_destroy
+      ksp_get_iteration_number, ksp_get_pc, ksp_destroy
+  public :: pc_factor_get_matrix, mat_mumps_set_icntl, mat_mumps_get_infog
 
   !> Communicator of all ranks; a pointer in Open MPI, which the configuration checks.
   integer(c_intptr_t), bind(c, name="PETSC_COMM_WORLD") :: petsc_comm_world
@@ -186,6 +187,35 @@ module dd3_external_petsc
       type(c_ptr), value :: solver
       integer(c_int), intent(out) :: iterations
     end function ksp_get_iteration_number
+
+    integer(c_int) function ksp_get_pc(solver, preconditioner) bind(c, name="KSPGetPC")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: solver
+      type(c_ptr), intent(out) :: preconditioner
+    end function ksp_get_pc
+
+    !> Get the factors.
+    integer(c_int) function pc_factor_get_matrix(preconditioner, factors) &
+        bind(c, name="PCFactorGetMatrix")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: preconditioner
+      type(c_ptr), intent(out) :: factors
+    end function pc_factor_get_matrix
+
+    integer(c_int) function mat_mumps_set_icntl(factors, position, value) &
+        bind(c, name="MatMumpsSetIcntl")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: factors
+      integer(c_int), value :: position, value
+    end function mat_mumps_set_icntl
+
+    integer(c_int) function mat_mumps_get_infog(factors, position, value) &
+        bind(c, name="MatMumpsGetInfog")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: factors
+      integer(c_int), value :: position
+      integer(c_int), intent(out) :: value
+    end function mat_mumps_get_infog
 
     integer(c_int) function ksp_destroy(solver) bind(c, name="KSPDestroy")
       import :: c_int, c_ptr

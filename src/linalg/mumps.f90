@@ -14,7 +14,10 @@ module dd3_linalg_mumps
   use dd3_linalg_preconditioner, only : perturbed_pivots_t, preconditioner_t
   implicit none
   private
-  public :: mumps_t
+  public :: mumps_t, mumps_verdict, needs_workspace
+  public :: icntl_permutation, icntl_scaling, icntl_workspace, icntl_null_pivots, &
+      cntl_null_pivot, null_pivot, infog_status, infog_argument, infog_null_pivots, &
+      first_workspace, more_workspace, most_workspace
 
   !> MUMPS's jobs.
   integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factorise = 2, &
@@ -81,7 +84,7 @@ contains
         library%job = job_analyse
         call dmumps(library)
       end if
-      call set_verdict(library, self%analysis)
+      self%analysis = mumps_verdict(library%infog(infog_status), library%infog(infog_argument))
     end associate
   end subroutine mumps_setup
 
@@ -147,11 +150,10 @@ contains
         call copy_values(size(matrix%value), matrix%value, library%a)
         library%job = job_factorise
         call dmumps(library)
-        if (all(library%infog(infog_status) /= error_workspace)) exit
-        if (library%icntl(icntl_workspace) >= most_workspace) exit
+        if (.not. needs_workspace(library%infog(infog_status), library%icntl(icntl_workspace))) exit
         library%icntl(icntl_workspace) = more_workspace*library%icntl(icntl_workspace)
       end do
-      call set_verdict(library, verdict)
+      verdict = mumps_verdict(library%infog(infog_status), library%infog(infog_argument))
       self%perturbed = perturbed_pivots_t()
       if (verdict%outcome /= verdict_converged .or. library%infog(infog_null_pivots) == 0) return
       associate (row => library%pivnul_list(1) - 1)
@@ -161,28 +163,34 @@ contains
     end associate
   end subroutine mumps_build
 
+  !> Whether a factorisation failed as its workspace was too small, and can have more.
+  pure logical function needs_workspace(status, workspace)
+    !> Of `infog` and `icntl`.
+    integer, intent(in) :: status, workspace
+
+    needs_workspace = any(status == error_workspace) .and. workspace < most_workspace
+  end function needs_workspace
+
   !> Translate MUMPS's status.
-  subroutine set_verdict(library, verdict)
-    type(dmumps_struc), intent(in) :: library
-    type(verdict_t), intent(out) :: verdict
+  type(verdict_t) function mumps_verdict(status, argument) result(verdict)
+    !> Of `infog`.
+    integer, intent(in) :: status, argument
 
     verdict%outcome = verdict_converged
-    associate (status => library%infog(infog_status))
-      if (status >= 0) return
-      verdict%outcome = verdict_retry
-      if (any(status == error_singular)) then
-        verdict%cause = cause_singular
-        verdict%detail = "the matrix is singular"
-      else if (any(status == error_memory) .or. any(status == error_workspace)) then
-        verdict%cause = cause_solver_memory
-        verdict%detail = "not enough memory for MUMPS"
-      else
-        verdict%cause = cause_solver
-        verdict%detail = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &
-            to_text(library%infog(infog_argument))
-      end if
-    end associate
-  end subroutine set_verdict
+    if (status >= 0) return
+    verdict%outcome = verdict_retry
+    if (any(status == error_singular)) then
+      verdict%cause = cause_singular
+      verdict%detail = "the matrix is singular"
+    else if (any(status == error_memory) .or. any(status == error_workspace)) then
+      verdict%cause = cause_solver_memory
+      verdict%detail = "not enough memory for MUMPS"
+    else
+      verdict%cause = cause_solver
+      verdict%detail = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &
+          to_text(argument)
+    end if
+  end function mumps_verdict
 
   !> Solve L U z = r; z is zero without factors.
   subroutine mumps_apply(self, r, z)

@@ -25,6 +25,8 @@ module dd3_linalg_scaled_system
     integer, allocatable :: source(:)
     !> First and last block row of the copy that this rank holds.
     integer :: first = 1, last = 0
+    !> Whether the copy has values; without them only the factors of the rows are set.
+    logical :: has_values = .true.
   contains
     procedure :: setup => scaled_system_setup
     procedure :: fill => scaled_system_fill
@@ -36,7 +38,7 @@ contains
 
   !> Build the pattern of the copy, with the rows of this rank.
   subroutine scaled_system_setup(self, matrix, order)
-    class(scaled_system_t), intent(out) :: self
+    class(scaled_system_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
     !> Original number of each block row of the copy.
     integer, intent(in) :: order(:)
@@ -50,13 +52,14 @@ contains
       if (holds_row(matrix, i)) n_block = n_block + matrix%row_start(i + 1) - matrix%row_start(i)
     end do
     self%order = order
+    self%matrix = block_matrix_t()
     if (allocated(matrix%owner)) self%matrix%owner = matrix%owner(order)
-    allocate (rank(n), self%source(n_block), self%scale(3, n))
-    allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n))
-    allocate (self%matrix%column(n_block), self%matrix%value(3, 3, n_block))
+    if (allocated(self%source)) deallocate (self%source, self%scale)
+    allocate (rank(n), self%source(n_block))
+    allocate (self%scale(3, n), source=1.0_wp)
+    allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n), self%matrix%column(n_block))
+    allocate (self%matrix%value(3, 3, merge(n_block, 0, self%has_values)), source=0.0_wp)
     self%matrix%n = n
-    self%matrix%value = 0.0_wp
-    self%scale = 1.0_wp
     rank(order) = [(i, i=1, n)]
     next = 1
     do i = 1, n
@@ -108,7 +111,7 @@ contains
 
     associate (copy => self%matrix)
       call scale_rows(copy%n, size(copy%column), self%first, self%last, copy%row_start, &
-          self%source, matrix%value, copy%value, self%scale, bad_row)
+          self%source, self%has_values, matrix%value, copy%value, self%scale, bad_row)
     end associate
     if (allocated(matrix%owner)) call share_scale(self, bad_row)
     verdict%outcome = verdict_converged
@@ -139,11 +142,14 @@ contains
 
   !> Kernel: copy and scale the blocks of all rows that are not bad; see `scaled_system_t` for the
   !> arrays.
-  subroutine scale_rows(n, n_block, first, last, row_start, source, from, to, scale, bad_row)
+  subroutine scale_rows(n, n_block, first, last, row_start, source, copies, from, to, scale, &
+      bad_row)
     integer, intent(in) :: n, n_block, first, last, row_start(n + 1), source(n_block)
+    !> Whether the copy has values.
+    logical, intent(in) :: copies
     !> Blocks of the original and of the copy.
-    real(wp), intent(in) :: from(3, 3, n_block)
-    real(wp), intent(inout) :: to(3, 3, n_block), scale(3, n)
+    real(wp), intent(in) :: from(3, 3, *)
+    real(wp), intent(inout) :: to(3, 3, *), scale(3, n)
     !> First block row with a scalar row that is zero or not finite; 0 if there is none.
     integer, intent(out) :: bad_row
 
@@ -172,6 +178,7 @@ contains
       if (bad_row <= i) cycle
       a = 1.0_wp/a
       scale(:, i) = a
+      if (.not. copies) cycle
       do k = row_start(i), row_start(i + 1) - 1
         m = source(k)
         to(:, 1, k) = a*from(:, 1, m)

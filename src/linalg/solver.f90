@@ -66,7 +66,9 @@ module dd3_linalg_solver
     !> `factor` in that of the matrix.
     type(perturbed_pivots_t) :: perturbed = perturbed_pivots_t()
     !> Renumbered and scaled copy of the system.
-    type(scaled_system_t), private :: system
+    type(scaled_system_t) :: system
+    !> The matrix, in `factor_scaled`: for a solver whose copy has no values.
+    type(block_matrix_t), pointer :: original => null()
     !> Right-hand side and solution in its numbering, `(3n)`.
     real(wp), allocatable, private :: scaled_b(:), scaled_x(:)
   contains
@@ -141,14 +143,16 @@ contains
   !> Copy, scale and factorise a matrix of the pattern set up.
   subroutine factor(self, matrix, verdict)
     class(linear_solver_t), intent(inout) :: self
-    type(block_matrix_t), intent(in) :: matrix
+    type(block_matrix_t), intent(in), target :: matrix
     !> Retry if the matrix is singular or not finite; `node` is a block row, if one is to blame.
     type(verdict_t), intent(out) :: verdict
 
     self%method = ""
     self%perturbed = perturbed_pivots_t()
     call self%system%fill(matrix, verdict)
+    self%original => matrix
     if (verdict%outcome == verdict_converged) call self%factor_scaled(self%system%matrix, verdict)
+    self%original => null()
     associate (order => self%system%order, row => self%perturbed%row)
       if (verdict%node > 0) verdict%node = order(verdict%node)
       if (row > 0) row = order(row)

@@ -10,13 +10,19 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_external_blas_threads, only : use_one_blas_thread
   use dd3_external_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
-      ksp_get_iteration_number, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
+      ksp_get_iteration_number, ksp_get_pc, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
       ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
-      mat_create_baij, mat_create_vecs, mat_destroy, mat_residual, mat_set_values_blocked, norm_2, &
-      petsc_comm_world, set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, &
-      vec_get_values, vec_norm, vec_set_values
+      mat_create_baij, mat_create_vecs, mat_destroy, mat_mumps_get_infog, mat_mumps_set_icntl, &
+      mat_residual, mat_set_values_blocked, norm_2, pc_factor_get_matrix, petsc_comm_world, &
+      set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, vec_get_values, &
+      vec_norm, vec_set_values
+  use dd3_linalg_dense, only : dgemm
   use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_mumps, only : cntl_null_pivot, first_workspace, icntl_null_pivots, &
+      icntl_permutation, icntl_scaling, icntl_workspace, infog_argument, infog_null_pivots, &
+      infog_status, more_workspace, mumps_verdict, needs_workspace, null_pivot
   use dd3_linalg_partition, only : own_rows
+  use dd3_linalg_preconditioner, only : perturbed_pivots_t
   use dd3_linalg_solver, only : solver_report_t
   implicit none
 
@@ -36,6 +42,8 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
     character(len=16) :: name = ""
     !> Whether it iterates.
     logical :: iterative = .false.
+    !> MUMPS's additional workspace, per cent.
+    integer :: workspace = first_workspace
     !> Matrix, Krylov solver, right-hand side, solution and residual; null until a matrix is
     !> factorised.
     type(c_ptr) :: a = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, x = c_null_ptr, r = c_null_ptr
@@ -72,6 +80,7 @@ contains
     made%options = options
     made%name = name
     made%iterative = iterative
+    made%system%has_values = .false.
     call move_alloc(made, solver)
   end subroutine make_solver
 
@@ -96,15 +105,51 @@ contains
     type(block_matrix_t), intent(in) :: matrix
     type(verdict_t), intent(out) :: verdict
 
+    integer(c_int) :: ignored
+
     if (.not. c_associated(self%a)) call create_objects(self, matrix)
-    call insert_rows(self, matrix)
     self%method = self%name
-    verdict%outcome = verdict_converged
-    if (ksp_set_up(self%ksp) == 0) return
-    verdict%outcome = verdict_retry
-    verdict%cause = cause_solver
-    verdict%detail = "PETSc could not factorise the matrix"
+    do
+      call insert_rows(self, matrix)
+      ignored = ksp_set_operators(self%ksp, self%a, self%a)
+      if (ksp_set_up(self%ksp) /= 0) then
+        verdict%outcome = verdict_retry
+        verdict%cause = cause_solver
+        verdict%detail = "PETSc could not factorise the matrix"
+        return
+      end if
+      verdict%outcome = verdict_converged
+      if (self%iterative) return
+      if (.not. needs_workspace(infog(self, infog_status), self%workspace)) exit
+      self%workspace = more_workspace*self%workspace
+      ignored = mat_mumps_set_icntl(factors(self), int(icntl_workspace, c_int), &
+          int(self%workspace, c_int))
+    end do
+    verdict = mumps_verdict(infog(self, infog_status), infog(self, infog_argument))
+    self%perturbed = perturbed_pivots_t(blocks=infog(self, infog_null_pivots))
   end subroutine petsc_solver_factor
+
+  !> Return MUMPS's factors.
+  type(c_ptr) function factors(self)
+    type(petsc_solver_t), intent(in) :: self
+
+    type(c_ptr) :: preconditioner
+    integer(c_int) :: ignored
+
+    ignored = ksp_get_pc(self%ksp, preconditioner)
+    ignored = pc_factor_get_matrix(preconditioner, factors)
+  end function factors
+
+  !> Return a value of MUMPS's `infog`.
+  integer function infog(self, position)
+    type(petsc_solver_t), intent(in) :: self
+    integer, intent(in) :: position
+
+    integer(c_int) :: value, ignored
+
+    ignored = mat_mumps_get_infog(factors(self), int(position, c_int), value)
+    infog = int(value)
+  end function infog
 
   !> Create PETSc's objects for a pattern.
   subroutine create_objects(self, matrix)
@@ -117,6 +162,7 @@ contains
 
     call start_ranks()
     call use_one_blas_thread()
+    call reserve_blas_buffer()
     call own_rows(matrix, first, last)
     allocate (near(first:last), far(first:last))
     do i = first, last
@@ -135,9 +181,23 @@ contains
     call set_options(self)
     ignored = ksp_create(petsc_comm_world, self%ksp)
     ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
-    ignored = ksp_set_operators(self%ksp, self%a, self%a)
     ignored = ksp_set_from_options(self%ksp)
   end subroutine create_objects
+
+  !> Let OpenBLAS allocate its buffer. In a factorisation it would wait for the memory for ever; here
+  !> the program ends if there is none.
+  subroutine reserve_blas_buffer()
+    !> Size of the buffer, in reals, and of a product that is not too small for it.
+    integer, parameter :: buffer_size = 134300000/8, n = 64
+    real(wp), allocatable :: buffer(:)
+
+    ! The array makes room for the buffer: it is freed before the product.
+    allocate (buffer(buffer_size))
+    deallocate (buffer)
+    allocate (buffer(3*n**2), source=0.0_wp)
+    call dgemm("n", "n", n, n, n, 1.0_wp, buffer, n, buffer(n**2 + 1), n, 0.0_wp, &
+        buffer(2*n**2 + 1), n)
+  end subroutine reserve_blas_buffer
 
   !> Set the options of the solver.
   subroutine set_options(self)
@@ -150,8 +210,12 @@ contains
       call set_option(prefix//"ksp_type", "preonly")
       call set_option(prefix//"pc_type", "lu")
       call set_option(prefix//"pc_factor_mat_solver_type", "mumps")
-      ! Workspace beyond the estimate, which pivoting exceeds, per cent.
-      call set_option(prefix//"mat_mumps_icntl_14", "80")
+      prefix = prefix//"mat_mumps_"
+      call set_option(prefix//"icntl_"//to_text(icntl_permutation), "0")
+      call set_option(prefix//"icntl_"//to_text(icntl_scaling), "0")
+      call set_option(prefix//"icntl_"//to_text(icntl_workspace), to_text(self%workspace))
+      call set_option(prefix//"icntl_"//to_text(icntl_null_pivots), "1")
+      call set_option(prefix//"cntl_"//to_text(cntl_null_pivot), to_text(null_pivot))
       return
     end if
     call set_option(prefix//"ksp_type", "bcgs")
@@ -163,7 +227,7 @@ contains
     call set_option(prefix//"sub_pc_factor_levels", to_text(self%options%ilu_level))
   end subroutine set_options
 
-  !> Hand the own rows to PETSc.
+  !> Scale the own rows and hand them to PETSc, which holds the only copy.
   subroutine insert_rows(self, matrix)
     type(petsc_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
@@ -179,7 +243,8 @@ contains
         if (allocated(row)) deallocate (row)
         allocate (row(3, to - from + 1, 3))
         do j = 1, 3
-          row(:, :, j) = matrix%value(j, :, from:to)
+          row(:, :, j) = self%system%scale(j, i)*self%original%value(j, :, &
+              self%system%source(from:to))
         end do
         ignored = mat_set_values_blocked(self%a, 1_c_int, [int(i - 1, c_int)], &
             int(to - from + 1, c_int), int(matrix%column(from:to) - 1, c_int), row, insert_values)

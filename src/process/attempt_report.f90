@@ -3,6 +3,7 @@
 !> first remedy to try. docs/status.md contains the remedies; a test compares them.
 module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : n_ranks
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
@@ -28,6 +29,7 @@ module dd3_process_attempt_report
   character(len=*), parameter :: surface_remedy = "a surface of the tool that continues beyond "// &
       "this edge"
   character(len=*), parameter :: memory_remedy = "method = cgs in *SOLVER"
+  character(len=*), parameter :: ranks_remedy = "more processes, method = petsc_bicgstab in *SOLVER"
   character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
       "stop rigid motion"
   character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
@@ -223,6 +225,7 @@ contains
       remedy = motion_remedy
     case (cause_solver_memory)
       remedy = memory_remedy
+      if (n_ranks() > 1) remedy = ranks_remedy
     case (cause_singular)
       remedy = support_remedy
     case (cause_solver)

@@ -100,7 +100,8 @@ contains
 
     associate (n => real(model%element%n_node, wp), m => real(model%element%n_enhanced, wp))
       bytes = real_bytes*per_point*points(model) &
-          + real(size(model%part%element), wp)*(integer_bytes*n**2 + real_bytes*m*(3.0_wp*n + 4.0_wp))
+          + real(size(model%part%element), wp) &
+          *(integer_bytes*n**2 + real_bytes*m*(3.0_wp*n + 4.0_wp))
     end associate
   end function element_bytes
 

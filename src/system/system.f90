@@ -39,8 +39,8 @@ module dd3_system_system
     !> Matrix, with the rows that this rank holds: the stiffness of the sheet, once assembled, which
     !> `reduce` makes the reduced matrix.
     type(block_matrix_t) :: matrix
-    !> Stiffness of the sheet, from which the contact forces of the mixed formulation follow; kept in
-    !> its phases alone.
+    !> Stiffness of the sheet, from which the contact forces of the mixed formulation follow; kept
+    !> in its phases alone.
     type(block_matrix_t) :: stiffness
     type(partition_t) :: partition
     !> Position of the blocks of an element of the part in the matrix, `(n_element_node,

@@ -1,49 +1,78 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"labels": ["petsc"], "processors": 2, "timeout": 900, "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}"]}
-"""Runs on several ranks give the history of the serial run, and end as it does.
+"""Runs on several ranks give the results of the serial run, end as it does, and continue on another number of ranks.
 
-    ranks.py --program build/petsc/dd3imp --mpirun mpirun --work build/ranks --ranks 2 4
+    ranks.py --program build/petsc/dd3imp --mpirun mpirun --work build/ranks --ranks 2 3 4 8
 """
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
+import time
+
+import h5py
+import numpy as np
 
 from dd3.programs import parser_of_runs
 from dd3.tables import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-
 CASES = ROOT / "tests" / "cases"
-# Largest difference of a column of history.csv, as a fraction of its scale: see `scale_of`.
+# Largest difference of a column of history.csv, and of a component of the last state, as a fraction of its scale.
 TOLERANCE = 1e-5
+# Values of a component, mm, N or MPa, below which it is round-off.
+ROUND_OFF = 1e-9
 # Columns without meaning where all forces are round-off.
 LEFT_OUT = ("_contacts", "_area", "_pressure", "energy_error")
 FORCES = ("_fx", "_fy", "_fz", "_rx", "_ry", "_rz")
+# Components of the state that are compared: at the nodes, at the elements and at the contact points.
+COMPONENTS = ("x", "stress", "internal_variables", "orientation", "lambda", "tool_displacement")
 # mpirun refuses root, and more ranks than processors, unless it is asked not to.
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-# Case, linear solver, exit code: draw-beads; enhanced strains; a pressed tool; an iterative solver; a run that stops.
+# Case, linear solver, exit code: draw-beads; enhanced strains; a pressed tool; cut-backs at an open edge; an early end
+# of a phase; an iterative solver; a run that stops.
 JOBS = (("drawbead_strip", "auto", 0),
         ("squeeze_solid_shell", "auto", 0),
         ("holder_gap", "auto", 0),
+        ("strip_over_open_edge", "auto", 0),
+        ("until_met_within", "auto", 0),
         ("squeeze_solid_shell", "petsc_bicgstab", 0),
         ("pressed_beside", "auto", 3))
+# Case that is killed and continued, increments before it is killed, and seconds until all its ranks have ended.
+KILLED, KILLED_AFTER, GRACE = "strip_over_open_edge", 5, 30
 
 
 class Difference(Exception):
     """A run on several ranks differs from the serial one."""
 
 
-def run(words, expected):
-    """Run a command; return what it printed."""
-    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600, check=False,
-                          env={**os.environ, **ENVIRONMENT})
-    if done.returncode != expected:
-        raise Difference(f"exit code {done.returncode} instead of {expected}:\n{done.stdout}")
-    return done.stdout
+class Runs:
+    """Runs of one input file."""
+
+    def __init__(self, options, name, method, restart="off"):
+        self.options, self.work = options, options.work / f"{name}_{method}_{restart.replace(' ', '_')}"
+        self.work.mkdir(parents=True)
+        self.deck = self.work / "deck.dat"
+        self.deck.write_text(f"*INCLUDE {CASES / name / 'case.dat'}\n*SOLVER\n  method = {method}\n"
+                             f"*OUTPUT\n  restart = {restart}\n", encoding="utf-8")
+
+    def words(self, ranks, output, restart=None):
+        """Return the command; `ranks` is 0 for a serial run."""
+        words = [str(self.options.program), "--quiet", "--threads", "1", "--output", str(self.work / output)]
+        words += ["--restart", str(restart)] if restart else []
+        return ([self.options.mpirun, "-n", str(ranks)] if ranks else []) + [*words, str(self.deck)]
+
+    def run(self, ranks, output, code=0, restart=None):
+        """Run; return the folder of the results and what was printed."""
+        done = subprocess.run(self.words(ranks, output, restart), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=600, check=False, env=ENVIRONMENT)
+        if done.returncode != code:
+            raise Difference(f"exit code {done.returncode} instead of {code}:\n{done.stdout}")
+        return self.work / output, done.stdout
 
 
 def values_of(rows, column):
@@ -62,7 +91,7 @@ def scale_of(rows, column):
     return max((abs(value) for name in columns for value in values_of(rows, name)), default=0.0)
 
 
-def compare(path, serial):
+def compare_tables(path, serial):
     """Compare two tables of history."""
     rows, expected = read_table(path), read_table(serial)
     if len(rows) != len(expected):
@@ -76,40 +105,102 @@ def compare(path, serial):
             raise Difference(f"column {column} differs by {difference:.3g}")
 
 
+def compare_states(path, serial):
+    """Compare the last states of two runs, of nodes, elements, contact points and tools; there may be none."""
+    if not serial.exists() and not path.exists():
+        return
+    with h5py.File(path) as found, h5py.File(serial) as expected:
+        for name in COMPONENTS:
+            a, b = found["state"][name][...], expected["state"][name][...]
+            if a.shape != b.shape:
+                raise Difference(f"{name} has {a.size} values instead of {b.size}")
+            difference = np.abs(a - b).max(initial=0.0)
+            if difference > max(ROUND_OFF, TOLERANCE * np.abs(b).max(initial=0.0)):
+                raise Difference(f"{name} of the last state differs by {difference:.3g}")
+
+
+def compare(folder, serial):
+    """Compare the results of two runs."""
+    compare_tables(folder / "history.csv", serial / "history.csv")
+    compare_states(folder / "restart.h5", serial / "restart.h5")
+
+
 def check(options, name, method, code):
     """Run a case serially and on each number of ranks, and compare."""
-    work = options.work / f"{name}_{method}"
-    work.mkdir(parents=True)
-    deck = work / "deck.dat"
-    deck.write_text(f"*INCLUDE {CASES / name / 'case.dat'}\n*SOLVER\n  method = {method}\n", encoding="utf-8")
-
-    def command(output):
-        return [str(options.program), "--quiet", "--threads", "1", "--output", str(work / output), str(deck)]
-
-    run(command("serial"), code)
+    runs = Runs(options, name, method, "every 1000")
+    serial, _ = runs.run(0, "serial", code)
     for ranks in options.ranks:
-        printed = run([options.mpirun, "-n", str(ranks), *command(str(ranks))], code)
+        folder, printed = runs.run(ranks, str(ranks), code)
         if printed.count("dd3imp: stopped") != (code == 3):
             raise Difference(f"{ranks} ranks printed:\n{printed}")
-        compare(work / str(ranks) / "history.csv", work / "serial" / "history.csv")
+        compare(folder, serial)
+
+
+def increment_of(restart):
+    """Return the increment of a restart file; 0 without one."""
+    try:
+        with h5py.File(restart, locking=False) as file:
+            return int(file["state/increment"][0])
+    except (OSError, KeyError):
+        return 0
+
+
+def ranks_of(parent, program):
+    """Return the process numbers of the program below a process."""
+    found = []
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            above = int((folder / "stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[1])
+            if above == parent and (folder / "exe").resolve() == program:
+                found.append(int(folder.name))
+        except OSError:
+            continue
+    return sorted(found)
+
+
+def killed(options, first, later):
+    """Kill one rank of a run; then continue it on another number of ranks."""
+    runs = Runs(options, KILLED, "auto", "every 1")
+    serial, _ = runs.run(0, "serial")
+    folder = runs.work / "killed"
+    with subprocess.Popen(runs.words(first, folder.name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                          env=ENVIRONMENT) as child:
+        while child.poll() is None and increment_of(folder / "restart.h5") < KILLED_AFTER:
+            time.sleep(0.01)
+        if child.poll() is not None:
+            raise Difference("the run ended before it was killed")
+        os.kill(ranks_of(child.pid, options.program)[-1], signal.SIGKILL)
+        try:
+            code = child.wait(GRACE)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            raise Difference("the other ranks go on") from None
+    if code == 0:
+        raise Difference("exit code 0 of a run of which one rank was killed")
+    for ranks in later:
+        copy = runs.work / f"{first}_{ranks}"
+        shutil.copytree(folder, copy)
+        compare(runs.run(ranks, copy.name, restart=copy / "restart.h5")[0], serial)
 
 
 def main():
     """Run the test."""
     parser = parser_of_runs(__doc__)
     parser.add_argument("--mpirun", default="mpirun", help="the command that starts several ranks")
-    parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="numbers of ranks")
+    parser.add_argument("--ranks", type=int, nargs="+", default=[2, 3, 8], help="numbers of ranks")
     options = parser.parse_args()
-    options.work = options.work.resolve()
+    options.work, options.program = options.work.resolve(), pathlib.Path(options.program).resolve()
     shutil.rmtree(options.work, ignore_errors=True)
+    tests = [(f"{name}, {method}", check, (name, method, code)) for name, method, code in JOBS]
+    tests += [("a killed rank, then 3 ranks and a serial run", killed, (2, (3, 0)))]
     failed = 0
-    for name, method, code in JOBS:
+    for title, test, arguments in tests:
         try:
-            check(options, name, method, code)
-            print(f"{name}, {method}: agrees", flush=True)
+            test(options, *arguments)
+            print(f"{title}: agrees", flush=True)
         except Difference as difference:
             failed += 1
-            print(f"{name}, {method}: {difference}", flush=True)
+            print(f"{title}: {difference}", flush=True)
     sys.exit(failed > 0)
 
 
