@@ -110,6 +110,9 @@ def compare_states(path, serial):
     if not serial.exists() and not path.exists():
         return
     with h5py.File(path) as found, h5py.File(serial) as expected:
+        # A loose sheet without stresses may lie anywhere.
+        if max(np.abs(file["state/stress"][...]).max() for file in (found, expected)) < ROUND_OFF:
+            return
         for name in COMPONENTS:
             a, b = found["state"][name][...], expected["state"][name][...]
             if a.shape != b.shape:
