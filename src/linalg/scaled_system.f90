@@ -4,7 +4,7 @@
 module dd3_linalg_scaled_system
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
+  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular
   use dd3_linalg_matrix, only : block_matrix_t
@@ -19,7 +19,7 @@ module dd3_linalg_scaled_system
     type(block_matrix_t) :: matrix
     !> Original number of each block row, `(n)`.
     integer, allocatable :: order(:)
-    !> Factor of each scalar row of the copy, `(3, n)`.
+    !> Factor of each scalar row of the copy, `(3, n)`; zero in rows of other ranks.
     real(wp), allocatable :: scale(:, :)
     !> Position in the original of each block of the copy.
     integer, allocatable :: source(:)
@@ -56,7 +56,7 @@ contains
     if (allocated(matrix%owner)) self%matrix%owner = matrix%owner(order)
     if (allocated(self%source)) deallocate (self%source, self%scale)
     allocate (rank(n), self%source(n_block))
-    allocate (self%scale(3, n), source=1.0_wp)
+    allocate (self%scale(3, n), source=0.0_wp)
     allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n), self%matrix%column(n_block))
     allocate (self%matrix%value(3, 3, merge(n_block, 0, self%has_values)), source=0.0_wp)
     self%matrix%n = n
@@ -113,7 +113,7 @@ contains
       call scale_rows(copy%n, size(copy%column), self%first, self%last, copy%row_start, &
           self%source, self%has_values, matrix%value, copy%value, self%scale, bad_row)
     end associate
-    if (allocated(matrix%owner)) call share_scale(self, bad_row)
+    if (allocated(matrix%owner)) call share_bad_row(self%matrix%n, bad_row)
     verdict%outcome = verdict_converged
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
@@ -122,23 +122,21 @@ contains
     verdict%detail = "row of zeros or value that is not finite"
   end subroutine scaled_system_fill
 
-  !> Give all ranks the factors of all rows, and the first bad row.
-  subroutine share_scale(self, bad_row)
-    class(scaled_system_t), intent(inout) :: self
+  !> Give all ranks the first bad row.
+  subroutine share_bad_row(n, bad_row)
+    !> Number of block rows.
+    integer, intent(in) :: n
     !> Among the rows of this rank on entry, among all on return; 0 if there is none.
     integer, intent(inout) :: bad_row
 
     integer :: left(1)
 
-    self%scale(:, :self%first - 1) = 0.0_wp
-    self%scale(:, self%last + 1:) = 0.0_wp
-    call sum_over_ranks(size(self%scale), self%scale)
     left = 0
-    if (bad_row > 0) left = self%matrix%n + 1 - bad_row
+    if (bad_row > 0) left = n + 1 - bad_row
     call largest_over_ranks(1, left)
     bad_row = 0
-    if (left(1) > 0) bad_row = self%matrix%n + 1 - left(1)
-  end subroutine share_scale
+    if (left(1) > 0) bad_row = n + 1 - left(1)
+  end subroutine share_bad_row
 
   !> Kernel: copy and scale the blocks of all rows that are not bad; see `scaled_system_t` for the
   !> arrays.
@@ -190,7 +188,7 @@ contains
     if (bad_row > n) bad_row = 0
   end subroutine scale_rows
 
-  !> Renumber and scale a right-hand side.
+  !> Renumber and scale a right-hand side; it is zero in rows of other ranks.
   pure subroutine scaled_system_scale_rhs(self, b, scaled)
     class(scaled_system_t), intent(in) :: self
     real(wp), intent(in) :: b(:)

@@ -9,6 +9,7 @@ module dd3_linalg_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : i8, wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_t, verdict_converged, cause_singular, cause_solver
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_ordering, only : find_ordering
@@ -169,12 +170,14 @@ contains
     type(solver_report_t), intent(out) :: report
 
     character(len=*), parameter :: singular = "the matrix is singular: "
-    real(wp) :: length
+    real(wp) :: length, square(1)
 
     x = 0.0_wp
     report%method = self%method
     call self%system%scale_rhs(b, self%scaled_b)
-    length = sqrt(dot(self%scaled_b, self%scaled_b))
+    square = dot(self%scaled_b, self%scaled_b)
+    call sum_over_ranks(1, square)
+    length = sqrt(square(1))
     if (.not. ieee_is_finite(length)) then
       report%reason = "the right-hand side is not finite"
       return

@@ -4,6 +4,7 @@ module dd3_system_system
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : profile_t
   use dd3_base_error, only : error_t
+  use dd3_base_ranks, only : n_ranks
   use dd3_base_threads, only : most_threads
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern, find_positions, keep_rows
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
@@ -135,7 +136,8 @@ contains
 
   !> Build the pattern of the stiffness, with the rows of the pressed tools: each couples with its
   !> candidates and their neighbours. Of several ranks each has the rows that it holds; the rows of
-  !> the tools belong to the first rank.
+  !> the tools belong to the last rank, so that they come last: nearly all nodes are coupled with
+  !> them, and an incomplete factorisation that began with them would be full.
   subroutine new_stiffness_pattern(stiffness, model)
     type(block_matrix_t), intent(out) :: stiffness
     type(model_t), intent(in) :: model
@@ -143,7 +145,7 @@ contains
     logical, allocatable :: member(:), near(:)
     !> Coupled nodes, ascending within a tool, and the first of each tool among them.
     integer, allocatable :: coupled(:), first(:)
-    integer :: tool, e, i
+    integer :: tool, e, i, last
 
     allocate (member(model%n_node), near(model%n_node))
     first = [1]
@@ -162,7 +164,8 @@ contains
     call new_pattern(stiffness, model%n_node, model%connectivity, first, coupled)
     if (.not. model%part%divided) return
     call keep_rows(stiffness, rows_held(model, stiffness%n))
-    stiffness%owner = [model%part%node_owner, (0, i=1, size(first) - 1)]
+    last = n_ranks() - 1
+    stiffness%owner = [model%part%node_owner, (last, i=1, size(first) - 1)]
   end subroutine new_stiffness_pattern
 
 end module dd3_system_system
