@@ -56,7 +56,7 @@ contains
     self%unknowns = 3*model%n_node
     without_solver = resident_memory() + libraries + states_bytes(model, state) &
         + element_bytes(model)
-    self%total = without_solver + matrix_bytes(least_blocks*model%n_node)
+    self%total = without_solver + matrix_bytes(model, least_blocks*size(model%part%element))
     if (is_too_large(self)) return
     call new_stiffness_pattern(matrix, model)
     call new_linear_solver(solver, options, error)
@@ -65,18 +65,20 @@ contains
     self%unknowns = 3*matrix%n
     self%blocks = size(matrix%column)
     self%factors = solver%factor_bytes()
-    self%total = without_solver + matrix_bytes(self%blocks) + solver%bytes()
+    self%total = without_solver + matrix_bytes(model, self%blocks) + solver%bytes()
   end subroutine find_job_size
 
-  !> Return the memory of the stiffness and the reduced matrix, bytes.
-  pure real(wp) function matrix_bytes(blocks) result(bytes)
+  !> Return the memory of the matrix, and in the mixed formulation of the stiffness, bytes.
+  pure real(wp) function matrix_bytes(model, blocks) result(bytes)
+    type(model_t), intent(in) :: model
     integer, intent(in) :: blocks
 
-    bytes = 2.0_wp*real(blocks, wp)*(9.0_wp*real_bytes + integer_bytes)
+    bytes = real(blocks, wp)*(9.0_wp*real_bytes + integer_bytes)
+    if (any(model%phase%mixed)) bytes = 2.0_wp*bytes
   end function matrix_bytes
 
-  !> Return the memory of the states of a run beside the initial one, bytes: committed, trial, and
-  !> that in which the work at the start of a phase is evaluated.
+  !> Return the memory of the states of a run beside the initial one, which becomes the committed
+  !> one, bytes: trial, and that in which the work at the start of a phase is evaluated.
   pure real(wp) function states_bytes(model, state) result(bytes)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -88,7 +90,7 @@ contains
     bytes = real_bytes*((per_point + real(model%n_internal, wp))*points(model) &
         + per_node*real(model%n_node, wp) + per_candidate*real(model%n_contact, wp)) &
         + real(storage_size(state%hint)/8, wp)*real(size(state%hint, kind=i8), wp)
-    bytes = 3.0_wp*bytes
+    bytes = 2.0_wp*bytes
   end function states_bytes
 
   !> Return the memory of what the elements hold for the linear system and the prediction, bytes.
