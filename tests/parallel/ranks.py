@@ -16,7 +16,7 @@ import time
 import h5py
 import numpy as np
 
-from dd3.programs import parser_of_runs
+from dd3.programs import MPI_ENVIRONMENT, parser_of_runs
 from dd3.tables import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -30,9 +30,7 @@ LEFT_OUT = ("_contacts", "_area", "_pressure", "energy_error")
 FORCES = ("_fx", "_fy", "_fz", "_rx", "_ry", "_rz")
 # Components of the state that are compared: at the nodes, at the elements and at the contact points.
 COMPONENTS = ("x", "stress", "internal_variables", "orientation", "lambda", "tool_displacement")
-# mpirun refuses root, and more ranks than processors, unless it is asked not to.
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+ENVIRONMENT = {**os.environ, **MPI_ENVIRONMENT}
 # Case, linear solver, exit code: draw-beads; enhanced strains; a pressed tool; cut-backs at an open edge; an early end
 # of a phase; an iterative solver; a run that stops.
 JOBS = (("drawbead_strip", "auto", 0),

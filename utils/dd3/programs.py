@@ -19,6 +19,9 @@ from dd3.errors import Problem
 from dd3.run import read_job
 from dd3.tables import read_points
 
+# Environment of mpirun, which refuses root, and more processes than processors, unless it is asked not to.
+MPI_ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 POINTS = "points.dat"  # input file of run_points, as its messages name it
 SMALL = """*MATERIAL steel
   young = 2e5

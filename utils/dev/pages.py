@@ -88,6 +88,9 @@ PAGES = {
     "draw_bending": forming("draw_bending", 25),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
     "pages": Page(20, f"{MECHANICS} input_files utils/dd3/report.py", (f"utils/dev/report_pages.py{RUN}",)),
+    "processes": Page(8, f"src/linalg src/parallel {MECHANICS}", (
+        "cmake --preset petsc", "cmake --build --preset petsc",
+        f"tests/benchmark/processes.py --parallel build/petsc/dd3imp{RUN}")),
     "rail": forming("rail", 75),
     "robustness": Page(10, "src/material tests/benchmark/robustness.f90 tests/benchmark/parameter_sets.f90", (
         "cmake --build {build} --target benchmark_robustness",

@@ -13,7 +13,7 @@ class Dd3imp(CMakePackage):
 
     license("GPL-3.0-or-later")
 
-    version("1.6.2")
+    version("1.7.0")
 
     variant("mumps", default=False, description="Direct solver MUMPS, sequential")
 
