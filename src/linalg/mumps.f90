@@ -32,8 +32,8 @@ module dd3_linalg_mumps
   real(wp), parameter :: null_pivot = -1.0e-13_wp
   !> Value of `icntl_ordering`: that of `perm_in`.
   integer, parameter :: ordering_given = 1
-  !> Positions in `infog`: status and its argument, the memory estimated by the analysis, MB, and the
-  !> number of null pivots.
+  !> Positions in `infog`: status and its argument, the memory estimated by the analysis, MB, and
+  !> the number of null pivots.
   integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16, &
       infog_null_pivots = 28
   !> MUMPS's errors: no memory, workspace too small, singular pattern, singular matrix.

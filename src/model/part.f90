@@ -3,7 +3,7 @@
 !> and the rows of the linear system of its nodes. Nodes, contact points and tools are on all ranks.
 module dd3_model_part
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : gather_reals, n_ranks, sum_over_ranks, this_rank
+  use dd3_base_ranks, only : gather_reals, n_ranks, this_rank
   use dd3_base_text, only : to_text
   use dd3_linalg_matrix, only : block_matrix_t, new_pattern
   use dd3_linalg_partition, only : divide_rows
@@ -81,6 +81,10 @@ contains
     integer, allocatable :: of_rank(:), next(:), from(:)
     integer :: rank, e, i
 
+    if (.not. self%divided) then
+      all = own
+      return
+    end if
     of_rank = [(count(self%owner == rank), rank=0, n_ranks() - 1)]
     next = [(sum(of_rank(:rank - 1)) + 1, rank=1, size(of_rank))]
     allocate (from(size(self%owner)), received(merge(size(self%owner), 0, this_rank() == 0)))

@@ -85,7 +85,6 @@ contains
     type(file_t) :: guard
     type(writer_t) :: writer
     character(len=:), allocatable :: path
-    type(error_t), allocatable :: ignored
 
     path = directory//"/"//restart_name
     writer%part = model%part
@@ -97,23 +96,34 @@ contains
       if (.not. allocated(error)) call guard%reserve(0_i8, writer%bytes + overhead, error)
     end if
     call share_error(error)
+    if (.not. allocated(error)) &
+        call write_content(part_of(path), model, ended, state, writer%ok)
+    if (this_rank() == 0) call finish_file(path, guard, writer%ok, error)
+    call share_error(error)
+  end subroutine write_restart
+
+  !> Put a file in its place if it could be written, and close it.
+  subroutine finish_file(path, guard, written, error)
+    character(len=*), intent(in) :: path
+    !> The file under its temporary name.
+    type(file_t), intent(inout) :: guard
+    logical, intent(in) :: written
+    !> Reason why the file was not begun; set if it cannot be finished.
+    type(error_t), allocatable, intent(inout) :: error
+
+    type(error_t), allocatable :: ignored
+
     if (.not. allocated(error)) then
-      call write_content(part_of(path), model, ended, state, writer%ok)
-      if (this_rank() > 0) then
-        continue
-      else if (writer%ok) then
+      if (written) then
         call sync_file(guard)
         call replace_file(path, guard, error)
       else
         call guard%refuse("cannot write '"//path//"': the disk is full or cannot be reached", error)
       end if
     end if
-    if (this_rank() == 0) then
-      call guard%release()
-      call guard%close(ignored)
-    end if
-    call share_error(error)
-  end subroutine write_restart
+    call guard%release()
+    call guard%close(ignored)
+  end subroutine finish_file
 
   !> Write marks, fingerprint and state into a new file. The other ranks give their elements.
   subroutine write_content(path, model, ended, state, ok)

@@ -184,8 +184,8 @@ contains
     ignored = ksp_set_from_options(self%ksp)
   end subroutine create_objects
 
-  !> Let OpenBLAS allocate its buffer. In a factorisation it would wait for the memory for ever; here
-  !> the program ends if there is none.
+  !> Let OpenBLAS allocate its buffer. In a factorisation it would wait for the memory for ever;
+  !> here the program ends if there is none.
   subroutine reserve_blas_buffer()
     !> Size of the buffer, in reals, and of a product that is not too small for it.
     integer, parameter :: buffer_size = 134300000/8, n = 64

@@ -4,12 +4,12 @@
 !>     benchmark_parts [elements along an edge]
 !>
 !> Columns: parts; largest number of elements in a part over the mean; edges of the graph of nodes
-!> that are cut, per cent; nodes of the elements of a part that belong to other parts, on average and
-!> at most; neighbours at most; bytes of rows that a part sends in an iteration at most, MB; bytes of
-!> all values at the nodes that are summed over the parts in an iteration, MB (internal forces,
-!> forces of the condensation, solution). Then the complete factorisation: largest
-!> front, operations, and how often the operations on the longest path of the tree of fronts are
-!> contained in all: a bound of the speed-up where each front is on one process.
+!> that are cut, per cent; nodes of the elements of a part that belong to other parts, on average
+!> and at most; neighbours at most; bytes of rows that a part sends in an iteration at most, MB;
+!> bytes of all values at the nodes that are summed over the parts in an iteration, MB (internal
+!> forces, forces of the condensation, solution). Then the complete factorisation: largest front,
+!> operations, and how often the operations on the longest path of the tree of fronts are contained
+!> in all: a bound of the speed-up where each front is on one process.
 program benchmark_parts
   use dd3_base_kinds, only : i8, wp
   use dd3_linalg_front_tree, only : front_tree_t, new_front_tree, rows_of
