@@ -28,13 +28,18 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
 
   !> Relative residual of a complete factorisation accepted where the tolerance asks for less.
   real(wp), parameter :: residual_limit = 1.0e-6_wp
+  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is
+  !> taken for that of a slender sheet and not of a singular matrix.
+  real(wp), parameter :: largest_round_off = 1.0e-3_wp
   !> Tolerance of the iterations, whose own residual drifts, as a fraction of the one asked for.
   real(wp), parameter :: margin = 0.1_wp
 
   !> Reason of the end of the iterations: breakdown (KSP_DIVERGED_BREAKDOWN).
   integer(c_int), parameter :: breakdown = -5
-  !> Most restarts.
+  !> Most restarts of the iterations and refinements of a factorisation, and the ratio of residuals
+  !> above which a refinement is the last one.
   integer, parameter :: most_restarts = 5
+  real(wp), parameter :: least_gain = 0.5_wp
 
   !> Solver of PETSc.
   type, extends(linear_solver_t) :: petsc_solver_t
@@ -44,9 +49,10 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
     logical :: iterative = .false.
     !> MUMPS's additional workspace, per cent.
     integer :: workspace = first_workspace
-    !> Matrix, Krylov solver, right-hand side, solution and residual; null until a matrix is
-    !> factorised.
-    type(c_ptr) :: a = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, x = c_null_ptr, r = c_null_ptr
+    !> Matrix, Krylov solver, right-hand side, solution, residual and correction; null until a
+    !> matrix is factorised.
+    type(c_ptr) :: a = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, x = c_null_ptr, &
+        r = c_null_ptr, d = c_null_ptr
     !> Scalar rows of this rank, 0-based.
     integer(c_int), allocatable :: own(:)
   contains
@@ -178,6 +184,7 @@ contains
         near, 0_c_int, far, self%a)
     ignored = mat_create_vecs(self%a, self%x, self%b)
     ignored = vec_duplicate(self%b, self%r)
+    ignored = vec_duplicate(self%b, self%d)
     call set_options(self)
     ignored = ksp_create(petsc_comm_world, self%ksp)
     ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
@@ -261,59 +268,85 @@ contains
     real(wp), intent(inout) :: x(:)
     type(solver_report_t), intent(inout) :: report
 
-    real(wp) :: residual, limit
+    real(wp) :: last
     integer(c_int) :: ignored, n, reason
 
     report%method = self%name
     n = size(self%own, kind=c_int)
     ignored = vec_set_values(self%b, n, self%own, b(self%own + 1), insert_values)
     call vec_assemble(self%b)
-    limit = self%options%tolerance
-    if (.not. self%iterative) limit = max(limit, residual_limit)
+    ignored = ksp_solve(self%ksp, self%b, self%x)
     do
-      call run_krylov(self, report, residual, reason)
-      if (residual < report%residual) then
-        report%residual = residual
-        x(:3*matrix%n) = 0.0_wp
-        call get_solution(self, x)
+      last = report%residual
+      call keep_solution(self, matrix, x, report, reason)
+      if (report%residual <= self%options%tolerance .or. report%restarts == most_restarts) exit
+      if (self%iterative) then
+        if (reason /= breakdown .and. reason < 0) exit
+      else if (.not. report%residual < least_gain*last) then
+        exit
       end if
-      report%converged = report%residual <= limit
-      if (report%converged .or. report%restarts == most_restarts) exit
-      if (reason /= breakdown .and. reason < 0) exit
-      ! If vectors of BiCGSTAB are orthogonal, a step along the residual gives others; if its own
-      ! residual has drifted from the true one, the solution so far is a good start.
-      if (reason == breakdown) ignored = vec_axpy(self%x, 1.0_wp, self%r)
-      ignored = ksp_set_initial_guess_nonzero(self%ksp, 1_c_int)
+      call improve(self, reason)
       report%restarts = report%restarts + 1
     end do
-    ignored = ksp_set_initial_guess_nonzero(self%ksp, 0_c_int)
     if (.not. report%converged) report%reason = trim(self%name)//" found no solution (reason "// &
         to_text(int(reason))//" of PETSc, "//to_text(report%iterations)//" iterations)"
   end subroutine petsc_solver_solve
 
-  !> Run the Krylov solver and evaluate the true residual.
-  subroutine run_krylov(self, report, residual, reason)
+  !> Evaluate the true residual of PETSc's solution, and keep the solution if it is the best so far.
+  subroutine keep_solution(self, matrix, x, report, reason)
     type(petsc_solver_t), intent(in) :: self
-    !> Gets the iterations.
+    type(block_matrix_t), intent(in) :: matrix
+    !> Of the system whose right-hand side has unit length.
+    real(wp), intent(inout) :: x(:)
+    !> Gets the iterations, the residual and whether it is small enough.
     type(solver_report_t), intent(inout) :: report
-    !> Huge if it is not finite.
-    real(wp), intent(out) :: residual
     !> Reason of the end, as PETSc numbers it.
     integer(c_int), intent(out) :: reason
 
-    real(wp) :: norm(1)
+    real(wp) :: norm(1), limit, round_off
     integer(c_int) :: ignored, iterations
 
-    ignored = ksp_solve(self%ksp, self%b, self%x)
     ignored = ksp_get_converged_reason(self%ksp, reason)
     ignored = ksp_get_iteration_number(self%ksp, iterations)
     if (self%iterative) report%iterations = report%iterations + int(iterations)
     ignored = mat_residual(self%a, self%b, self%x, self%r)
     ignored = vec_norm(self%r, norm_2, norm(1))
     call broadcast_reals(0, 1, norm)
-    residual = huge(residual)
-    if (ieee_is_finite(norm(1))) residual = norm(1)
-  end subroutine run_krylov
+    if (.not. ieee_is_finite(norm(1))) return
+    if (norm(1) < report%residual) then
+      report%residual = norm(1)
+      x(:3*matrix%n) = 0.0_wp
+      call get_solution(self, x)
+    end if
+    limit = self%options%tolerance
+    if (.not. self%iterative) then
+      limit = max(limit, residual_limit)
+      ! The rows of the matrix add up to one.
+      round_off = epsilon(1.0_wp)*norm2(x)
+      if (round_off <= largest_round_off) limit = max(limit, round_off)
+    end if
+    report%converged = report%residual <= limit
+  end subroutine keep_solution
+
+  !> Improve PETSc's solution: refine that of a factorisation by its residual, or iterate again. If
+  !> vectors of BiCGSTAB are orthogonal, a step along the residual gives others; if its own residual
+  !> has drifted from the true one, the solution so far is a good start.
+  subroutine improve(self, reason)
+    type(petsc_solver_t), intent(in) :: self
+    integer(c_int), intent(in) :: reason
+
+    integer(c_int) :: ignored
+
+    if (.not. self%iterative) then
+      ignored = ksp_solve(self%ksp, self%r, self%d)
+      ignored = vec_axpy(self%x, 1.0_wp, self%d)
+      return
+    end if
+    if (reason == breakdown) ignored = vec_axpy(self%x, 1.0_wp, self%r)
+    ignored = ksp_set_initial_guess_nonzero(self%ksp, 1_c_int)
+    ignored = ksp_solve(self%ksp, self%b, self%x)
+    ignored = ksp_set_initial_guess_nonzero(self%ksp, 0_c_int)
+  end subroutine improve
 
   !> Gather the solution on all ranks.
   subroutine get_solution(self, x)
@@ -343,6 +376,7 @@ contains
     ignored = vec_destroy(self%b)
     ignored = vec_destroy(self%x)
     ignored = vec_destroy(self%r)
+    ignored = vec_destroy(self%d)
   end subroutine petsc_solver_release
 
 end submodule dd3_parallel_petsc_solver
