@@ -12,7 +12,8 @@ module dd3_linalg_preconditioner
   type :: perturbed_pivots_t
     !> Number of these blocks.
     integer :: blocks = 0
-    !> Block row of the first such pivot, and its component there, 1 to 3; 0 if there is none.
+    !> Block row of the first such pivot, and its component there, 1 to 3; 0 if there is none, or if
+    !> the library does not tell.
     integer :: row = 0, component = 0
   end type perturbed_pivots_t
 

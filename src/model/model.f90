@@ -191,11 +191,11 @@ contains
     end do
   end function least_shear
 
-  !> Return the number of threads of a loop over the elements.
+  !> Return the number of threads of a loop over the elements of this rank.
   integer function element_threads(self)
     class(model_t), intent(in) :: self
 
-    element_threads = threads_for(self%n_element*self%element%n_point, least_points)
+    element_threads = threads_for(size(self%part%element)*self%element%n_point, least_points)
   end function element_threads
 
 end module dd3_model_model

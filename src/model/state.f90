@@ -2,7 +2,8 @@
 !> State of a run: all that changes in it and decides how it continues. Two copies exist, the
 !> committed state (configuration N-1, in equilibrium) and the trial state (configuration N);
 !> acceptance and cut-back are assignments. The walk over the components in state_walk.f90 serves
-!> the restart; a test checks that it names every component declared here.
+!> the restart; a test checks that it names every component declared here. Arrays of elements have
+!> those of the rank's part.
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t

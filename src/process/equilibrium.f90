@@ -21,6 +21,7 @@ module dd3_process_equilibrium
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
+  use dd3_system_partition, only : check_agreement
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -102,7 +103,7 @@ contains
       call evaluate_norm(self%model, self%committed, self%trial, system, self%step, &
           .not. with_stiffness, self%residual)
       self%scaled_norm = self%residual%scaled
-      call system%partition%check_agreement(self%scaled_norm, verdict)
+      call check_agreement(self%scaled_norm, verdict)
     end associate
   end subroutine evaluate
 

@@ -82,7 +82,7 @@ contains
 
       limit = evaluate(model, state, stepper)
       if (limit%limiter == "") limit%limiter = name
-      if (stepper%system%partition%divided) call share_limit(limit)
+      if (model%part%divided) call share_limit(limit)
       call keep_smaller(stepper%attempt%limit, limit)
       if (present(bound)) bound = limit
     end subroutine apply

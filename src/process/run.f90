@@ -219,8 +219,13 @@ contains
       threads%news = ""
       if (run%told_perturbed .or. perturbed%blocks == 0) return
       run%told_perturbed = .true.
-      call log%report("W114", "linear system: the pivot of "//row_name(model, perturbed%row)// &
-          " along "//axis_name(perturbed%component)//" vanished and was perturbed")
+      if (perturbed%row == 0) then
+        call log%report("W114", "linear system: "//to_text(perturbed%blocks)//" pivots vanished "// &
+            "and were perturbed; the solver does not tell which")
+      else
+        call log%report("W114", "linear system: the pivot of "//row_name(model, perturbed%row)// &
+            " along "//axis_name(perturbed%component)//" vanished and was perturbed")
+      end if
     end associate
   end subroutine note_solution
 

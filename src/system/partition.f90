@@ -7,26 +7,18 @@ module dd3_system_partition
       largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible, &
       cause_ranks_differ
-  use dd3_linalg_matrix, only : block_matrix_t, copy_values
+  use dd3_linalg_matrix, only : block_matrix_t, lists_t
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: partition_t, new_partition, rows_held, share_verdict
+  public :: partition_t, new_partition, rows_held, check_agreement, share_verdict
 
-  !> Several lists in one array: that of rank i is `item(start(i):start(i + 1) - 1)`.
-  type :: lists_t
-    integer, allocatable :: start(:), item(:)
-  end type lists_t
-
-  !> Exchange of rows.
+  !> Exchange of rows: a list for each rank, of its rows to which this one adds, and of the rows of
+  !> this rank to which it adds. Not allocated if there is one rank.
   type :: partition_t
-    !> Whether there are several ranks.
-    logical :: divided = .false.
-    !> Rows of each rank to which this one adds, and rows of this rank to which each other one adds.
     type(lists_t), private :: sent, received
   contains
     procedure :: complete_rows
-    procedure :: check_agreement
   end type partition_t
 
 contains
@@ -56,8 +48,7 @@ contains
     logical, allocatable :: mine(:), theirs(:)
     integer :: rank, this
 
-    self%divided = model%part%divided
-    if (.not. self%divided) return
+    if (.not. model%part%divided) return
     self%sent%start = [1]
     self%received%start = [1]
     allocate (self%sent%item(0), self%received%item(0))
@@ -89,34 +80,37 @@ contains
     class(partition_t), intent(in) :: self
     type(block_matrix_t), intent(inout) :: matrix
 
-    real(wp), allocatable :: sent(:), received(:)
+    real(wp), allocatable :: sent(:, :, :), received(:, :, :)
     integer, allocatable :: n_sent(:), n_received(:)
     integer :: i, n, at
 
-    if (.not. self%divided) return
+    if (.not. allocated(self%sent%item)) return
     n_sent = counts(self%sent, matrix)
     n_received = counts(self%received, matrix)
-    allocate (sent(sum(n_sent)), received(sum(n_received)))
-    at = 1
+    allocate (sent(3, 3, sum(n_sent)), received(3, 3, sum(n_received)))
+    at = 0
     do i = 1, size(self%sent%item)
-      associate (first => matrix%row_start(self%sent%item(i)))
-        n = 9*(matrix%row_start(self%sent%item(i) + 1) - first)
-        call copy_values(n, matrix%value(1, 1, first), sent(at))
+      associate (first => matrix%row_start(self%sent%item(i)), &
+          last => matrix%row_start(self%sent%item(i) + 1) - 1)
+        n = last - first + 1
+        sent(:, :, at + 1:at + n) = matrix%value(:, :, first:last)
       end associate
       at = at + n
     end do
-    call exchange_reals(n_sent, sent, n_received, received)
-    at = 1
+    call exchange_reals(9*n_sent, sent, 9*n_received, received)
+    at = 0
     do i = 1, size(self%received%item)
-      associate (first => matrix%row_start(self%received%item(i)))
-        n = 9*(matrix%row_start(self%received%item(i) + 1) - first)
-        call add_values(n, received(at), matrix%value(1, 1, first))
+      associate (first => matrix%row_start(self%received%item(i)), &
+          last => matrix%row_start(self%received%item(i) + 1) - 1)
+        n = last - first + 1
+        matrix%value(:, :, first:last) = matrix%value(:, :, first:last) &
+            + received(:, :, at + 1:at + n)
       end associate
       at = at + n
     end do
   end subroutine complete_rows
 
-  !> Return the number of values in the rows of each rank's list.
+  !> Return the number of blocks in the rows of each rank's list.
   pure function counts(lists, matrix)
     type(lists_t), intent(in) :: lists
     type(block_matrix_t), intent(in) :: matrix
@@ -126,24 +120,14 @@ contains
 
     do i = 1, size(counts)
       associate (row => lists%item(lists%start(i):lists%start(i + 1) - 1))
-        counts(i) = 9*sum(matrix%row_start(row + 1) - matrix%row_start(row))
+        counts(i) = sum(matrix%row_start(row + 1) - matrix%row_start(row))
       end associate
     end do
   end function counts
 
-  !> Kernel: add values as one contiguous array, whatever its shape.
-  pure subroutine add_values(n, values, sum)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: values(n)
-    real(wp), intent(inout) :: sum(n)
-
-    sum = sum + values
-  end subroutine add_values
-
   !> Check that all ranks have the same value, to the bit: they have evaluated the contact of their
   !> copies of the same positions, and processors of different kinds can differ.
-  subroutine check_agreement(self, value, verdict)
-    class(partition_t), intent(in) :: self
+  subroutine check_agreement(value, verdict)
     real(wp), intent(in) :: value
     !> Impossible if they differ; unchanged otherwise.
     type(verdict_t), intent(inout) :: verdict
@@ -151,7 +135,7 @@ contains
     real(wp) :: first(1)
     integer :: differs(1)
 
-    if (.not. self%divided) return
+    if (n_ranks() == 1) return
     first = value
     call broadcast_reals(0, 1, first)
     differs = merge(1, 0, abs(value - first(1)) > 0.0_wp)

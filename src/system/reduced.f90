@@ -48,7 +48,7 @@ contains
         call add_points(system, model, phase, state%x)
         call system%partition%complete_rows(system%matrix)
       end if
-      if (system%partition%divided) call share_tool_rows(system, model, phase)
+      if (model%part%divided) call share_tool_rows(system, model, phase)
       call finish_tool_rows(system, model, phase)
       call prescribe(system, phase)
     end associate
@@ -235,7 +235,7 @@ contains
         step%lambda(:, c) = -node_residual(phase, system%problem, node, c) - change
       end do
     end associate
-    if (system%partition%divided) call sum_over_ranks(size(step%lambda), step%lambda)
+    if (model%part%divided) call sum_over_ranks(size(step%lambda), step%lambda)
   end subroutine set_node_forces
 
 end module dd3_system_reduced
