@@ -6,15 +6,15 @@ module dd3_external_petsc
       c_null_ptr, c_ptr
   implicit none
   private
-  public :: petsc_comm_world, insert_values, norm_2, set_option
+  public :: petsc_comm_world, insert_values, norm_2, set_option, replace_option
   public :: mat_create_baij, mat_set_values_blocked, mat_assemble, mat_create_vecs, mat_residual, &
       mat_destroy
   public :: vec_duplicate, vec_set_values, vec_get_values, vec_assemble, vec_axpy, vec_norm, &
       vec_destroy
   public :: ksp_create, ksp_set_options_prefix, ksp_set_from_options, ksp_set_operators, &
       ksp_set_initial_guess_nonzero, ksp_set_up, ksp_solve, ksp_get_converged_reason, &
-      ksp_get_iteration_number, ksp_get_pc, ksp_destroy
-  public :: pc_factor_get_matrix, mat_mumps_set_icntl, mat_mumps_get_infog
+      ksp_get_iteration_number, ksp_get_pc, ksp_reset, ksp_destroy
+  public :: pc_factor_get_matrix, mat_mumps_get_infog
 
   !> Communicator of all ranks; a pointer in Open MPI, which the configuration checks.
   integer(c_intptr_t), bind(c, name="PETSC_COMM_WORLD") :: petsc_comm_world
@@ -188,6 +188,12 @@ module dd3_external_petsc
       integer(c_int), intent(out) :: iterations
     end function ksp_get_iteration_number
 
+    !> Drop the factors.
+    integer(c_int) function ksp_reset(solver) bind(c, name="KSPReset")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: solver
+    end function ksp_reset
+
     integer(c_int) function ksp_get_pc(solver, preconditioner) bind(c, name="KSPGetPC")
       import :: c_int, c_ptr
       type(c_ptr), value :: solver
@@ -201,13 +207,6 @@ module dd3_external_petsc
       type(c_ptr), value :: preconditioner
       type(c_ptr), intent(out) :: factors
     end function pc_factor_get_matrix
-
-    integer(c_int) function mat_mumps_set_icntl(factors, position, value) &
-        bind(c, name="MatMumpsSetIcntl")
-      import :: c_int, c_ptr
-      type(c_ptr), value :: factors
-      integer(c_int), value :: position, value
-    end function mat_mumps_set_icntl
 
     integer(c_int) function mat_mumps_get_infog(factors, position, value) &
         bind(c, name="MatMumpsGetInfog")
@@ -252,6 +251,16 @@ contains
     ignored = options_has_name(c_null_ptr, c_null_ptr, name//c_null_char, found)
     if (found == 0) ignored = options_set_value(c_null_ptr, name//c_null_char, value//c_null_char)
   end subroutine set_option
+
+  !> Set an option of PETSc's database, also if the user has set it.
+  subroutine replace_option(name, value)
+    !> With its minus sign and prefix.
+    character(len=*), intent(in) :: name, value
+
+    integer(c_int) :: ignored
+
+    ignored = options_set_value(c_null_ptr, name//c_null_char, value//c_null_char)
+  end subroutine replace_option
 
   !> Assemble a matrix whose values are set.
   subroutine mat_assemble(matrix)

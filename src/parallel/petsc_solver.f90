@@ -10,10 +10,12 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
   use dd3_external_blas_threads, only : use_one_blas_thread
   use dd3_external_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
-      ksp_get_iteration_number, ksp_get_pc, ksp_set_from_options, ksp_set_initial_guess_nonzero, &
+      ksp_get_iteration_number, ksp_get_pc, ksp_reset, ksp_set_from_options, &
+      ksp_set_initial_guess_nonzero, &
       ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
-      mat_create_baij, mat_create_vecs, mat_destroy, mat_mumps_get_infog, mat_mumps_set_icntl, &
+      mat_create_baij, mat_create_vecs, mat_destroy, mat_mumps_get_infog, &
       mat_residual, mat_set_values_blocked, norm_2, pc_factor_get_matrix, petsc_comm_world, &
+      replace_option, &
       set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, vec_get_values, &
       vec_norm, vec_set_values
   use dd3_linalg_dense, only : dgemm
@@ -127,9 +129,11 @@ contains
       verdict%outcome = verdict_converged
       if (self%iterative) return
       if (.not. needs_workspace(infog(self, infog_status), self%workspace)) exit
+      ! PETSc does not factorise again after an error: the analysis is repeated.
       self%workspace = more_workspace*self%workspace
-      ignored = mat_mumps_set_icntl(factors(self), int(icntl_workspace, c_int), &
-          int(self%workspace, c_int))
+      call replace_option("-dd3_"//trim(self%name)//"_mat_mumps_icntl_"//to_text(icntl_workspace), &
+          to_text(self%workspace))
+      ignored = ksp_reset(self%ksp)
     end do
     verdict = mumps_verdict(infog(self, infog_status), infog(self, infog_argument))
     self%perturbed = perturbed_pivots_t(blocks=infog(self, infog_null_pivots))

@@ -30,7 +30,8 @@ LEFT_OUT = ("_contacts", "_area", "_pressure", "energy_error")
 FORCES = ("_fx", "_fy", "_fz", "_rx", "_ry", "_rz")
 # Components of the state that are compared: at the nodes, at the elements and at the contact points.
 COMPONENTS = ("x", "stress", "internal_variables", "orientation", "lambda", "tool_displacement")
-ENVIRONMENT = {**os.environ, **MPI_ENVIRONMENT}
+# MUMPS begins with too little workspace, so that it has to be given more.
+ENVIRONMENT = {**os.environ, **MPI_ENVIRONMENT, "PETSC_OPTIONS": "-dd3_petsc_mumps_mat_mumps_icntl_14 -60"}
 # Case, linear solver, exit code: a sheet that sags and is badly conditioned, with cut-backs; draw-beads; enhanced
 # strains; a pressed tool; cut-backs at an open edge; an early end of a phase; an iterative solver; a run that stops.
 JOBS = ((RAIL, "auto", 0),
