@@ -26,8 +26,11 @@ contains
   module procedure sum_over_ranks
   end procedure sum_over_ranks
 
-  module procedure largest_over_ranks
-  end procedure largest_over_ranks
+  module procedure largest_integers
+  end procedure largest_integers
+
+  module procedure largest_reals
+  end procedure largest_reals
 
   module procedure broadcast_integers
   end procedure broadcast_integers

@@ -163,11 +163,13 @@ contains
     class(linear_solver_t), allocatable :: solver
     type(error_t), allocatable :: ignored
     type(message_list_t) :: messages, warnings
+    character(len=:), allocatable :: settings
     integer :: i
 
+    settings = contact_report(model)
     if (this_rank() > 0) return
-    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)// &
-        contact_report(model)//limits_report(model)//drawbead_report(model)
+    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)//settings// &
+        limits_report(model)//drawbead_report(model)
     if (allocated(start%sheet_report)) &
         write (output_unit, '(a)', advance="no") start%sheet_report
     if (size(case%point) == 0) then
@@ -207,17 +209,20 @@ contains
       call fatal_error(error, "material points (*POINT) have no fields", "E205")
       return
     end if
-    if (this_rank() > 0) return
     associate (directory => options%initial)
-      call make_directory(directory, error)
+      if (this_rank() == 0) call make_directory(directory, error)
       do i = 1, size(result_file)
-        if (allocated(error)) return
+        if (this_rank() > 0 .or. allocated(error)) exit
         inquire (file=directory//"/"//trim(result_file(i)), exist=there)
         if (there) call fatal_error(error, "'"//directory//"' holds results of a run; "// &
             "--initial needs a folder without", "E205")
       end do
-      if (.not. allocated(error)) call fields%open(model, directory, error)
-      if (.not. allocated(error)) call fields%write(model, start%state, error)
+      if (this_rank() == 0 .and. .not. allocated(error)) &
+          call fields%open(model, directory, error)
+      call share_error(error)
+      if (allocated(error)) return
+      call fields%write(model, start%state, error)
+      if (this_rank() > 0) return
       if (.not. allocated(error)) call fields%close(error)
     end associate
     if (.not. allocated(error)) call describe_initial(options, case, model, start, errors, error)

@@ -9,7 +9,8 @@ module dd3_base_ranks
   private
   public :: start_ranks, end_ranks, this_rank, n_ranks, ranks_present
   public :: sum_over_ranks, largest_over_ranks, broadcast_integers, broadcast_reals, &
-      broadcast_text, exchange_reals, gather_reals, rank_of_smallest
+      broadcast_text, exchange_reals, gather_reals
+  public :: rank_of_smallest, any_rank, count_over_ranks, norm_over_ranks, agreed
 
   ! Implemented in src/parallel/ranks.f90 or, without MPI, in cmake/absent/ranks.f90.
   interface
@@ -39,11 +40,17 @@ module dd3_base_ranks
       real(wp), intent(inout) :: values(n)
     end subroutine sum_over_ranks
 
-    !> Replace each value by the largest on any rank.
-    module subroutine largest_over_ranks(n, values)
+    !> Replace each integer by the largest on any rank.
+    module subroutine largest_integers(n, values)
       integer, intent(in) :: n
       integer, intent(inout) :: values(n)
-    end subroutine largest_over_ranks
+    end subroutine largest_integers
+
+    !> Replace each real by the largest on any rank.
+    module subroutine largest_reals(n, values)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: values(n)
+    end subroutine largest_reals
 
     !> Replace integers by those of one rank.
     module subroutine broadcast_integers(rank, n, values)
@@ -83,7 +90,61 @@ module dd3_base_ranks
     end subroutine gather_reals
   end interface
 
+  !> Replace each value by the largest on any rank.
+  interface largest_over_ranks
+    procedure :: largest_integers, largest_reals
+  end interface largest_over_ranks
+
 contains
+
+  !> Whether a condition holds on any rank.
+  logical function any_rank(condition)
+    logical, intent(in) :: condition
+
+    integer :: number(1)
+
+    number = merge(1, 0, condition)
+    call largest_over_ranks(1, number)
+    any_rank = number(1) > 0
+  end function any_rank
+
+  !> Return the number of items of all ranks.
+  integer function count_over_ranks(n)
+    !> Items of this rank.
+    integer, intent(in) :: n
+
+    real(wp) :: total(1)
+
+    total = real(n, wp)
+    call sum_over_ranks(1, total)
+    count_over_ranks = nint(total(1))
+  end function count_over_ranks
+
+  !> Return the value of rank 0 of what all ranks evaluate from the same data, before they decide on
+  !> it: on processors of different kinds the last bits can differ.
+  real(wp) function agreed(value)
+    real(wp), intent(in) :: value
+
+    real(wp) :: values(1)
+
+    values = value
+    call broadcast_reals(0, 1, values)
+    agreed = values(1)
+  end function agreed
+
+  !> Return the Euclidean norm of a vector of which each rank has some components.
+  real(wp) function norm_over_ranks(own)
+    !> Norm of the components of this rank.
+    real(wp), intent(in) :: own
+
+    real(wp) :: square(1)
+
+    norm_over_ranks = own
+    if (n_ranks() == 1) return
+    square = own**2
+    call sum_over_ranks(1, square)
+    norm_over_ranks = sqrt(square(1))
+  end function norm_over_ranks
 
   !> Return the rank with the smallest value; of equal ones that with the smaller number, and the
   !> lowest of equal ranks.

@@ -39,8 +39,6 @@ module dd3_base_verdict
     enumerator :: cause_singular
     enumerator :: cause_solver_memory
     enumerator :: cause_solver
-    !> The ranks evaluate the contact differently.
-    enumerator :: cause_ranks_differ
     !> A pressed tool without contact: `tool`.
     enumerator :: cause_lost_tool
     !> A node that its supports hold inside a tool: `node`.
@@ -62,8 +60,8 @@ module dd3_base_verdict
   public :: cause_none, cause_inverted, cause_inverted_strain, cause_not_finite, &
       cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
       cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
-      cause_ranks_differ, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
-      cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
+      cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, cause_residual, &
+      cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
 
   !> Result of a numerical step; initially a failure.
   type :: verdict_t

@@ -40,7 +40,7 @@ module dd3_linalg_mumps
   integer, parameter :: error_memory(3) = [-5, -7, -13], error_workspace(2) = [-8, -9], &
       error_singular(2) = [-6, -10]
   !> Additional workspace: percent at first, factor after `error_workspace`, and limit.
-  integer, parameter :: first_workspace = 20, more_workspace = 3, most_workspace = 1000
+  integer, parameter :: first_workspace = 5, more_workspace = 3, most_workspace = 1000
   real(wp), parameter :: megabyte = 1.0e6_wp
 
   !> Factors of a matrix.

@@ -86,10 +86,7 @@ contains
           "The factors need more memory than there is.", "`method = cgs` in `*SOLVER`."), &
       row("E233", "failure of the linear solver", &
           "The iteration does not reach the tolerance, most often because the sheet is hardly "// &
-          "held.", "`method = umfpack` in `*SOLVER`; supports that stop rigid motion."), &
-      row("E234", "processes that disagree", &
-          "They evaluate the contact differently: machines with different processors.", &
-          "Machines of one kind.")]
+          "held.", "`method = umfpack` in `*SOLVER`; supports that stop rigid motion.")]
   end function in_solver
 
   !> Return the failures of the contact and of the iteration.

@@ -18,9 +18,10 @@ module dd3_model_build
   use dd3_mesh_build, only : add_sets, new_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
-  use dd3_model_contact_points, only : set_contact_points
+  use dd3_model_contact_points, only : keep_own_points, set_contact_points
   use dd3_model_contact_results, only : candidate_hits
   use dd3_model_drawbead_build, only : new_drawbeads
+  use dd3_model_fingerprint, only : tool_digest
   use dd3_model_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_materials, only : new_materials
@@ -118,6 +119,7 @@ contains
     call set_output(model, case, mesh)
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
+    call keep_own_points(model)
   end subroutine build
 
   !> Make the sheet, that of the blank, of the mesh file or of another run, and cut it.
@@ -344,13 +346,12 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    logical, allocatable :: member(:, :)
     logical :: pressed(model%n_tool)
     integer :: t, i, k, points
 
-    allocate (member(model%n_tool, model%n_node), source=.false.)
+    allocate (model%member(model%n_tool, model%n_node), source=.false.)
     do t = 1, model%n_tool
-      member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
+      model%member(t, mesh%nodes_of(case%tool(t)%contact)) = .true.
     end do
     points = case%contact%points
     if (points > 1 .and. .not. is_one_layer(model)) call errors%push_input( &
@@ -358,7 +359,8 @@ contains
         "elements with eight nodes", "points = 1, or one element through the thickness", &
         code="E148")
     if (errors%count > 0) return
-    call set_contact_points(model, member, points)
+    call set_contact_points(model, points)
+    model%tool_digest = [(tool_digest(model, t), t=1, model%n_tool)]
     pressed = .false.
     do i = 1, size(case%phase)
       pressed(case%phase(i)%press%tool) = .true.

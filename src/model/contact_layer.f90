@@ -6,6 +6,7 @@
 !> weighs gap and slip against forces where the contact status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
   use dd3_contact_operator, only : status_gap
@@ -100,12 +101,12 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
     type(layer_t) :: layer
-    real(wp) :: force, total, moment, missing
+    !> Sums of the forces and of their products with the offsets; largest penetration, mm.
+    real(wp) :: force, sums(2), missing(1)
     integer :: c
 
     missing = 0.0_wp
-    moment = 0.0_wp
-    total = 0.0_wp
+    sums = 0.0_wp
     do c = 1, model%n_contact
       if (.not. model%candidate(tool, c)) cycle
       layer = layer_at(model, phase, c)
@@ -119,11 +120,12 @@ contains
       if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
           force = max(0.0_wp, -dot_product(state%lambda(:, c), hit%normal))
       missing = max(missing, layer%height - hit%distance)
-      moment = moment + force*(gap_under_force(layer, force) - hit%distance)
-      total = total + force
+      sums = sums + force*[1.0_wp, gap_under_force(layer, force) - hit%distance]
     end do
-    offset = missing
-    if (total > 0.0_wp) offset = max(0.0_wp, moment/total)
+    call largest_over_ranks(1, missing)
+    call sum_over_ranks(2, sums)
+    offset = missing(1)
+    if (sums(1) > 0.0_wp) offset = max(0.0_wp, sums(2)/sums(1))
   end function starting_offset
 
   !> Return the offsets at the points that prescribed displacements hold along the normal, mm,

@@ -8,9 +8,10 @@ module dd3_model_contact_points
   use dd3_model_contact_point, only : contact_point_t, edge_point, face_point, node_point
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : of_points
   implicit none
   private
-  public :: set_contact_points, point_areas, nodal_areas
+  public :: set_contact_points, set_point_owners, keep_own_points, point_areas, nodal_areas
 
   !> Points of a list, each once.
   type :: point_list_t
@@ -24,10 +25,9 @@ contains
 
   !> Set the contact faces, whose nodes are all candidates of the same tool, and the contact points
   !> with their areas, stiffnesses and tools.
-  subroutine set_contact_points(model, member, divisions)
+  subroutine set_contact_points(model, divisions)
+    !> Has the candidates of the tools.
     type(model_t), intent(inout) :: model
-    !> Whether a node is a candidate of a tool, `(n_tool, n_node)`.
-    logical, intent(in) :: member(:, :)
     !> Number of parts of an edge of a face with four nodes.
     integer, intent(in) :: divisions
 
@@ -35,14 +35,14 @@ contains
     integer :: i, c, f, most
 
     model%contact_face = pack([(f, f=1, model%face%n)], &
-        [(any(all(member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
+        [(any(all(model%member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
     most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
     allocate (list%point(most))
     allocate (list%next(most), list%first(model%n_node), source=0)
     allocate (model%candidate_of(model%n_node), source=0)
     call set_opposites(model)
     do i = 1, model%n_node
-      if (.not. any(member(:, i))) cycle
+      if (.not. any(model%member(:, i))) cycle
       call add_point(list, node_point(i))
       model%candidate_of(i) = list%n
     end do
@@ -58,7 +58,7 @@ contains
     allocate (model%candidate(model%n_tool, list%n))
     do c = 1, list%n
       associate (point => model%contact_point(c))
-        model%candidate(:, c) = all(member(:, point%node(:point%n_surface)), dim=2)
+        model%candidate(:, c) = all(model%member(:, point%node(:point%n_surface)), dim=2)
       end associate
     end do
     ! A point lies on the first of its faces.
@@ -69,7 +69,45 @@ contains
     end do
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)
+    model%n_candidate = count(model%candidate, dim=2)
+    model%part%n_point = model%n_contact
+    call set_point_owners(model)
   end subroutine set_contact_points
+
+  !> Set the rank of each contact point: that of its node, whose row the mixed formulation needs, or
+  !> for a point between nodes that of its element.
+  subroutine set_point_owners(model)
+    type(model_t), intent(inout) :: model
+
+    integer :: c
+
+    model%part%point_owner = [(merge(model%part%node_owner(model%contact_node(c)), &
+        model%part%owner(model%contact_point(c)%element), c <= model%n_contact_node), &
+        c=1, model%n_contact)]
+  end subroutine set_point_owners
+
+  !> Keep the contact points of this rank alone, and number them.
+  subroutine keep_own_points(model)
+    type(model_t), intent(inout) :: model
+
+    integer, allocatable :: kept(:), number(:)
+    integer :: c
+
+    if (.not. model%part%divided) return
+    kept = model%part%own(of_points)
+    allocate (number(0:model%n_contact), source=0)
+    number(kept) = [(c, c=1, size(kept))]
+    model%contact_point = model%contact_point(kept)
+    model%contact_node = model%contact_node(kept)
+    model%candidate = model%candidate(:, kept)
+    model%contact_stiffness = model%contact_stiffness(kept)
+    model%candidate_of = number(model%candidate_of)
+    do c = 1, size(model%face_point, 2)
+      model%face_point(:, c) = number(model%face_point(:, c))
+    end do
+    model%n_contact_node = count(kept <= model%n_contact_node)
+    model%n_contact = size(kept)
+  end subroutine keep_own_points
 
   !> Set the places of the nodes of each point in its element. A node that belongs to no face gets
   !> an element at it.
@@ -259,22 +297,27 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the contact points, `(n_contact)`, mm2; zero for a node without contact
-  !> faces.
+  !> Return the areas of the contact points of this rank, `(n_contact)`, mm2; zero for a node without
+  !> contact faces.
   pure function point_areas(model, x) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: area(:)
 
-    integer :: f, divisions
+    real(wp) :: of_face(size(model%face_point, 1))
+    integer :: f, i, divisions
 
     allocate (area(model%n_contact), source=0.0_wp)
     divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
     do f = 1, size(model%contact_face)
-      associate (point => model%face_point(:, f))
-        area(point) = area(point) + areas_of_face(model, x, f, divisions)
-      end associate
+      if (all(model%face_point(:, f) == 0)) cycle
+      of_face = areas_of_face(model, x, f, divisions)
+      do i = 1, size(of_face)
+        associate (point => model%face_point(i, f))
+          if (point > 0) area(point) = area(point) + of_face(i)
+        end associate
+      end do
     end do
   end function point_areas
 

@@ -3,6 +3,7 @@
 !> the nearest tool and pressure, which is normal force over area.
 module dd3_model_contact_results
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : broadcast_reals, largest_over_ranks, rank_of_smallest, sum_over_ranks
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
@@ -14,16 +15,53 @@ module dd3_model_contact_results
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: candidate_hits, contact_gaps, contact_pressures, tool_contact_t, tool_contacts
+  public :: candidate_hits, nearest_candidate, nearest_t
+  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts
 
   !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
     real(wp) :: area = 0.0_wp, pressure = 0.0_wp
   end type tool_contact_t
 
+  !> Candidate nearest to a tool: its node, 0 for none, and distance, mm.
+  type :: nearest_t
+    integer :: node = 0
+    real(wp) :: distance = huge(1.0_wp)
+  end type nearest_t
+
 contains
 
-  !> Return the closest points, `(n_contact)`; none is found for a point that is no candidate.
+  !> Return the candidate with the smallest value of a measure of its distance.
+  function nearest_candidate(model, distance, counts, measure) result(nearest)
+    type(model_t), intent(in) :: model
+    !> Distances of the contact points of this rank, mm, and whether they count, `(n_contact)`.
+    real(wp), intent(in) :: distance(:)
+    logical, intent(in) :: counts(:)
+    !> Default: the distance itself, mm, `(n_contact)`.
+    real(wp), intent(in), optional :: measure(:)
+    type(nearest_t) :: nearest
+
+    real(wp) :: values(3)
+    integer :: c, node
+
+    values = huge(1.0_wp)
+    node = huge(1)
+    if (present(measure)) then
+      c = minloc(measure, dim=1, mask=counts)
+      if (c > 0) values(1) = measure(c)
+    else
+      c = minloc(distance, dim=1, mask=counts)
+      if (c > 0) values(1) = distance(c)
+    end if
+    if (c > 0) then
+      node = model%contact_node(c)
+      values(2:) = [real(node, wp), distance(c)]
+    end if
+    if (model%part%divided) call broadcast_reals(rank_of_smallest(values(1), node), 3, values)
+    if (values(2) < huge(1.0_wp)) nearest = nearest_t(nint(values(2)), values(3))
+  end function nearest_candidate
+
+  !> Return the closest points to the contact points of this rank, `(n_contact)`; none is found for a point that is no candidate.
   pure function candidate_hits(model, tool, placement, x, search_distance, depth, outward) &
       result(hit)
     type(model_t), intent(in) :: model
@@ -54,7 +92,7 @@ contains
 
   !> Return the pressures at the nodes, `(n_node)`, MPa, positive in compression; zero for a node
   !> without contact faces.
-  pure function contact_pressures(model, state) result(pressure)
+  function contact_pressures(model, state) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), allocatable :: pressure(:)
@@ -72,7 +110,7 @@ contains
   end function contact_pressures
 
   !> Return the contact of each tool, `(n_tool)`.
-  pure function tool_contacts(model, state) result(contact)
+  function tool_contacts(model, state) result(contact)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(tool_contact_t), allocatable :: contact(:)
@@ -91,10 +129,12 @@ contains
         tool%pressure = max(tool%pressure, dot_product(normal(:, c), state%lambda(:, c))/area(c))
       end associate
     end do
+    call sum_over_ranks(size(contact), contact%area)
+    call largest_over_ranks(size(contact), contact%pressure)
   end function tool_contacts
 
-  !> Return the gaps, `(n_contact_node)`, mm; at most the search distance of the phase, which is
-  !> also the value where no active tool is that near.
+  !> Return the gaps at the nodes, `(n_node)`, mm; at most the search distance of the phase, which is
+  !> also the value where no active tool is that near, and at a node that is no candidate.
   function contact_gaps(model, state) result(gap)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -106,7 +146,7 @@ contains
     integer :: c, t
 
     associate (phase => model%phase(state%phase))
-      allocate (gap(model%n_contact_node), source=phase%search_distance)
+      allocate (gap(model%n_node), source=-phase%search_distance)
       outward = outward_normals(model, state%x)
       do c = 1, model%n_contact_node
         do t = 1, model%n_tool
@@ -116,10 +156,12 @@ contains
               model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
               + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
-          if (hit%found) gap(c) = min(gap(c), hit%distance)
+          if (hit%found) gap(model%contact_node(c)) = max(gap(model%contact_node(c)), -hit%distance)
         end do
       end do
     end associate
+    call largest_over_ranks(size(gap), gap)
+    gap = -gap
   end function contact_gaps
 
 end module dd3_model_contact_results

@@ -45,17 +45,19 @@ contains
   !> Return the energy stored in the contact layers, mJ. The normal force is that along the tool's
   !> normal: along the normal of a face of the sheet, which is not at right angles to a curved tool,
   !> the friction would count too.
-  pure real(wp) function contact_energy(model, state)
+  real(wp) function contact_energy(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
     type(layer_t) :: layer
     type(hint_t) :: hint
     type(hit_t) :: hit
+    real(wp) :: energy(1)
     integer :: c
 
     contact_energy = 0.0_wp
     if (model%phase(state%phase)%mixed) return
+    energy = 0.0_wp
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
       associate (tool => state%contact_tool(c), phase => model%phase(state%phase))
@@ -67,15 +69,16 @@ contains
             + max(state%layer_offset(tool), state%start%held_offset(c)), hit, &
             border=border_at(model, phase, c))
       end associate
-      contact_energy = contact_energy &
-          + layer_energy(layer, -dot_product(hit%normal, state%lambda(:, c)))
+      energy = energy + layer_energy(layer, -dot_product(hit%normal, state%lambda(:, c)))
     end do
+    call sum_over_ranks(1, energy)
+    contact_energy = energy(1)
   end function contact_energy
 
   !> Return the work on the sheet less internal work, friction work, that of draw-beads and the
   !> energy of the contact layers, mJ. It vanishes with the increments and the tolerance of
   !> equilibrium.
-  pure real(wp) function energy_error(model, state)
+  real(wp) function energy_error(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 

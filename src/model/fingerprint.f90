@@ -10,7 +10,7 @@ module dd3_model_fingerprint
   use dd3_model_phase, only : phase_t
   implicit none
   private
-  public :: fingerprint_t, model_fingerprint, changed_parts
+  public :: fingerprint_t, model_fingerprint, changed_parts, tool_digest
 
   !> Check sum of one part of a model.
   type :: fingerprint_t
@@ -43,7 +43,7 @@ contains
           model%material_digest(i))
     end do
     do i = 1, model%n_tool
-      call add(fingerprint, "tool '"//model%tool(i)%name//"'", tool_digest(model, i))
+      call add(fingerprint, "tool '"//model%tool(i)%name//"'", model%tool_digest(i))
     end do
     do i = 1, size(model%drawbead)
       call add(fingerprint, "draw-bead '"//model%drawbead(i)%name//"'", &
@@ -115,7 +115,8 @@ contains
     mesh_digest = digest%value()
   end function mesh_digest
 
-  !> Return the check sum of a tool's surface, friction, position and candidates.
+  !> Return the check sum of a tool's surface, friction, position and candidates, of a model with the
+  !> contact points of all ranks.
   integer function tool_digest(model, tool)
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool

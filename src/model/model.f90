@@ -3,6 +3,7 @@
 !> phases.
 module dd3_model_model
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
   use dd3_input_case, only : fields_at, fields_every, fields_increments, history_spec_t, &
@@ -75,13 +76,20 @@ module dd3_model_model
     real(wp), allocatable :: rim_normal(:, :)
     type(tolerances_t) :: tolerance
     type(tool_t), allocatable :: tool(:)
-    !> Contact points, `(n_contact)`, those at nodes first; the node of each, or one beside it.
+    !> Check sums of the tools with their candidates.
+    integer, allocatable :: tool_digest(:)
+    !> Contact points of this rank, `(n_contact)`, those at nodes first; the node of each, or one
+    !> beside it.
     type(contact_point_t), allocatable :: contact_point(:)
     integer, allocatable :: contact_node(:)
     !> Number of contact points at nodes.
     integer :: n_contact_node = 0
-    !> Contact point at each node, `(n_node)`; 0 for none.
+    !> Contact point at each node, `(n_node)`; 0 for none on this rank.
     integer, allocatable :: candidate_of(:)
+    !> Nodes that can touch each tool, `(n_tool, n_node)`, and the number of contact points that
+    !> can, of all ranks, `(n_tool)`.
+    logical, allocatable :: member(:, :)
+    integer, allocatable :: n_candidate(:)
     !> Tools that a contact point can touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
     !> Stiffness of the sheet through its thickness under each contact point, `(n_contact)`, N/mm.
@@ -91,7 +99,7 @@ module dd3_model_model
     !> Faces on which a tool can touch the sheet: positions in `face`.
     integer, allocatable :: contact_face(:)
     !> Contact points on each of these faces, `(:, size(contact_face))`: the corners of its parts,
-    !> row by row, or all its nodes if it has more than four.
+    !> row by row, or all its nodes if it has more than four; 0 for one of another rank.
     integer, allocatable :: face_point(:, :)
     !> Block row of each tool in the reduced system, after those of the nodes, `(n_tool)`; 0 if the
     !> tool is never pressed.
@@ -142,8 +150,8 @@ contains
   end function thickness_at
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
-  !> contact points.
-  pure function nodal_contact_forces(self, x, point_force) result(force)
+  !> contact points of all ranks.
+  function nodal_contact_forces(self, x, point_force) result(force)
     class(model_t), intent(in) :: self
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
@@ -158,6 +166,7 @@ contains
       if (all(abs(point_force(:, c)) <= 0.0_wp)) cycle
       call self%contact_point(c)%add_nodal_forces(x, point_force(:, c), force)
     end do
+    call sum_over_ranks(size(force), force)
   end function nodal_contact_forces
 
   !> Whether a tool turns in some phase.

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of the sheet that a rank holds: its elements, with the values at their integration points,
-!> and the rows of the linear system of its nodes. Nodes, contact points and tools are on all ranks.
+!> its contact points, and the rows of the linear system of its nodes. The vectors at the nodes, mesh
+!> and tools are on all ranks.
 module dd3_model_part
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : gather_reals, n_ranks, this_rank
@@ -9,7 +10,10 @@ module dd3_model_part
   use dd3_linalg_partition, only : divide_rows
   implicit none
   private
-  public :: part_t, new_part
+  public :: part_t, new_part, of_elements, of_points
+
+  !> What an item of values is.
+  integer, parameter :: of_elements = 1, of_points = 2
 
   !> Part of a rank. A number of an element "in the part" counts those of this rank.
   type :: part_t
@@ -20,7 +24,12 @@ module dd3_model_part
     integer, allocatable :: element(:), place(:)
     !> Rank of each element, `(n_element)`, and of each node, `(n_node)`, from 0.
     integer, allocatable :: owner(:), node_owner(:)
+    !> Number of contact points of the sheet, and the rank of each.
+    integer :: n_point = 0
+    integer, allocatable :: point_owner(:)
   contains
+    procedure :: ranks_of => part_ranks_of
+    procedure :: own => part_own
     procedure :: gather => part_gather
     procedure :: holds_node => part_holds_node
     procedure :: report => part_report
@@ -45,8 +54,7 @@ contains
       call divide_rows(graph, self%node_owner)
     end if
     self%owner = self%node_owner(connectivity(1, :))
-    self%element = pack([(e, e=1, size(self%owner))], self%owner == this_rank() &
-        .or. .not. self%divided)
+    self%element = self%own(of_elements)
     self%place(self%element) = [(e, e=1, size(self%element))]
   end subroutine new_part
 
@@ -67,35 +75,67 @@ contains
     end do
   end function part_holds_node
 
-  !> Gather values of the elements on rank 0.
-  subroutine part_gather(self, n, own, all)
+  !> Return the rank of each of all elements or contact points.
+  pure function part_ranks_of(self, item) result(owner)
     class(part_t), intent(in) :: self
-    !> Number of values of an element.
-    integer, intent(in) :: n
-    !> Values of the elements of this rank.
-    real(wp), intent(in) :: own(n, size(self%element))
-    !> Values of all elements, `(n, n_element)`; `(n, 0)` on the other ranks.
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
+    integer, allocatable :: owner(:)
+
+    if (item == of_elements) then
+      owner = self%owner
+    else
+      owner = self%point_owner
+    end if
+  end function part_ranks_of
+
+  !> Return the elements or contact points of this rank, ascending, in the numbering of all.
+  function part_own(self, item) result(own)
+    class(part_t), intent(in) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
+    integer, allocatable :: own(:)
+
+    integer :: i, rank
+
+    rank = this_rank()
+    associate (owner => self%ranks_of(item))
+      own = pack([(i, i=1, size(owner))], owner == rank .or. .not. self%divided)
+    end associate
+  end function part_own
+
+  !> Gather values of the elements or contact points on rank 0.
+  subroutine part_gather(self, item, n, n_own, own, all)
+    class(part_t), intent(in) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
+    !> Number of values of an item, and of the items of this rank.
+    integer, intent(in) :: n, n_own
+    !> Values of the items of this rank.
+    real(wp), intent(in) :: own(n, n_own)
+    !> Values of all items, `(n, n_item)`; `(n, 0)` on the other ranks.
     real(wp), allocatable, intent(out) :: all(:, :)
 
     real(wp), allocatable :: received(:)
-    integer, allocatable :: of_rank(:), next(:), from(:)
+    integer, allocatable :: owner(:), of_rank(:), next(:), from(:)
     integer :: rank, e, i
 
     if (.not. self%divided) then
       all = own
       return
     end if
-    of_rank = [(count(self%owner == rank), rank=0, n_ranks() - 1)]
+    owner = self%ranks_of(item)
+    of_rank = [(count(owner == rank), rank=0, n_ranks() - 1)]
     next = [(sum(of_rank(:rank - 1)) + 1, rank=1, size(of_rank))]
-    allocate (from(size(self%owner)), received(merge(size(self%owner), 0, this_rank() == 0)))
+    allocate (from(size(owner)), received(merge(size(owner), 0, this_rank() == 0)))
     do e = 1, size(from)
-      associate (at => next(self%owner(e) + 1))
+      associate (at => next(owner(e) + 1))
         from(e) = at
         at = at + 1
       end associate
     end do
     allocate (all(n, size(received)))
-    ! One value of all elements at a time, which needs little memory.
+    ! One value of all items at a time, which needs little memory.
     do i = 1, n
       call gather_reals(of_rank, own(i, :), received)
       if (size(received) > 0) all(i, :) = received(from)

@@ -5,6 +5,7 @@
 !> translations first. A part of the sheet are elements that are connected through common nodes.
 module dd3_model_rigid_motion
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_text, only : axis_name, to_text
   use dd3_linalg_tensor, only : cross, identity
   implicit none
@@ -27,6 +28,7 @@ module dd3_model_rigid_motion
     real(wp) :: product(6, 6) = 0.0_wp
   contains
     procedure :: hold
+    procedure :: share
     procedure :: hold_prescribed
     procedure :: free_motion
     procedure :: free_projector
@@ -76,6 +78,14 @@ contains
     row = self%condition(x, direction)
     self%product = self%product + spread(row, 2, 6)*spread(row, 1, 6)
   end subroutine hold
+
+  !> Hold the body by the conditions of all ranks as well. Those that all ranks have count more, which
+  !> does not change the free motions.
+  subroutine share(self)
+    class(rigid_motion_t), intent(inout) :: self
+
+    call sum_over_ranks(size(self%product), self%product)
+  end subroutine share
 
   !> Return the condition of a point held in a direction on translation and rotation times size. It
   !> is also the resultant and the moment over size of a force there.

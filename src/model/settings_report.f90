@@ -3,6 +3,7 @@
 !> log: contact, limits of the predictor, lengths of the draw-beads on the initial sheet.
 module dd3_model_settings_report
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_text, only : newline, to_text
   use dd3_contact_compliant, only : layer_gap
   use dd3_input_case, only : limit_spec_t
@@ -64,7 +65,7 @@ contains
     character(len=:), allocatable :: text
 
     text = ""
-    if (model%n_contact == 0) return
+    if (model%part%n_point == 0) return
     associate (phase => model%phase(i))
       if (phase%mixed) then
         text = "contact: "//penalties(model, phase)
@@ -108,12 +109,14 @@ contains
     character(len=:), allocatable :: text
 
     character(len=:), allocatable :: smallest, largest
-    real(wp) :: penalty(model%n_contact)
+    real(wp) :: penalty(model%n_contact), ends(2)
     integer :: c
 
     penalty = [(contact_penalty(model, phase, c), c=1, model%n_contact)]
-    smallest = to_text(minval(penalty), 4)
-    largest = to_text(maxval(penalty), 4)
+    ends = [maxval(penalty), -minval(penalty)]
+    call largest_over_ranks(2, ends)
+    smallest = to_text(-ends(2), 4)
+    largest = to_text(ends(1), 4)
     text = "penalty "//smallest
     if (smallest /= largest) text = text//" to "//largest
     text = text//" N/mm"

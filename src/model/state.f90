@@ -2,10 +2,11 @@
 !> State of a run: all that changes in it and decides how it continues. Two copies exist, the
 !> committed state (configuration N-1, in equilibrium) and the trial state (configuration N);
 !> acceptance and cut-back are assignments. The walk over the components in state_walk.f90 serves
-!> the restart; a test checks that it names every component declared here. Arrays of elements have
-!> those of the rank's part.
+!> the restart; a test checks that it names every component declared here. Arrays of elements and
+!> of contact points have those of the rank's part.
 module dd3_model_state
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : any_rank
   use dd3_contact_closest, only : hint_t
   use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
@@ -155,12 +156,12 @@ contains
     end associate
   end function placement
 
-  !> Whether a tool is in contact.
-  pure logical function touches(self, tool)
+  !> Whether a tool is in contact with the sheet, on any rank.
+  logical function touches(self, tool)
     class(state_t), intent(in) :: self
     integer, intent(in) :: tool
 
-    touches = any(self%contact_tool == tool .and. self%status /= status_gap)
+    touches = any_rank(any(self%contact_tool == tool .and. self%status /= status_gap))
   end function touches
 
   !> Make the initial state: the sheet as it is at the start of the job, unstressed or with the

@@ -5,6 +5,7 @@
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : hint_t
+  use dd3_model_part, only : of_elements, of_points
   use dd3_model_state, only : phase_start_t, state_t
   implicit none
   private
@@ -15,11 +16,12 @@ module dd3_model_state_walk
   contains
     procedure(visit_reals_interface), deferred :: reals
     procedure(visit_integers_interface), deferred :: integers
-    !> Components that hold values of the elements of this rank; these are consecutive.
-    procedure :: reals_of_elements
-    procedure :: integers_of_elements
+    !> Components that hold values of the elements, or of the contact points, of this rank; these are
+    !> consecutive.
+    procedure :: reals_of_items
+    procedure :: integers_of_items
     procedure, private :: logicals
-    procedure, private :: logicals_of_elements
+    procedure, private :: logicals_of_items
     procedure, private :: one_real
     procedure, private :: one_integer
     procedure, private :: one_logical
@@ -69,17 +71,20 @@ contains
     call visitor%reals("pressure", size(state%pressure), state%pressure)
     associate (n => size(state%plastic, 2), n_point => size(state%plastic, 1), &
         n_variable => size(state%internal_variables, 1))
-      call visitor%reals_of_elements("stress", 6*n_point, n, state%stress)
-      call visitor%reals_of_elements("internal_variables", n_variable*n_point, n, &
+      call visitor%reals_of_items(of_elements, "stress", 6*n_point, n, state%stress)
+      call visitor%reals_of_items(of_elements, "internal_variables", n_variable*n_point, n, &
           state%internal_variables)
-      call visitor%reals_of_elements("orientation", 9*n_point, n, state%orientation)
-      call visitor%reals_of_elements("enhanced", size(state%enhanced, 1), n, state%enhanced)
-      call visitor%logicals_of_elements("plastic", n_point, n, state%plastic)
+      call visitor%reals_of_items(of_elements, "orientation", 9*n_point, n, state%orientation)
+      call visitor%reals_of_items(of_elements, "enhanced", size(state%enhanced, 1), n, state%enhanced)
+      call visitor%logicals_of_items(of_elements, "plastic", n_point, n, state%plastic)
     end associate
-    call visitor%reals("lambda", size(state%lambda), state%lambda)
-    call visitor%integers("status", size(state%status), state%status)
-    call visitor%integers("contact_tool", size(state%contact_tool), state%contact_tool)
-    call visit_hints("hint", size(state%hint), state%hint, visitor)
+    associate (n => size(state%status))
+      call visitor%reals_of_items(of_points, "lambda", 3, n, state%lambda)
+      call visitor%integers_of_items(of_points, "status", 1, n, state%status)
+      call visitor%integers_of_items(of_points, "contact_tool", 1, n, state%contact_tool)
+      call visit_hints("hint", size(state%hint, 1), n, state%hint, visitor)
+      call visitor%reals_of_items(of_points, "slip_path", 1, n, state%slip_path)
+    end associate
     call visitor%reals("fading", size(state%fading), state%fading)
     call visitor%integers("fading_tool", size(state%fading_tool), state%fading_tool)
     call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
@@ -97,7 +102,6 @@ contains
     call visitor%integers("open_edge", size(state%open_edge), state%open_edge)
     call visitor%reals("open_edge_displacement", size(state%open_edge_displacement), &
         state%open_edge_displacement)
-    call visitor%reals("slip_path", size(state%slip_path), state%slip_path)
     call visitor%reals("bead_force", size(state%bead_force), state%bead_force)
     call visitor%reals("bead_path", size(state%bead_path), state%bead_path)
     call visitor%reals("bead_load", size(state%bead_load), state%bead_load)
@@ -126,48 +130,53 @@ contains
     call visitor%reals("start_tool_load", size(start%tool_load), start%tool_load)
     call visitor%reals("start_tool_load_end", size(start%tool_load_end), start%tool_load_end)
     call visitor%reals("start_layer_offset", size(start%layer_offset), start%layer_offset)
-    call visitor%reals("start_held_offset", size(start%held_offset), start%held_offset)
+    call visitor%reals_of_items(of_points, "start_held_offset", 1, size(start%held_offset), &
+        start%held_offset)
     call visitor%reals("start_load", size(start%load), start%load)
     call visitor%reals("start_load_end", size(start%load_end), start%load_end)
     call visitor%reals("start_pressure", size(start%pressure), start%pressure)
     call visitor%reals("start_pressure_end", size(start%pressure_end), start%pressure_end)
     call visitor%reals("start_x", size(start%x), start%x)
     call visitor%reals("start_fading", size(start%fading), start%fading)
-    call visitor%reals_of_elements("start_plastic_strain", size(start%plastic_strain, 1), &
-        size(start%plastic_strain, 2), start%plastic_strain)
+    call visitor%reals_of_items(of_elements, "start_plastic_strain", &
+        size(start%plastic_strain, 1), size(start%plastic_strain, 2), start%plastic_strain)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
 
   !> Pass every component of the closest points to a visitor.
-  subroutine visit_hints(name, n, hint, visitor)
+  subroutine visit_hints(name, n_tool, n, hint, visitor)
     character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    type(hint_t), intent(inout) :: hint(n)
+    integer, intent(in) :: n_tool, n
+    type(hint_t), intent(inout) :: hint(n_tool, n)
     class(state_visitor_t), intent(inout) :: visitor
 
-    real(wp), allocatable :: anchor(:, :), u(:), v(:), clearance(:)
-    integer, allocatable :: patch(:)
-    logical, allocatable :: due(:)
-    integer :: i
+    real(wp), allocatable :: anchor(:, :, :), u(:, :), v(:, :), clearance(:, :)
+    integer, allocatable :: patch(:, :)
+    logical, allocatable :: due(:, :)
+    integer :: i, t
 
     patch = hint%patch
     u = hint%u
     v = hint%v
     due = hint%due
     clearance = hint%clearance
-    allocate (anchor(3, n))
+    allocate (anchor(3, n_tool, n))
     do i = 1, n
-      anchor(:, i) = hint(i)%anchor
+      do t = 1, n_tool
+        anchor(:, t, i) = hint(t, i)%anchor
+      end do
     end do
-    call visitor%integers(name//"_patch", n, patch)
-    call visitor%reals(name//"_u", n, u)
-    call visitor%reals(name//"_v", n, v)
-    call visitor%logicals(name//"_due", n, due)
-    call visitor%reals(name//"_anchor", 3*n, anchor)
-    call visitor%reals(name//"_clearance", n, clearance)
+    call visitor%integers_of_items(of_points, name//"_patch", n_tool, n, patch)
+    call visitor%reals_of_items(of_points, name//"_u", n_tool, n, u)
+    call visitor%reals_of_items(of_points, name//"_v", n_tool, n, v)
+    call visitor%logicals_of_items(of_points, name//"_due", n_tool, n, due)
+    call visitor%reals_of_items(of_points, name//"_anchor", 3*n_tool, n, anchor)
+    call visitor%reals_of_items(of_points, name//"_clearance", n_tool, n, clearance)
     do i = 1, n
-      hint(i) = hint_t(patch=patch(i), u=u(i), v=v(i), due=due(i), anchor=anchor(:, i), &
-          clearance=clearance(i))
+      do t = 1, n_tool
+        hint(t, i) = hint_t(patch=patch(t, i), u=u(t, i), v=v(t, i), due=due(t, i), &
+            anchor=anchor(:, t, i), clearance=clearance(t, i))
+      end do
     end do
   end subroutine visit_hints
 
@@ -185,42 +194,48 @@ contains
     values = number /= 0
   end subroutine logicals
 
-  !> Visit real numbers of the elements as any others.
-  subroutine reals_of_elements(self, name, n, n_element, values)
+  !> Visit real numbers of elements or contact points as any others.
+  subroutine reals_of_items(self, item, name, n, n_item, values)
     class(state_visitor_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements.
-    integer, intent(in) :: n, n_element
-    real(wp), intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items.
+    integer, intent(in) :: n, n_item
+    real(wp), intent(inout) :: values(n, n_item)
 
-    call self%reals(name, size(values), values)
-  end subroutine reals_of_elements
+    if (item > 0) call self%reals(name, size(values), values)
+  end subroutine reals_of_items
 
-  !> Visit integers of the elements as any others.
-  subroutine integers_of_elements(self, name, n, n_element, values)
+  !> Visit integers of elements or contact points as any others.
+  subroutine integers_of_items(self, item, name, n, n_item, values)
     class(state_visitor_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements.
-    integer, intent(in) :: n, n_element
-    integer, intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items.
+    integer, intent(in) :: n, n_item
+    integer, intent(inout) :: values(n, n_item)
 
-    call self%integers(name, size(values), values)
-  end subroutine integers_of_elements
+    if (item > 0) call self%integers(name, size(values), values)
+  end subroutine integers_of_items
 
-  !> Visit logical values of the elements as integers 0 and 1.
-  subroutine logicals_of_elements(self, name, n, n_element, values)
+  !> Visit logical values of elements or contact points as integers 0 and 1.
+  subroutine logicals_of_items(self, item, name, n, n_item, values)
     class(state_visitor_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements.
-    integer, intent(in) :: n, n_element
-    logical, intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items.
+    integer, intent(in) :: n, n_item
+    logical, intent(inout) :: values(n, n_item)
 
     integer, allocatable :: number(:, :)
 
     number = merge(1, 0, values)
-    call self%integers_of_elements(name, n, n_element, number)
+    call self%integers_of_items(item, name, n, n_item, number)
     values = number /= 0
-  end subroutine logicals_of_elements
+  end subroutine logicals_of_items
 
   !> Visit a scalar.
   subroutine one_real(self, name, value)

@@ -4,6 +4,7 @@
 !> Measured both ways: points of the faces inside the tool, and points of the tool behind the faces.
 module dd3_model_tool_depth
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : broadcast_reals, rank_of_smallest, this_rank
   use dd3_contact_bezier, only : n_sample, normal_at, patch_t, position_at
   use dd3_contact_box_tree, only : overlapping
   use dd3_contact_closest, only : find_contact, hint_t, hit_t
@@ -71,7 +72,7 @@ contains
     state%tool_depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
-      state%touched(tool) = state%touched(tool) .or. state%touches(tool)
+      if (.not. state%touched(tool)) state%touched(tool) = state%touches(tool)
       found = measure_tool_depth(model, state, tool)
       state%tool_depth(tool) = found%depth
       if (found%depth <= state%largest_depth(tool)) cycle
@@ -84,18 +85,20 @@ contains
     end do
   end subroutine observe_tools
 
-  !> Measure the depth of a tool in the faces whose nodes are its candidates. Those with 9 nodes are
-  !> curved; they are measured in four quadrilaterals.
-  pure function measure_tool_depth(model, state, tool) result(self)
+  !> Measure the depth of a tool in the faces whose nodes are its candidates, each rank in those of
+  !> its elements. Those with 9 nodes are curved; they are measured in four quadrilaterals.
+  function measure_tool_depth(model, state, tool) result(self)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
     type(tool_depth_t) :: self
 
-    integer :: f, i
+    integer :: f, i, rank
 
+    rank = this_rank()
     self%depth = slight_depth*model%thickness
     do f = 1, model%face%n
+      if (model%part%owner(model%face%element(f)) /= rank) cycle
       associate (node => model%face%node(:, f))
         if (size(node) == 9) then
           do i = 1, 4
@@ -107,7 +110,19 @@ contains
       end associate
     end do
     if (self%face == 0) self%depth = 0.0_wp
+    if (model%part%divided) call share_deepest(self)
   end function measure_tool_depth
+
+  !> Give all ranks the largest depth; of equal ones that of the face with the lowest number.
+  subroutine share_deepest(self)
+    type(tool_depth_t), intent(inout) :: self
+
+    real(wp) :: values(5)
+
+    values = [self%depth, real(self%face, wp), self%x]
+    call broadcast_reals(rank_of_smallest(-self%depth, self%face), size(values), values)
+    self = tool_depth_t(values(1), nint(values(2)), values(3:))
+  end subroutine share_deepest
 
   !> Measure the depth of a tool in a face, or a part of it.
   pure subroutine probe_face(self, model, state, tool, f, node)
@@ -118,15 +133,27 @@ contains
     integer, intent(in) :: tool, f, node(4)
 
     type(face_t) :: face
-    integer :: candidate(4)
+    type(hint_t) :: hint(4)
+    type(hit_t) :: hit
+    integer :: i
     logical :: near
 
-    candidate = model%candidate_of(node)
-    if (any(candidate == 0)) return
-    if (.not. all(model%candidate(tool, candidate))) return
+    if (.not. all(model%member(tool, node))) return
     call set_face(face, model, state, tool, f, node)
     call probe_patches(self, model, face, tool, near)
-    if (near) call probe_tool(self, model, face, state%hint(tool, candidate), tool)
+    if (.not. near) return
+    do i = 1, 4
+      associate (c => model%candidate_of(node(i)))
+        if (c > 0) then
+          hint(i) = state%hint(tool, c)
+        else
+          ! The node is one of another rank.
+          call find_contact(model%tool(tool)%surface, face%x(:, i), hint(i), face%size, face%size, &
+              hit)
+        end if
+      end associate
+    end do
+    call probe_tool(self, model, face, hint, tool)
   end subroutine probe_face
 
   !> Set a face in the frame of a tool.

@@ -157,7 +157,7 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
     real(wp) :: x(3, 4), position(3, model%n_node), cosine
-    integer :: candidate(4), f, n
+    integer :: f, n
 
     position = model%start_positions()
     n = 0
@@ -165,9 +165,7 @@ contains
     n_averted = 0
     up = 0.0_wp
     do f = 1, model%face%n
-      candidate = model%candidate_of(model%face%corner(:, f))
-      if (any(candidate == 0)) cycle
-      if (.not. all(model%candidate(tool, candidate))) cycle
+      if (.not. all(model%member(tool, model%face%corner(:, f)))) cycle
       n = n + 1
       if (mod(n, model%face%n/most_faces + 1) > 0) cycle
       x = position(:, model%face%corner(:, f))

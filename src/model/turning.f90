@@ -2,6 +2,7 @@
 !> Rotation of the tools in a state.
 module dd3_model_turning
   use dd3_base_kinds, only : pi, wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross, rotation_about
@@ -97,12 +98,12 @@ contains
 
   !> Return the moment of the contact forces on a tool about the axis of its turn in the running
   !> phase or the last one before, N.mm; 0 if it has not turned.
-  pure real(wp) function torque(model, state, tool)
+  real(wp) function torque(model, state, tool)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
 
-    real(wp) :: centre(3), axis(3)
+    real(wp) :: centre(3), axis(3), moment(1)
     integer :: i, c
 
     axis = 0.0_wp
@@ -112,12 +113,14 @@ contains
       exit
     end do
     centre = state%tool_centre(:, tool) + state%tool_displacement(:, tool)
-    torque = 0.0_wp
+    moment = 0.0_wp
     do c = 1, model%n_contact
       if (state%contact_tool(c) /= tool .or. state%status(c) == status_gap) cycle
-      torque = torque + dot_product(axis, cross(model%contact_point(c)%position(state%x) - centre, &
+      moment = moment + dot_product(axis, cross(model%contact_point(c)%position(state%x) - centre, &
           state%lambda(:, c)))
     end do
+    call sum_over_ranks(1, moment)
+    torque = moment(1)
   end function torque
 
 end module dd3_model_turning

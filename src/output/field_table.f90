@@ -3,6 +3,7 @@
 !> the integration points is written twice: its mean at the cells, and extrapolated at the nodes.
 module dd3_output_field_table
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_linalg_tensor, only : tensor_from_kelvin
   use dd3_model_internal_variables, only : global_components
   use dd3_model_model, only : model_t
@@ -230,6 +231,7 @@ contains
     do i = 1, model%n_contact_node
       value(1, model%contact_node(i)) = real(state%status(i), wp)
     end do
+    call sum_over_ranks(size(value), value)
   end subroutine fill_contact_status
 
   !> Evaluate the stress in global axes.

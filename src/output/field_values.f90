@@ -5,6 +5,7 @@
 module dd3_output_field_values
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
+  use dd3_model_part, only : of_elements
   use dd3_model_state, only : state_t
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t, &
       field_table, fill_internal_variable
@@ -14,8 +15,7 @@ module dd3_output_field_values
 
 contains
 
-  !> Evaluate a field on rank 0. For a field of the integration points the other ranks give their
-  !> values, see `give_values`.
+  !> Evaluate a field on rank 0. The other ranks give their values, see `give_values`.
   subroutine field_values(field, model, state, strain, nodal, cell)
     type(field_t), intent(in) :: field
     type(model_t), intent(in) :: model
@@ -103,22 +103,30 @@ contains
       else
         call field%fill(model, state, own)
       end if
-      call model%part%gather(field%components*n_point, own, value)
+      call model%part%gather(of_elements, field%components*n_point, size(model%part%element), own, &
+          value)
     end associate
   end subroutine gather_points
 
-  !> Give rank 0 the values of the integration points of this rank for all fields.
+  !> Give rank 0 the values of the integration points and the contact points of this rank for all
+  !> fields.
   subroutine give_values(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
     type(field_t), allocatable :: field(:)
-    real(wp), allocatable :: unused(:, :)
+    real(wp), allocatable :: unused(:, :), nodal(:, :)
     integer :: i
 
     field = field_table(model)
     do i = 1, size(field)
-      if (field(i)%location == at_points) call gather_points(field(i), model, state, unused)
+      if (field(i)%location == at_points) then
+        call gather_points(field(i), model, state, unused)
+      else if (field(i)%location /= at_nodes_and_cells) then
+        allocate (nodal(field(i)%components, model%n_node))
+        call field(i)%fill(model, state, nodal)
+        deallocate (nodal)
+      end if
     end do
   end subroutine give_values
 

@@ -4,7 +4,7 @@
 module dd3_output_forming_columns
   use dd3_base_kinds, only : wp
   use dd3_model_contact_results, only : tool_contact_t, tool_contacts
-  use dd3_model_energy, only : contact_energy, energy_error
+  use dd3_model_energy, only : contact_energy, elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_csv, only : table_t
@@ -46,12 +46,10 @@ contains
   end subroutine add_forming_heading
 
   !> Add the values of a state to a row.
-  subroutine add_forming_values(table, model, state, elastic)
+  subroutine add_forming_values(table, model, state)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    !> Elastic energy, mJ.
-    real(wp), intent(in) :: elastic
 
     type(tool_contact_t) :: contact(model%n_tool)
     integer :: i
@@ -66,19 +64,17 @@ contains
       call table%add_real(state%bead_length(i))
     end do
     if (size(state%bead_length) > 0) call table%add_real(state%bead_work)
-    call table%add_reals(energies(model, state, elastic))
+    call table%add_reals(energies(model, state))
   end subroutine add_forming_values
 
   !> Return work and energies, mJ.
-  pure function energies(model, state, elastic) result(energy)
+  function energies(model, state) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    !> Elastic energy.
-    real(wp), intent(in) :: elastic
     real(wp) :: energy(size(energy_name))
 
     energy = [state%tool_work, state%external_work, state%internal_work, &
-        elastic, state%plastic_work, state%friction_work, &
+        elastic_energy(model, state), state%plastic_work, state%friction_work, &
         contact_energy(model, state), energy_error(model, state)]
   end function energies
 

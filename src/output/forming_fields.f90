@@ -3,6 +3,7 @@
 !> draw-in and contact.
 module dd3_output_forming_fields
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_model_contact_results, only : contact_gaps, contact_pressures
   use dd3_model_model, only : model_t
@@ -74,20 +75,16 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: value(:, :)
 
-    value = 0.0_wp
-    if (model%n_contact > 0) value(1, :) = contact_pressures(model, state)
+    value(1, :) = contact_pressures(model, state)
   end subroutine fill_contact_pressure
 
-  !> Evaluate the gap; the search distance at a node that is no candidate.
+  !> Evaluate the gap.
   subroutine fill_contact_gap(model, state, value)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: value(:, :)
 
-    value = model%phase(state%phase)%search_distance
-    associate (n => model%n_contact_node)
-      if (n > 0) value(1, model%contact_node(:n)) = contact_gaps(model, state)
-    end associate
+    value(1, :) = contact_gaps(model, state)
   end subroutine fill_contact_gap
 
   !> Evaluate the slip path.
@@ -100,6 +97,7 @@ contains
     associate (n => model%n_contact_node)
       if (n > 0) value(1, model%contact_node(:n)) = state%slip_path(:n)
     end associate
+    call sum_over_ranks(size(value), value)
   end subroutine fill_slip_path
 
   !> Evaluate the number of the tool in contact.
@@ -113,6 +111,7 @@ contains
       if (n > 0) value(1, model%contact_node(:n)) = &
           real(merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap), wp)
     end associate
+    call sum_over_ranks(size(value), value)
   end subroutine fill_contact_tool
 
 end module dd3_output_forming_fields

@@ -1,10 +1,11 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> history.csv: travel, displacements and forces of the tools, and the quantities of the node sets
 !> of *HISTORY. One row for the initial state and for every n-th accepted increment; the last state
-!> of a phase and of the run always has a row.
+!> of a phase and of the run always has a row. All ranks evaluate the rows, the first writes them.
 module dd3_output_history
   use dd3_base_kinds, only : wp
-  use dd3_base_error, only : error_t
+  use dd3_base_error, only : error_t, share_error
+  use dd3_base_ranks, only : broadcast_integers, count_over_ranks, this_rank
   use dd3_base_text, only : axis => axis_name, newline
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
@@ -49,6 +50,7 @@ contains
 
     self%waiting = ""
     self%phase = 0
+    if (this_rank() > 0) return
     call self%table%open(directory//"/"//file_name, error)
     if (allocated(error)) return
     call self%table%file%put(heading(model), error)
@@ -56,28 +58,33 @@ contains
   end subroutine history_open
 
   !> Make the file with the rows of an earlier run up to a restart.
-  subroutine history_resume(self, model, state, elastic, source, directory, found, error)
+  subroutine history_resume(self, model, state, source, directory, found, error)
     class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> State of the restart.
     type(state_t), intent(in) :: state
-    !> Its elastic energy, mJ.
-    real(wp), intent(in) :: elastic
     !> Folders of the earlier results, and of the results.
     character(len=*), intent(in) :: source, directory
     !> The earlier rows are in the file; otherwise it begins with the heading alone.
     logical, intent(out) :: found
-    !> Set if the file cannot be written.
+    !> Set if the file cannot be written, on all ranks.
     type(error_t), allocatable, intent(out) :: error
+
+    integer :: resumed(1)
 
     self%waiting = ""
     self%increment = state%increment
     self%phase = state%phase
-    call self%table%resume(source//"/"//file_name, directory//"/"//file_name, heading(model), &
-        state%history_increment, found, error)
+    found = .false.
+    if (this_rank() == 0) call self%table%resume(source//"/"//file_name, &
+        directory//"/"//file_name, heading(model), state%history_increment, found, error)
+    call share_error(error)
+    resumed = merge(1, 0, found)
+    call broadcast_integers(0, 1, resumed)
+    found = resumed(1) > 0
     if (allocated(error) .or. .not. found) return
     if (state%history_increment >= state%increment) return
-    call fill_row(self%table, model, state, elastic)
+    call fill_row(self%table, model, state)
     call self%table%take_row(self%waiting)
   end subroutine history_resume
 
@@ -132,18 +139,17 @@ contains
 
   !> Write the row of a committed state if it is due; keep it otherwise, until the phase ends or the
   !> next row replaces it.
-  subroutine history_write(self, model, state, elastic, error)
+  subroutine history_write(self, model, state, error)
     class(history_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Gets the increment of the last row written.
     type(state_t), intent(inout) :: state
-    !> Its elastic energy, mJ: the first rank does not hold all elements.
-    real(wp), intent(in) :: elastic
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    logical :: due
+    logical :: due, writes
 
+    writes = this_rank() == 0
     if (state%phase /= self%phase .and. len(self%waiting) > 0) then
       call put_waiting(self, error)
       if (allocated(error)) return
@@ -154,22 +160,21 @@ contains
     self%increment = state%increment
     self%phase = state%phase
     self%waiting = ""
-    call fill_row(self%table, model, state, elastic)
-    if (due) then
+    call fill_row(self%table, model, state)
+    if (due .and. writes) then
       call self%table%end_row(error)
-      state%history_increment = state%increment
     else
       call self%table%take_row(self%waiting)
     end if
+    if (due) state%history_increment = state%increment
+    if (.not. writes) self%waiting = ""
   end subroutine history_write
 
   !> Fill the row of a state.
-  subroutine fill_row(table, model, state, elastic)
+  subroutine fill_row(table, model, state)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    !> Elastic energy, mJ.
-    real(wp), intent(in) :: elastic
     integer :: i
 
     call table%add_integer(state%increment)
@@ -179,14 +184,15 @@ contains
     do i = 1, model%n_tool
       call table%add_reals(state%tool_displacement(:, i))
       call table%add_reals(state%tool_force(:, i))
-      call table%add_integer(count(state%contact_tool == i .and. state%status /= status_gap))
+      call table%add_integer(count_over_ranks(count(state%contact_tool == i &
+          .and. state%status /= status_gap)))
       call table%add_real(state%tool_depth(i))
       if (.not. model%turns(i)) cycle
       call table%add_real(turned_angle(state, i))
       call table%add_real(torque(model, state, i))
     end do
     if (allocated(model%history)) call add_set_values(table, model, state)
-    call add_forming_values(table, model, state, elastic)
+    call add_forming_values(table, model, state)
   end subroutine fill_row
 
   !> Add the quantities of the node sets to a row.
@@ -194,18 +200,22 @@ contains
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+
+    real(wp), allocatable :: reaction(:, :)
     integer :: i
 
+    if (any(model%history%reaction .or. model%history%moment)) reaction = reactions(model, state)
     do i = 1, size(model%history)
       if (model%history(i)%displacement) then
         call table%add_reals(mean(state%x, model%history(i)%node) &
                              - mean(model%x0, model%history(i)%node))
       end if
       if (model%history(i)%reaction) then
-        call table%add_reals(reaction(model, state, model%history(i)%node))
+        call table%add_reals(sum_of(reaction, model%history(i)%node))
       end if
       if (model%history(i)%position) call table%add_reals(mean(state%x, model%history(i)%node))
-      if (model%history(i)%moment) call table%add_reals(moment(model, state, model%history(i)%node))
+      if (model%history(i)%moment) &
+          call table%add_reals(moment(state%x, reaction, model%history(i)%node))
       if (model%history(i)%draw_in) &
           call table%add_real(mean_draw_in(model, state%x, model%history(i)%node))
     end do
@@ -225,40 +235,41 @@ contains
     mean = mean/real(max(1, size(node)), wp)
   end function mean
 
-  !> Return the sum of the support reactions of some nodes, N: internal forces less those of loads
+  !> Return the support reactions of the nodes, `(3, n_node)`, N: internal forces less those of loads
   !> and tools. Fading reactions of freed directions are included.
-  pure function reaction(model, state, node)
+  function reactions(model, state) result(reaction)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    real(wp) :: reaction(3, model%n_node)
+
+    reaction = state%internal_force - state%external_force
+    where (spread(state%fading_tool == 0, 1, 3)) reaction = reaction - state%fading
+    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
+  end function reactions
+
+  !> Return the sum of the vectors of some nodes.
+  pure function sum_of(vector, node)
+    real(wp), intent(in) :: vector(:, :)
     integer, intent(in) :: node(:)
-    real(wp) :: reaction(3)
+    real(wp) :: sum_of(3)
 
-    real(wp) :: force(3, model%n_node)
-    integer :: i
-
-    reaction = 0.0_wp
-    do i = 1, size(node)
-      reaction = reaction + state%internal_force(:, node(i)) - state%external_force(:, node(i))
-      if (state%fading_tool(node(i)) == 0) reaction = reaction - state%fading(:, node(i))
-    end do
-    force = model%nodal_contact_forces(state%x, state%lambda)
-    reaction = reaction + sum(force(:, node), dim=2)
-  end function reaction
+    sum_of = sum(vector(:, node), dim=2)
+  end function sum_of
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.
-  pure function moment(model, state, node)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+  pure function moment(x, reaction, node)
+    !> Positions, mm, and reactions, N, of all nodes, `(3, n_node)`.
+    real(wp), intent(in) :: x(:, :), reaction(:, :)
     integer, intent(in) :: node(:)
     real(wp) :: moment(3)
 
     real(wp) :: centre(3)
     integer :: i
 
-    centre = mean(state%x, node)
+    centre = mean(x, node)
     moment = 0.0_wp
     do i = 1, size(node)
-      moment = moment + cross(state%x(:, node(i)) - centre, reaction(model, state, node(i:i)))
+      moment = moment + cross(x(:, node(i)) - centre, reaction(:, node(i)))
     end do
   end function moment
 

@@ -3,9 +3,7 @@
 !> the first writes them, and gives the others its errors.
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
-  use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_integers, this_rank
-  use dd3_model_energy, only : elastic_energy
   use dd3_model_model, only : fields_increments, model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t
@@ -48,17 +46,15 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp) :: elastic
-
     self%directory = directory
     self%restart_increment = state%increment
-    elastic = elastic_energy(model, state)
+    call self%history%open(model, directory, error)
     if (this_rank() == 0) then
-      call self%history%open(model, directory, error)
       if (.not. allocated(error)) call self%status%open(directory, error)
       if (.not. allocated(error)) call self%fields%open(model, directory, error)
-      if (.not. allocated(error)) call self%history%write(model, state, elastic, error)
     end if
+    call share_error(error)
+    if (.not. allocated(error)) call self%history%write(model, state, error)
     call share_error(error)
     if (.not. allocated(error)) call write_fields(self, model, state, error)
     self%restart_fields = state%fields_increment
@@ -78,14 +74,14 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp) :: elastic
     integer :: fields_lost(1)
 
     self%directory = directory
     self%restart_increment = state%increment
     lost = ""
-    elastic = elastic_energy(model, state)
-    if (this_rank() == 0) call resume_files(self, model, source, state, elastic, lost, error)
+    call resume_history(self, model, source, state, lost, error)
+    if (this_rank() == 0 .and. .not. allocated(error)) &
+        call resume_files(self, model, source, state, lost, error)
     call share_error(error)
     if (allocated(error)) return
     fields_lost = merge(1, 0, index(lost, "fields") > 0)
@@ -96,27 +92,37 @@ contains
     self%restart_fields = state%fields_increment
   end subroutine records_resume
 
-  !> Continue the files; see `records_resume`.
-  subroutine resume_files(self, model, source, state, elastic, lost, error)
+  !> Continue history.csv; see `records_resume`.
+  subroutine resume_history(self, model, source, state, lost, error)
     type(records_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     character(len=*), intent(in) :: source
     type(state_t), intent(inout) :: state
-    !> Elastic energy of the state, mJ.
-    real(wp), intent(in) :: elastic
+    character(len=:), allocatable, intent(inout) :: lost
+    !> On all ranks.
+    type(error_t), allocatable, intent(out) :: error
+
+    logical :: found
+
+    call self%history%resume(model, state, source, self%directory, found, error)
+    if (allocated(error) .or. found) return
+    lost = lost//" history.csv"
+    call self%history%write(model, state, error)
+    call share_error(error)
+  end subroutine resume_history
+
+  !> Continue the other files; see `records_resume`.
+  subroutine resume_files(self, model, source, state, lost, error)
+    type(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    character(len=*), intent(in) :: source
+    type(state_t), intent(inout) :: state
     character(len=:), allocatable, intent(inout) :: lost
     type(error_t), allocatable, intent(out) :: error
 
     logical :: found
 
-    call self%history%resume(model, state, elastic, source, self%directory, found, error)
-    if (allocated(error)) return
-    if (.not. found) then
-      lost = lost//" history.csv"
-      call self%history%write(model, state, elastic, error)
-    end if
-    if (.not. allocated(error)) call self%status%resume(state, source, self%directory, found, &
-        error)
+    call self%status%resume(state, source, self%directory, found, error)
     if (allocated(error)) return
     if (.not. found) lost = lost//" status.csv"
     call self%fields%resume(model, state, source, self%directory, found, error)
@@ -145,11 +151,9 @@ contains
     !> Set if a record cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
-    real(wp) :: elastic
     logical :: due
 
-    elastic = elastic_energy(model, state)
-    if (this_rank() == 0) call self%history%write(model, state, elastic, error)
+    call self%history%write(model, state, error)
     call share_error(error)
     if (allocated(error)) return
     due = fields_due

@@ -51,8 +51,8 @@ module dd3_output_restart
   contains
     procedure :: reals => write_reals
     procedure :: integers => write_integers
-    procedure :: reals_of_elements => write_reals_of_elements
-    procedure :: integers_of_elements => write_integers_of_elements
+    procedure :: reals_of_items => write_reals_of_items
+    procedure :: integers_of_items => write_integers_of_items
   end type writer_t
 
   !> Visitor that reads the components from a group.
@@ -64,8 +64,8 @@ module dd3_output_restart
   contains
     procedure :: reals => reader_reals
     procedure :: integers => reader_integers
-    procedure :: reals_of_elements => reader_reals_of_elements
-    procedure :: integers_of_elements => reader_integers_of_elements
+    procedure :: reals_of_items => reader_reals_of_items
+    procedure :: integers_of_items => reader_integers_of_items
   end type reader_t
 
 contains
@@ -268,43 +268,47 @@ contains
     call series%close()
   end subroutine write_integers
 
-  !> Write real numbers of the elements of all ranks.
-  subroutine write_reals_of_elements(self, name, n, n_element, values)
+  !> Write real numbers of the elements or contact points of all ranks.
+  subroutine write_reals_of_items(self, item, name, n, n_item, values)
     class(writer_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements of this rank.
-    integer, intent(in) :: n, n_element
-    real(wp), intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items of this rank.
+    integer, intent(in) :: n, n_item
+    real(wp), intent(inout) :: values(n, n_item)
 
     real(wp), allocatable :: all(:, :)
 
     if (self%counting) then
-      self%bytes = self%bytes + 8*size(self%part%owner, kind=i8)*int(n, i8)
+      self%bytes = self%bytes + 8*size(self%part%ranks_of(item), kind=i8)*int(n, i8)
     else
-      call self%part%gather(n, values, all)
+      call self%part%gather(item, n, n_item, values, all)
       call self%reals(name, size(all), all)
     end if
-  end subroutine write_reals_of_elements
+  end subroutine write_reals_of_items
 
-  !> Write integers of the elements of all ranks.
-  subroutine write_integers_of_elements(self, name, n, n_element, values)
+  !> Write integers of the elements or contact points of all ranks.
+  subroutine write_integers_of_items(self, item, name, n, n_item, values)
     class(writer_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements of this rank.
-    integer, intent(in) :: n, n_element
-    integer, intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items of this rank.
+    integer, intent(in) :: n, n_item
+    integer, intent(inout) :: values(n, n_item)
 
     real(wp), allocatable :: all(:, :)
     integer, allocatable :: number(:, :)
 
     if (self%counting) then
-      self%bytes = self%bytes + 4*size(self%part%owner, kind=i8)*int(n, i8)
+      self%bytes = self%bytes + 4*size(self%part%ranks_of(item), kind=i8)*int(n, i8)
     else
-      call self%part%gather(n, real(values, wp), all)
+      call self%part%gather(item, n, n_item, real(values, wp), all)
       number = nint(all)
       call self%integers(name, size(number), number)
     end if
-  end subroutine write_integers_of_elements
+  end subroutine write_integers_of_items
 
   !> Read a restart file for a model.
   subroutine read_restart(path, model, state, error)
@@ -468,35 +472,39 @@ contains
     if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
   end subroutine reader_integers
 
-  !> Read real numbers of the elements of this rank.
-  subroutine reader_reals_of_elements(self, name, n, n_element, values)
+  !> Read real numbers of the elements or contact points of this rank.
+  subroutine reader_reals_of_items(self, item, name, n, n_item, values)
     class(reader_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements of this rank.
-    integer, intent(in) :: n, n_element
-    real(wp), intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items of this rank.
+    integer, intent(in) :: n, n_item
+    real(wp), intent(inout) :: values(n, n_item)
 
     real(wp), allocatable :: all(:, :)
 
-    allocate (all(n, size(self%part%owner)), source=0.0_wp)
+    allocate (all(n, size(self%part%ranks_of(item))), source=0.0_wp)
     call self%reals(name, size(all), all)
-    values = all(:, self%part%element)
-  end subroutine reader_reals_of_elements
+    values = all(:, self%part%own(item))
+  end subroutine reader_reals_of_items
 
-  !> Read integers of the elements of this rank.
-  subroutine reader_integers_of_elements(self, name, n, n_element, values)
+  !> Read integers of the elements or contact points of this rank.
+  subroutine reader_integers_of_items(self, item, name, n, n_item, values)
     class(reader_t), intent(inout) :: self
+    !> `of_elements` or `of_points`.
+    integer, intent(in) :: item
     character(len=*), intent(in) :: name
-    !> Number of values of an element, and of the elements of this rank.
-    integer, intent(in) :: n, n_element
-    integer, intent(inout) :: values(n, n_element)
+    !> Number of values of an item, and of the items of this rank.
+    integer, intent(in) :: n, n_item
+    integer, intent(inout) :: values(n, n_item)
 
     integer, allocatable :: all(:, :)
 
-    allocate (all(n, size(self%part%owner)), source=0)
+    allocate (all(n, size(self%part%ranks_of(item))), source=0)
     call self%integers(name, size(all), all)
-    values = all(:, self%part%element)
-  end subroutine reader_integers_of_elements
+    values = all(:, self%part%own(item))
+  end subroutine reader_integers_of_items
 
   !> Record a component of the wrong size.
   subroutine note_size(self, name, found, expected)

@@ -75,10 +75,15 @@ contains
     call broadcast_reals(0, n, values)
   end procedure sum_over_ranks
 
-  module procedure largest_over_ranks
+  module procedure largest_integers
     if (n_ranks() > 1) call mpi_allreduce(mpi_in_place, values, n, mpi_integer, mpi_max, &
         mpi_comm_world)
-  end procedure largest_over_ranks
+  end procedure largest_integers
+
+  module procedure largest_reals
+    if (n_ranks() > 1) call mpi_allreduce(mpi_in_place, values, n, mpi_double_precision, mpi_max, &
+        mpi_comm_world)
+  end procedure largest_reals
 
   module procedure broadcast_integers
     if (n_ranks() > 1) call mpi_bcast(values, n, mpi_integer, rank, mpi_comm_world)

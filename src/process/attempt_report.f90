@@ -3,7 +3,7 @@
 !> first remedy to try. docs/status.md contains the remedies; a test compares them.
 module dd3_process_attempt_report
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : n_ranks
+  use dd3_base_ranks, only : count_over_ranks, largest_over_ranks, n_ranks
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
@@ -75,9 +75,9 @@ contains
       row%solver = attempt%solver%solver(:len(row%solver))
       row%perturbed = attempt%solver%perturbed%blocks
       associate (status => stepper%system%contact%status)
-        row%gap = count(status == status_gap)
-        row%stick = count(status == status_stick)
-        row%slip = count(status == status_slip)
+        row%gap = count_over_ranks(count(status == status_gap))
+        row%stick = count_over_ranks(count(status == status_stick))
+        row%slip = count_over_ranks(count(status == status_slip))
       end associate
       if (attempt%verdict%outcome == verdict_converged) then
         row%outcome = "accepted"
@@ -153,7 +153,7 @@ contains
     type(stepper_t), intent(in) :: stepper
     character(len=:), allocatable :: message
 
-    integer :: c
+    integer :: c, tool(1)
 
     associate (attempt => stepper%attempt, verdict => stepper%attempt%verdict)
       message = "increment "//to_text(committed%increment + 1)//" of phase '" &
@@ -171,9 +171,10 @@ contains
       if (verdict%node == 0) return
       message = message//", "//place_of_node(model, committed, verdict%node)
       c = model%candidate_of(verdict%node)
-      if (c == 0) return
-      if (stepper%system%contact%tool(c) > 0) message = message//", tool " &
-          //model%tool(stepper%system%contact%tool(c))%name
+      tool = 0
+      if (c > 0) tool = stepper%system%contact%tool(c)
+      call largest_over_ranks(1, tool)
+      if (tool(1) > 0) message = message//", tool "//model%tool(tool(1))%name
     end associate
   end function failure
 
@@ -244,12 +245,15 @@ contains
     type(attempt_t), intent(in) :: attempt
     character(len=:), allocatable :: remedy
 
+    real(wp) :: penalty(1)
     integer :: c
 
-    c = model%candidate_of(attempt%verdict%node)
     if (phase%mixed .and. phase%penalty <= 0.0_wp) then
-      remedy = "penalty = "//to_text(penalty_factor*contact_penalty(model, phase, c), 3)// &
-          " in *CONTACT"
+      c = model%candidate_of(attempt%verdict%node)
+      penalty = 0.0_wp
+      if (c > 0) penalty = contact_penalty(model, phase, c)
+      call largest_over_ranks(1, penalty)
+      remedy = "penalty = "//to_text(penalty_factor*penalty(1), 3)//" in *CONTACT"
     else if (.not. phase%mixed .and. phase%layer < largest_layer) then
       remedy = "layer = "//to_text(min(largest_layer, layer_factor*phase%layer), 3)//" in *CONTACT"
     else

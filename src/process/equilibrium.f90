@@ -6,7 +6,7 @@
 module dd3_process_equilibrium
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : sum_over_ranks
+  use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
@@ -21,7 +21,6 @@ module dd3_process_equilibrium
   use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
-  use dd3_system_partition, only : check_agreement
   use dd3_system_system, only : system_t
   implicit none
   private
@@ -103,7 +102,6 @@ contains
       call evaluate_norm(self%model, self%committed, self%trial, system, self%step, &
           .not. with_stiffness, self%residual)
       self%scaled_norm = self%residual%scaled
-      call check_agreement(self%scaled_norm, verdict)
     end associate
   end subroutine evaluate
 
@@ -115,8 +113,9 @@ contains
 
     associate (model => self%model, trial => self%trial, contact => self%system%contact, &
         problem => self%system%problem)
-      admissible = lost_tool(model, trial) == 0 .and. &
-          all(contact%distance + contact%onset >= -model%tolerance%depth .or. contact%tool == 0)
+      admissible = .not. any_rank(any(contact%distance + contact%onset < -model%tolerance%depth &
+          .and. contact%tool > 0))
+      if (admissible) admissible = lost_tool(model, trial) == 0
       if (problem%missed) admissible = admissible .and. all(abs(problem%target - trial%x) &
           <= model%tolerance%closed .or. .not. model%phase(trial%phase)%prescribed)
     end associate
@@ -205,30 +204,29 @@ contains
     class(equilibrium_t), intent(in) :: self
     real(wp) :: work
 
-    real(wp) :: force(3, self%model%n_node), inner(1)
+    real(wp) :: inner(1)
     integer :: tool
 
     associate (model => self%model, problem => self%system%problem, step => self%step, &
         phase => self%model%phase(self%trial%phase))
-      force = problem%residual &
-          + model%nodal_contact_forces(self%trial%x, problem%contact_residual)
       inner = sum(sum(self%system%enhanced%residual*step%enhanced, dim=1))
       call sum_over_ranks(1, inner)
-      work = sum(force*step%x, mask=.not. phase%prescribed) + inner(1)
+      work = sum(problem%law_residual*step%x, mask=.not. phase%prescribed) + inner(1)
       do tool = 1, model%n_tool
         if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
             *dot_product(phase%direction(:, tool), step%tool(:, tool))
       end do
       if (abs(work) <= negligible_work*norm2(self%trial%internal_force)*norm2(step%x)) work = 0.0_wp
+      work = agreed(work)
     end associate
   end function slope
 
   !> Return the number of candidates whose status changed in the last linearisations.
-  pure integer function changing(self)
+  integer function changing(self)
     class(equilibrium_t), intent(in) :: self
 
-    changing = count(any(self%status /= unknown .and. &
-        self%status /= spread(self%status(:, 1), 2, n_kept), dim=2))
+    changing = count_over_ranks(count(any(self%status /= unknown .and. &
+        self%status /= spread(self%status(:, 1), 2, n_kept), dim=2)))
   end function changing
 
   !> Set the cause why the trial state is not in equilibrium: a pressed tool without contact, a node
@@ -245,7 +243,7 @@ contains
       if (verdict%tool > 0) return
       verdict%node = self%residual%worst_node
       verdict%cause = cause_led_inside
-      if (is_led_inside(self, model%candidate_of(verdict%node))) return
+      if (any_rank(is_led_inside(self, model%candidate_of(verdict%node)))) return
       verdict%cause = cause_unsettled
       if (self%changing() > 0) return
       verdict%cause = cause_residual
@@ -262,7 +260,7 @@ contains
   !> Whether a candidate lies in a tool out of which its supports do not let it.
   pure logical function is_led_inside(self, c)
     class(equilibrium_t), intent(in) :: self
-    !> Number of the candidate; 0 for none.
+    !> Number of the candidate; 0 for none on this rank.
     integer, intent(in) :: c
 
     is_led_inside = .false.

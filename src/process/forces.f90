@@ -5,6 +5,7 @@
 !> left it.
 module dd3_process_forces
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks, this_rank
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_loads, only : add_pressure_forces, fading_factor, nodal_forces, spring_stiffness
   use dd3_model_model, only : model_t
@@ -91,6 +92,7 @@ contains
     !> Gets contact and residuals.
     type(system_t), intent(inout) :: system
 
+    real(wp) :: nearest(1)
     integer :: b, c, node, tool
 
     call evaluate_contact(system%contact, model, committed, trial)
@@ -103,8 +105,10 @@ contains
       problem%residual = trial%internal_force - trial%external_force
       problem%residual = problem%residual + model%nodal_contact_forces(trial%x, trial%lambda)
       problem%contact_residual = contact%force - trial%lambda
+      problem%law_residual = problem%residual &
+          + model%nodal_contact_forces(trial%x, problem%contact_residual)
       force = 0.0_wp
-      do node = 1, model%n_node
+      do node = 1, merge(model%n_node, 0, this_rank() == 0)
         tool = trial%fading_tool(node)
         if (tool > 0) force(:, tool) = force(:, tool) + trial%fading(:, node)
       end do
@@ -112,6 +116,7 @@ contains
         tool = contact%tool(c)
         if (tool > 0) force(:, tool) = force(:, tool) + contact%force(:, c)
       end do
+      call sum_over_ranks(size(force), force)
       do b = 1, size(trial%bead_total, 2)
         tool = model%drawbead(b)%tool
         if (tool > 0) force(:, tool) = force(:, tool) - trial%bead_total(:, b)
@@ -121,15 +126,18 @@ contains
             trial%tool_load(:, tool) + force(:, tool))
         ! A pressed tool that has lost the sheet moves back to contact.
         problem%tool_prescribed(:, tool) = 0.0_wp
-        if (is_lost(model, trial, tool) .and. any(contact%tool == tool)) &
-            problem%tool_prescribed(:, tool) = phase%direction(:, tool) &
-            *(minval(contact%distance, mask=contact%tool == tool) + model%tolerance%touch)
+        if (.not. is_lost(model, trial, tool)) cycle
+        if (.not. any_rank(any(contact%tool == tool))) cycle
+        nearest = -minval(contact%distance, mask=contact%tool == tool)
+        call largest_over_ranks(1, nearest)
+        problem%tool_prescribed(:, tool) = phase%direction(:, tool) &
+            *(-nearest(1) + model%tolerance%touch)
       end do
     end associate
   end subroutine evaluate_forces
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.
-  pure integer function lost_tool(model, trial)
+  integer function lost_tool(model, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
 
@@ -139,13 +147,14 @@ contains
   end function lost_tool
 
   !> Whether a tool is pressed and has no contact.
-  pure logical function is_lost(model, trial, tool)
+  logical function is_lost(model, trial, tool)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     integer, intent(in) :: tool
 
     is_lost = model%phase(trial%phase)%pressed(tool) .and. &
-        norm2(trial%tool_load(:, tool)) > 0.0_wp .and. .not. trial%touches(tool)
+        norm2(trial%tool_load(:, tool)) > 0.0_wp
+    if (is_lost) is_lost = .not. trial%touches(tool)
   end function is_lost
 
 end module dd3_process_forces

@@ -2,6 +2,7 @@
 !> One increment: predict, limit, correct.
 module dd3_process_increment
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : any_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, cause_interrupted
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
@@ -106,6 +107,7 @@ contains
       if (verdict%node > 0) c = equilibrium%model%candidate_of(verdict%node)
       attempt%touched = .false.
       if (c > 0) attempt%touched = any(equilibrium%status(c, :) > status_gap)
+      attempt%touched = any_rank(attempt%touched)
     end associate
   end subroutine conclude
 

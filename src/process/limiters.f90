@@ -4,7 +4,8 @@
 !> Source: Oliveira and Menezes 2004, eqs (9)-(12) and (15)-(18); Teodosiu and Cao 1988.
 module dd3_process_limiters
   use dd3_base_kinds, only : wp, pi
-  use dd3_base_ranks, only : broadcast_integers, rank_of_smallest
+  use dd3_base_ranks, only : any_rank, broadcast_integers, count_over_ranks, rank_of_smallest, &
+      sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
@@ -66,6 +67,7 @@ contains
       if (any(state%start%layer_offset > 0.0_wp)) &
           call end_after("layer", progress_left(state%progress))
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
+      if (model%part%divided) call copy_limit(0, limit)
     end associate
 
   contains
@@ -102,12 +104,20 @@ contains
   subroutine share_limit(limit)
     type(limit_t), intent(inout) :: limit
 
+    call copy_limit(rank_of_smallest(limit%r, limit%element), limit)
+  end subroutine share_limit
+
+  !> Give all ranks the bound of one.
+  subroutine copy_limit(rank, limit)
+    integer, intent(in) :: rank
+    type(limit_t), intent(inout) :: limit
+
     integer, allocatable :: bits(:)
 
     bits = transfer(limit, [0])
-    call broadcast_integers(rank_of_smallest(limit%r, limit%element), size(bits), bits)
+    call broadcast_integers(rank, size(bits), bits)
     limit = transfer(bits, limit)
-  end subroutine share_limit
+  end subroutine copy_limit
 
   !> Keep the smaller of two bounds, the first of equal ones.
   subroutine keep_smaller(limit, candidate)
@@ -260,13 +270,15 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: b, mean, ellipsoid
+    real(wp) :: b, total(1), mean, ellipsoid
     integer :: c, n
 
-    n = count(state%status /= status_gap)
+    n = count_over_ranks(count(state%status /= status_gap))
     associate (limits => model%phase(state%phase)%limits, contact => stepper%system%contact)
       if (.not. limits%force(1)%active .or. n == 0) return
-      mean = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)/real(n, wp)
+      total = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)
+      call sum_over_ranks(1, total)
+      mean = total(1)/real(n, wp)
       do c = 1, model%n_contact
         if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
         b = max(norm2(state%lambda(:, c)), limits%force_floor%value*mean)
@@ -316,6 +328,7 @@ contains
       do c = 1, model%n_contact
         if (contact%status(c) /= status_gap) touching(contact%tool(c)) = .true.
       end do
+      touching = [(any_rank(touching(tool)), tool=1, model%n_tool)]
       do c = 1, model%n_contact
         tool = contact%tool(c)
         if (tool == 0 .or. contact%status(c) /= status_gap) cycle
@@ -342,7 +355,7 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: left, rate, line(3), target
+    real(wp) :: left, rate(1), line(3), target
     integer :: tool, c
 
     associate (phase => model%phase(state%phase))
@@ -357,11 +370,12 @@ contains
           if (state%contact_tool(c) == tool) &
               rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
         end do
+        call sum_over_ranks(1, rate)
       end if
       target = merge(1.0_wp, -1.0_wp, state%start%until_from_below)*phase%until%value
-      left = target - sign(1.0_wp, rate)*until_value(phase, state)
+      left = target - sign(1.0_wp, rate(1))*until_value(phase, state)
     end associate
-    if (left > 0.0_wp .and. abs(rate) > 0.0_wp) limit%r = left/abs(rate)
+    if (left > 0.0_wp .and. abs(rate(1)) > 0.0_wp) limit%r = left/abs(rate(1))
   end function until_limit
 
 end module dd3_process_limiters

@@ -3,6 +3,7 @@
 !> of the sheet, tools on both faces, further tools near it, open edges of the tools.
 module dd3_process_node_report
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_text, only : axis_name, to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
@@ -37,7 +38,7 @@ contains
     if (allocated(model%rim_normal)) then
       if (norm2(model%rim_normal(:, node)) > 0.0_wp) text = text//", on the rim of the sheet"
     end if
-    if (model%candidate_of(node) > 0) text = text//tools_at(model, state, node)
+    if (any(model%member(:, node))) text = text//tools_at(model, state, node)
   end function place_of_node
 
   !> Return which tools touch both faces of the sheet at a node, which others are nearer than its
@@ -60,7 +61,7 @@ contains
         "' and '"//model%tool(other)%name//"'"
     reach = model%thickness_at(node)
     do tool = 1, model%n_tool
-      if (.not. model%candidate(tool, model%candidate_of(node))) cycle
+      if (.not. model%member(tool, node)) cycle
       if (.not. model%phase(state%phase)%active(tool)) cycle
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), state%x(:, node), hint, reach, &
@@ -74,18 +75,21 @@ contains
   end function tools_at
 
   !> Return the tool in contact with a node; 0 for none.
-  pure integer function touching_tool(model, state, node) result(tool)
+  integer function touching_tool(model, state, node)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     !> 0 for none.
     integer, intent(in) :: node
 
-    tool = 0
+    integer :: c, tool(1)
+
+    touching_tool = 0
     if (node == 0) return
-    associate (c => model%candidate_of(node))
-      if (c == 0) return
-      if (state%status(c) /= status_gap) tool = state%contact_tool(c)
-    end associate
+    c = model%candidate_of(node)
+    tool = 0
+    if (c > 0) tool = merge(state%contact_tool(c), 0, state%status(c) /= status_gap)
+    call largest_over_ranks(1, tool)
+    touching_tool = tool(1)
   end function touching_tool
 
 end module dd3_process_node_report

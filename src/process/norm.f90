@@ -12,7 +12,8 @@
 !> spacing**2/12 and the squares of their forces add.
 module dd3_process_norm
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : sum_over_ranks
+  use dd3_base_ranks, only : agreed, broadcast_reals, norm_over_ranks, rank_of_smallest, &
+      sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : holds_row
@@ -113,27 +114,32 @@ contains
     type(system_t), intent(in) :: system
     type(residual_t), intent(out) :: found
 
-    real(wp) :: equilibrium(3, model%n_node), contribution(model%n_node), sum_of_squares, inner(1)
-    integer :: node, c, tool
+    real(wp) :: contribution(model%n_node), square(1), worst(2)
+    integer :: node, c, tool, rank
 
+    rank = this_rank()
     associate (phase => model%phase(trial%phase), problem => system%problem)
-      equilibrium = problem%residual + model%nodal_contact_forces(trial%x, problem%contact_residual)
-      contribution = sum(equilibrium**2, mask=.not. phase%prescribed, dim=1)
+      contribution = sum(problem%law_residual**2, mask=.not. phase%prescribed, dim=1)
+      if (model%part%divided) then
+        where (model%part%node_owner /= rank) contribution = 0.0_wp
+      end if
       do c = 1, model%n_contact
         node = model%contact_node(c)
         contribution(node) = contribution(node) + sum(problem%contact_residual(:, c)**2)
       end do
-      found%worst_node = maxloc(contribution, dim=1)
-      found%worst = sqrt(max(contribution(found%worst_node), 0.0_wp))
-      inner = sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
-      call sum_over_ranks(1, inner)
-      sum_of_squares = sum(contribution) + inner(1)
+      node = maxloc(contribution, dim=1)
+      worst = [real(node, wp), contribution(node)]
+      call broadcast_reals(rank_of_smallest(-worst(2), node), 2, worst)
+      found%worst_node = nint(worst(1))
+      found%worst = sqrt(max(worst(2), 0.0_wp))
+      square = sum(contribution) + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
+      call sum_over_ranks(1, square)
       do tool = 1, model%n_tool
-        if (phase%pressed(tool) .and. trial%touches(tool)) &
-            sum_of_squares = sum_of_squares + problem%tool_residual(tool)**2
+        if (.not. phase%pressed(tool)) cycle
+        if (trial%touches(tool)) square = square + problem%tool_residual(tool)**2
       end do
     end associate
-    found%norm = sqrt(sum_of_squares)
+    found%norm = sqrt(square(1))
   end subroutine evaluate_residual
 
   !> Set the norm of residuals and step over their scale, eq. (19). In the compliant formulation the
@@ -148,9 +154,9 @@ contains
     real(wp) :: force, scale, round_off
 
     associate (phase => model%phase(trial%phase))
-      force = norm2(step%lambda) + residual%norm
-      scale = max(norm2(trial%lambda), norm2(trial%internal_force), &
-          negligible_strain*model%least_shear()*model%thickness**2)
+      force = agreed(norm_over_ranks(norm2(step%lambda)) + residual%norm)
+      scale = agreed(max(norm_over_ranks(norm2(trial%lambda)), norm2(trial%internal_force), &
+          negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase)*scale .and. force < largest_round_off*scale) then
         if (allocated(system%stiffness%value) .and. phase%mixed) then
           round_off = attainable_residual(system%stiffness, trial%x)
@@ -229,7 +235,7 @@ contains
 
   !> Return the largest weighted residual of a pressed tool in contact, over its force; 0 if all
   !> balance.
-  pure real(wp) function tool_imbalance(model, trial, system) result(imbalance)
+  real(wp) function tool_imbalance(model, trial, system) result(imbalance)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(system_t), intent(in) :: system
@@ -260,13 +266,13 @@ contains
 
   !> Return the distance along its line at which the force of a pressed tool is balanced, mm; zero
   !> if nothing resists it.
-  pure real(wp) function distance_to_balance(system, line, tool) result(distance)
+  real(wp) function distance_to_balance(system, line, tool) result(distance)
     type(system_t), intent(in) :: system
     !> Unit vector along the line of motion.
     real(wp), intent(in) :: line(3)
     integer, intent(in) :: tool
 
-    real(wp) :: stiffness
+    real(wp) :: stiffness(1)
     integer :: c
 
     stiffness = 0.0_wp
@@ -274,8 +280,9 @@ contains
       if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
       stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
     end do
+    call sum_over_ranks(1, stiffness)
     distance = 0.0_wp
-    if (stiffness > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness
+    if (stiffness(1) > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness(1)
   end function distance_to_balance
 
 end module dd3_process_norm

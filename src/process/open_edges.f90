@@ -3,6 +3,7 @@
 !> neighbouring patch, where the surface ends.
 module dd3_process_open_edges
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : broadcast_integers, count_over_ranks, rank_of_smallest, sum_over_ranks
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
@@ -65,8 +66,8 @@ contains
     end do
   end function find_passage
 
-  !> Return the first point in contact with a tool in a state that lies beside its surface in
-  !> another one.
+  !> Return a point in contact with a tool in a state that lies beside its surface in another one:
+  !> that of the lowest node that a rank finds first.
   function passage_over(model, state, x, placement, tool) result(passage)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -78,13 +79,15 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: force(model%n_contact), least
+    real(wp) :: force(model%n_contact), total(1), least
     integer :: c
 
     force = 0.0_wp
     where (state%contact_tool == tool .and. state%status /= status_gap) &
         force = norm2(state%lambda, dim=1)
-    least = notable_force*sum(force)/real(max(1, count(force > 0.0_wp)), wp)
+    total = sum(force)
+    call sum_over_ranks(1, total)
+    least = notable_force*total(1)/real(max(1, count_over_ranks(count(force > 0.0_wp))), wp)
     associate (distance => model%tolerance%tool_search)
       do c = 1, model%n_contact
         if (force(c) <= least) cycle
@@ -94,10 +97,23 @@ contains
         if (.not. hit%border) cycle
         passage = passage_t(tool, hit%patch, open_edge_at(model%tool(tool)%surface, hit), &
             model%contact_node(c))
-        return
+        exit
       end do
     end associate
+    if (model%part%divided) call share_passage(passage)
   end function passage_over
+
+  !> Give all ranks the passage of the lowest node.
+  subroutine share_passage(passage)
+    type(passage_t), intent(inout) :: passage
+
+    integer, allocatable :: bits(:)
+
+    bits = transfer(passage, [0])
+    call broadcast_integers(rank_of_smallest(merge(0.0_wp, 1.0_wp, passage%tool > 0), &
+        passage%node), size(bits), bits)
+    passage = transfer(bits, passage)
+  end subroutine share_passage
 
   !> Return the number of the open edge at a closest point on a border.
   pure integer function open_edge_at(surface, hit) result(edge)

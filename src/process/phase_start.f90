@@ -3,12 +3,13 @@
 !> model and the state alone, and stores all that the phase starts from in the state.
 module dd3_process_phase_start
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks, this_rank
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
-  use dd3_model_contact_results, only : candidate_hits
+  use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy
   use dd3_model_gravity, only : lay_down
@@ -134,17 +135,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(hit_t), allocatable :: hit(:)
-    integer :: tool, c
+    type(nearest_t) :: deepest
+    integer :: tool
 
     do tool = 1, model%n_tool
       if (.not. returns(model, number, tool)) cycle
       hit = candidate_hits(model, tool, state%placement(tool), state%x, &
           model%tolerance%start_search, wrong_side_depth*model%largest_thickness())
-      c = minloc(hit%distance, dim=1, mask=hit%found .and. -hit%distance > start_depth)
-      if (c == 0) cycle
+      deepest = nearest_candidate(model, hit%distance, hit%found .and. -hit%distance > start_depth)
+      if (deepest%node == 0) cycle
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
           model%tool(tool)%name//"', which was released, but node "// &
-          to_text(model%contact_node(c))//" is "//to_text(-hit(c)%distance, 3)// &
+          to_text(deepest%node)//" is "//to_text(-deepest%distance, 3)// &
           " mm inside it: move the tool clear of the sheet in the phase that releases it", "E206")
       return
     end do
@@ -223,6 +225,7 @@ contains
     logical :: released
 
     released = .false.
+    if (this_rank() > 0) state%fading = 0.0_wp
     do c = 1, size(state%contact_tool)
       tool = state%contact_tool(c)
       if (tool == 0) cycle
@@ -236,8 +239,10 @@ contains
       state%contact_tool(c) = 0
       released = .true.
     end do
+    call sum_over_ranks(size(state%fading), state%fading)
+    call largest_over_ranks(size(state%fading_tool), state%fading_tool)
     state%start%fading = state%fading
-    if (released) state%plastic = .false.
+    if (any_rank(released)) state%plastic = .false.
   end subroutine release_contacts
 
   !> Move a pressed tool without contact along its line to first contact.
@@ -271,21 +276,24 @@ contains
     real(wp), intent(out) :: facing
 
     type(hit_t), allocatable :: hit(:)
+    real(wp) :: largest(2)
     integer :: c
 
     hit = candidate_hits(model, tool, state%placement(tool), state%x, &
         model%tolerance%tool_search, model%tolerance%committed_depth, &
         outward_normals(model, state%x))
-    gap = huge(1.0_wp)
-    facing = -1.0_wp
+    largest = [-huge(1.0_wp), -1.0_wp]
     associate (phase => model%phase(state%phase))
       do c = 1, model%n_contact
         if (.not. hit(c)%found) cycle
-        gap = min(gap, hit(c)%distance + state%layer_offset(tool) &
-            - phase%layer*model%thickness_at(model%contact_node(c)))
-        facing = max(facing, dot_product(hit(c)%normal, phase%direction(:, tool)))
+        largest = max(largest, [-(hit(c)%distance + state%layer_offset(tool) &
+            - phase%layer*model%thickness_at(model%contact_node(c))), &
+            dot_product(hit(c)%normal, phase%direction(:, tool))])
       end do
     end associate
+    call largest_over_ranks(2, largest)
+    gap = -largest(1)
+    facing = largest(2)
   end subroutine gap_of_tool
 
 end module dd3_process_phase_start

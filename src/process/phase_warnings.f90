@@ -159,6 +159,7 @@ contains
         do tool = 1, model%n_tool
           if (phase%active(tool)) call hold_in_contact(body, model, state, tool, part == k)
         end do
+        call body%share()
         text = body%free_motion()
         if (len(text) == 0) cycle
         text = "at the start of phase '"//phase%name//"' nothing holds "// &
@@ -274,6 +275,8 @@ contains
           total(t) = total(t) + force
         end associate
       end do
+      call sum_over_ranks(size(moment), moment)
+      call sum_over_ranks(size(total), total)
       do tool = 1, model%n_tool
         if (total(tool) <= 0.0_wp) cycle
         text = text//", "//to_text(moment(tool)/total(tool), 2)//" mm at '"// &

@@ -4,11 +4,12 @@
 !> points between nodes, crossed.
 module dd3_process_tool_warnings
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
   use dd3_contact_closest, only : hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_model_contact_results, only : candidate_hits
+  use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name
@@ -70,7 +71,7 @@ contains
     character(len=:), allocatable :: text
 
     type(hit_t), allocatable :: hit(:)
-    integer :: c
+    type(nearest_t) :: nearest
 
     text = ""
     associate (phase => model%phase(state%phase))
@@ -80,12 +81,12 @@ contains
     associate (distance => model%tolerance%tool_search)
       hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
     end associate
-    c = minloc(abs(hit%distance), dim=1, mask=hit%found)
+    nearest = nearest_candidate(model, hit%distance, hit%found, abs(hit%distance))
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
-    if (c > 0) then
-      text = text//"the nearest candidate, node "//to_text(model%contact_node(c))//", is "// &
-          to_text(abs(hit(c)%distance), 3)//" mm "// &
-          trim(merge("behind   ", "in front ", hit(c)%distance < 0.0_wp))//" of its surface"
+    if (nearest%node > 0) then
+      text = text//"the nearest candidate, node "//to_text(nearest%node)//", is "// &
+          to_text(abs(nearest%distance), 3)//" mm "// &
+          trim(merge("behind   ", "in front ", nearest%distance < 0.0_wp))//" of its surface"
     else
       text = text//"no candidate lies in front of its surface"
     end if
@@ -195,36 +196,32 @@ contains
     integer, intent(in) :: a, b
     character(len=:), allocatable :: text
 
-    integer :: c, pinched
+    !> Tool in contact with each node; 0 for none.
+    integer :: touching(model%n_node)
+    integer :: node, pinched
 
     text = ""
-    if (model%n_contact == model%n_contact_node) return
+    if (model%part%n_point == count(any(model%member, dim=1))) return
     associate (phase => model%phase(state%phase))
       if (any(phase%pressed([a, b]))) return
       if (norm2(phase%move(:, a) - phase%move(:, b)) <= 0.0_wp) return
     end associate
+    touching = 0
+    associate (n => model%n_contact_node)
+      touching(model%contact_node(:n)) = &
+          merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap)
+    end associate
+    call largest_over_ranks(size(touching), touching)
     pinched = 0
-    do c = 1, model%n_contact_node
-      if (.not. touches(c, a)) cycle
-      associate (opposite => model%candidate_of(model%opposite(model%contact_node(c))))
-        if (opposite == 0) cycle
-        if (touches(opposite, b)) pinched = pinched + 1
-      end associate
+    do node = 1, model%n_node
+      if (touching(node) /= a .or. model%opposite(node) == 0) cycle
+      if (touching(model%opposite(node)) == b) pinched = pinched + 1
     end do
     if (pinched == 0) return
     text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
         "' pinch the sheet at "//to_text(pinched)//" columns of nodes: where it is ironed, "// &
         "forces are too low with contact points between the nodes; compare with points = 1 in "// &
         "*CONTACT"
-
-  contains
-
-    !> Whether a contact point touches a tool.
-    pure logical function touches(c, tool)
-      integer, intent(in) :: c, tool
-
-      touches = state%contact_tool(c) == tool .and. state%status(c) /= status_gap
-    end function touches
   end function ironing_warning
 
 end module dd3_process_tool_warnings

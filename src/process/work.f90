@@ -3,6 +3,7 @@
 !> that the sums approximate the integrals to second order in the increment.
 module dd3_process_work
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap, status_slip
   use dd3_contact_placement, only : point_displacement
   use dd3_model_energy, only : plastic_work_increment
@@ -79,17 +80,17 @@ contains
 
   !> Add the work of the tools, the friction work and the slip. A contact layer that advances to its
   !> place moves the sheet as the tool does, along its normal.
-  pure subroutine add_contact_work(model, contact, old, new)
+  subroutine add_contact_work(model, contact, old, new)
     type(model_t), intent(in) :: model
     type(contact_work_t), intent(in) :: contact
     type(state_t), intent(in) :: old
     type(state_t), intent(inout) :: new
 
-    real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance
+    real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance, work(2)
     integer :: c, tool
 
-    new%tool_work = old%tool_work
-    new%friction_work = old%friction_work
+    work = 0.0_wp
+    if (this_rank() == 0) work = [old%tool_work, old%friction_work]
     new%slip_path = old%slip_path
     do c = 1, model%n_contact
       tool = contact%tool(c)
@@ -107,11 +108,14 @@ contains
       end if
       slip = slip - dot_product(normal, slip)*normal
       advance = old%layer_offset(tool) - new%layer_offset(tool)
-      new%tool_work = new%tool_work - dot_product(force, tool_motion + advance*normal)
-      new%friction_work = new%friction_work + dot_product(force, slip)
+      work(1) = work(1) - dot_product(force, tool_motion + advance*normal)
+      work(2) = work(2) + dot_product(force, slip)
       if (new%status(c) == status_slip .and. old%status(c) /= status_gap) &
           new%slip_path(c) = new%slip_path(c) + norm2(slip)
     end do
+    call sum_over_ranks(2, work)
+    new%tool_work = work(1)
+    new%friction_work = work(2)
   end subroutine add_contact_work
 
 end module dd3_process_work

@@ -44,7 +44,7 @@ contains
     call json%add("", minval(model%x0, dim=2))
     call json%add("", maxval(model%x0, dim=2))
     call json%end_array()
-    call json%add("contact_points", model%n_contact)
+    call json%add("contact_points", model%part%n_point)
     call json%end_object()
   end subroutine add_sheet
 

@@ -33,7 +33,7 @@ contains
         call json%add("n_patch", size(model%tool(t)%surface%patch))
         call json%add("friction", tool%friction)
         call json%add("contact", tool%contact)
-        call json%add("candidates", count(model%candidate(t, :)))
+        call json%add("candidates", model%n_candidate(t))
         call json%add("position", tool%position)
         call add_edges(json, model, t)
         call add_location(json, "at", tool%source%opened)

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Contact of the candidates: nearest tool, status, force and linearisation, in a trial state
+!> Contact of the candidates of this rank: nearest tool, status, force and linearisation, in a trial state
 !> (corrector) or at the committed state with its stored status (predictor).
 module dd3_system_contact
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : any_rank
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
@@ -152,7 +153,7 @@ contains
     type(state_t), intent(in) :: committed
 
     logical :: touching(model%n_tool)
-    integer :: c
+    integer :: c, tool
 
     self%outward = outward_normals(model, committed%x)
     self%search_distance = model%tolerance%tool_search
@@ -164,6 +165,7 @@ contains
         touching(committed%contact_tool(c)) = .true.
       end do
     end associate
+    touching = [(any_rank(touching(tool)), tool=1, model%n_tool)]
     !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
     !$omp& schedule(dynamic, chunk)
     do c = 1, model%n_contact
@@ -177,7 +179,7 @@ contains
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
-    !> Whether any candidate is in contact with each tool.
+    !> Whether any candidate, of any rank, is in contact with each tool.
     logical, intent(in) :: touching(:)
     integer, intent(in) :: c
 

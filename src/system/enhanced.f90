@@ -19,7 +19,8 @@ module dd3_system_enhanced
     !> `(n_enhanced, n_element)` and `(n_enhanced, 3, n_element_node, n_element)`; their signs are
     !> reversed.
     real(wp), allocatable :: offset(:, :), gain(:, :, :, :)
-    !> Forces to be subtracted from the residual beside the condensed stiffness, `(3, n_node)`, N.
+    !> Forces to be subtracted from the residual beside the condensed stiffness, `(3, n_node)`, N;
+    !> of several ranks each has those on its nodes.
     real(wp), allocatable :: force(:, :)
   end type enhanced_t
 

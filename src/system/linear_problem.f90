@@ -23,8 +23,9 @@ module dd3_system_linear_problem
 
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
-    !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N.
-    real(wp), allocatable :: residual(:, :)
+    !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N, and
+    !> that with the forces F_equ of the contact law.
+    real(wp), allocatable :: residual(:, :), law_residual(:, :)
     !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: contact_residual(:, :)
     !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
@@ -38,7 +39,7 @@ module dd3_system_linear_problem
     real(wp), allocatable :: tool_prescribed(:, :)
     !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
     real(wp), allocatable :: tool_residual(:)
-    !> Right-hand side of the reduced system, `(3*n_row)`.
+    !> Right-hand side of the reduced system, `(3*n_row)`; of several ranks each has its rows.
     real(wp), allocatable :: rhs(:)
     !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
     real(wp), allocatable :: solution(:)
@@ -63,7 +64,7 @@ contains
     integer, intent(in) :: n_row
 
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
-    allocate (self%target(3, model%n_node), source=0.0_wp)
+    allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
         source=0.0_wp)

@@ -1,17 +1,16 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Rows of the system among the ranks. Each rank adds its elements to the rows of their nodes; the
-!> rows of nodes that belong to another rank are sent there and added.
+!> Rows of the system among the ranks. Each rank adds its elements and contact points to the rows of
+!> their nodes; the rows of nodes that belong to another rank are sent there and added.
 module dd3_system_partition
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, exchange_reals, &
-      largest_over_ranks, n_ranks, rank_of_smallest, this_rank
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_impossible, &
-      cause_ranks_differ
+  use dd3_base_ranks, only : broadcast_integers, exchange_reals, n_ranks, rank_of_smallest, &
+      this_rank
+  use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_matrix, only : block_matrix_t, lists_t
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: partition_t, new_partition, rows_held, check_agreement, share_verdict
+  public :: partition_t, new_partition, rows_held, share_verdict
 
   !> Exchange of rows: a list for each rank, of its rows to which this one adds, and of the rows of
   !> this rank to which it adds. Not allocated if there is one rank.
@@ -19,6 +18,7 @@ module dd3_system_partition
     type(lists_t), private :: sent, received
   contains
     procedure :: complete_rows
+    procedure :: complete_forces
   end type partition_t
 
 contains
@@ -125,25 +125,28 @@ contains
     end do
   end function counts
 
-  !> Check that all ranks have the same value, to the bit: they have evaluated the contact of their
-  !> copies of the same positions, and processors of different kinds can differ.
-  subroutine check_agreement(value, verdict)
-    real(wp), intent(in) :: value
-    !> Impossible if they differ; unchanged otherwise.
-    type(verdict_t), intent(inout) :: verdict
+  !> Add to the forces on the nodes of this rank what the other ranks hold of them. Those on other
+  !> nodes are not complete, and not to be used.
+  subroutine complete_forces(self, force)
+    class(partition_t), intent(in) :: self
+    !> `(3, n_node)`; what of a node's force no element or contact point has, its rank alone holds.
+    real(wp), intent(inout) :: force(:, :)
 
-    real(wp) :: first(1)
-    integer :: differs(1)
+    real(wp), allocatable :: received(:, :)
+    integer :: i
 
-    if (n_ranks() == 1) return
-    first = value
-    call broadcast_reals(0, 1, first)
-    differs = merge(1, 0, abs(value - first(1)) > 0.0_wp)
-    call largest_over_ranks(1, differs)
-    if (differs(1) == 0) return
-    verdict%outcome = verdict_impossible
-    verdict%cause = cause_ranks_differ
-  end subroutine check_agreement
+    if (.not. allocated(self%sent%item)) return
+    allocate (received(3, size(self%received%item)))
+    associate (sent => self%sent%start, from => self%received%start)
+      call exchange_reals(3*(sent(2:) - sent(:size(sent) - 1)), force(:, self%sent%item), &
+          3*(from(2:) - from(:size(from) - 1)), received)
+    end associate
+    do i = 1, size(received, 2)
+      associate (node => self%received%item(i))
+        force(:, node) = force(:, node) + received(:, i)
+      end associate
+    end do
+  end subroutine complete_forces
 
   !> Give all ranks the verdict of the failed element with the lowest number; converged if none
   !> failed.

@@ -26,8 +26,7 @@ module dd3_system_point_rows
 
 contains
 
-  !> Add the contributions of all points to the right-hand side, and those of the points at the
-  !> elements of this rank to the matrix.
+  !> Add the contributions of the points of this rank to matrix and right-hand side.
   subroutine add_points(system, model, phase, x)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
@@ -36,7 +35,7 @@ contains
     real(wp), intent(in) :: x(:, :)
 
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3), force(3)
-    integer :: c, e, tool
+    integer :: c, tool
 
     associate (contact => system%contact, problem => system%problem, point => model%contact_point)
       do c = 1, model%n_contact
@@ -55,10 +54,12 @@ contains
         call add_force(point(c), b, -force, problem%rhs)
         if (phase%pressed(tool)) call add_to_balance(problem%rhs, model%tool_row(tool), &
             phase%direction(:, tool), matmul(weight - identity, problem%contact_residual(:, c)))
-        e = model%part%place(point(c)%element)
-        if (e == 0) cycle
-        call add_stiffness(system, point(c), system%position(:, :, e), x, b, stiffness, &
-            contact%force(:, c))
+        if (point(c)%n_node == 1) then
+          call add_node_stiffness(system, point(c)%node(1), stiffness)
+        else
+          call add_stiffness(system, point(c), system%position(:, :, &
+              model%part%place(point(c)%element)), x, b, stiffness, contact%force(:, c))
+        end if
         if (phase%pressed(tool)) call couple_tool(system, point(c), model%tool_row(tool), &
             phase%direction(:, tool), b, stiffness)
       end do
@@ -82,7 +83,19 @@ contains
     end do
   end subroutine add_force
 
-  !> Add B^T C B + G of a point to the matrix.
+  !> Add C of a point at a node to the matrix. Its element may be one of another rank.
+  pure subroutine add_node_stiffness(system, node, stiffness)
+    type(system_t), intent(inout) :: system
+    integer, intent(in) :: node
+    !> C, N/mm.
+    real(wp), intent(in) :: stiffness(3, 3)
+
+    associate (block => system%matrix%value(:, :, system%matrix%diagonal(node)))
+      block = block + stiffness
+    end associate
+  end subroutine add_node_stiffness
+
+  !> Add B^T C B + G of a point between nodes to the matrix.
   pure subroutine add_stiffness(system, point, position, x, b, stiffness, force)
     type(system_t), intent(inout) :: system
     type(contact_point_t), intent(in) :: point
@@ -98,11 +111,6 @@ contains
     integer :: i, j, k
 
     associate (local => point%local, value => system%matrix%value)
-      if (point%n_node == 1) then
-        k = position(local(1), local(1))
-        value(:, :, k) = value(:, :, k) + stiffness
-        return
-      end if
       call point%bending_stiffness(x, force, block)
       do j = 1, point%n_node
         right = matmul(stiffness, b(:, :, j))

@@ -10,7 +10,7 @@
 !> Menezes, Finite Elem. Anal. Des. 40 (2004) 1995-2010, eq. (6).
 module dd3_system_reduced
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : sum_over_ranks
+  use dd3_base_ranks, only : this_rank
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : copy_blocks, position_of
   use dd3_linalg_partition, only : holds_row
@@ -40,19 +40,48 @@ contains
 
     associate (phase => model%phase(state%phase), problem => system%problem)
       if (phase%mixed) call keep_stiffness(system)
-      problem%rhs(:3*model%n_node) = -reshape(problem%residual, [3*model%n_node])
+      call start_rhs(problem, model)
       call start_tool_rows(system, model, phase)
       if (phase%mixed) then
         call reduce_nodes(system, model, phase)
       else
         call add_points(system, model, phase, state%x)
         call system%partition%complete_rows(system%matrix)
+        if (model%part%divided) call complete_rhs(system, model%n_node)
       end if
       if (model%part%divided) call share_tool_rows(system, model, phase)
       call finish_tool_rows(system, model, phase)
       call prescribe(system, phase)
     end associate
   end subroutine reduce
+
+  !> Set the right-hand side of the nodes of this rank to their residuals, and that of others to
+  !> zero.
+  subroutine start_rhs(problem, model)
+    type(linear_problem_t), intent(inout) :: problem
+    type(model_t), intent(in) :: model
+
+    integer :: node, rank
+
+    problem%rhs(:3*model%n_node) = -reshape(problem%residual, [3*model%n_node])
+    if (.not. model%part%divided) return
+    rank = this_rank()
+    do node = 1, model%n_node
+      if (model%part%node_owner(node) /= rank) problem%rhs(3*node - 2:3*node) = 0.0_wp
+    end do
+  end subroutine start_rhs
+
+  !> Add to the right-hand side of the nodes of this rank what the contact points of others hold.
+  subroutine complete_rhs(system, n_node)
+    type(system_t), intent(inout) :: system
+    integer, intent(in) :: n_node
+
+    real(wp) :: force(3, n_node)
+
+    force = reshape(system%problem%rhs(:3*n_node), shape(force))
+    call system%partition%complete_forces(force)
+    system%problem%rhs(:3*n_node) = reshape(force, [3*n_node])
+  end subroutine complete_rhs
 
   !> Complete the stiffness of the sheet and keep a copy.
   subroutine keep_stiffness(system)
@@ -123,7 +152,6 @@ contains
         remaining(:, k) = 0.0_wp
         weight(k) = 0.0_wp
       end do
-      if (.not. holds_row(reduced, node)) return
       ! The columns of both rows ascend, and all of the node's are among the tool's.
       if (pressed) at = reduced%row_start(block)
       do k = reduced%row_start(node), reduced%row_start(node + 1) - 1
@@ -224,8 +252,7 @@ contains
     associate (stiffness => system%stiffness, phase => model%phase(state%phase))
       do c = 1, model%n_contact
         node = model%contact_node(c)
-        if (.not. holds_row(stiffness, node)) step%lambda(:, c) = 0.0_wp
-        if (.not. holds_row(stiffness, node) .or. system%contact%status(c) == status_gap) cycle
+        if (system%contact%status(c) == status_gap) cycle
         change = 0.0_wp
         do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
           if (stiffness%column(k) > model%n_node) exit
@@ -235,7 +262,6 @@ contains
         step%lambda(:, c) = -node_residual(phase, system%problem, node, c) - change
       end do
     end associate
-    if (model%part%divided) call sum_over_ranks(size(step%lambda), step%lambda)
   end subroutine set_node_forces
 
 end module dd3_system_reduced

@@ -142,21 +142,20 @@ contains
     type(block_matrix_t), intent(out) :: stiffness
     type(model_t), intent(in) :: model
 
-    logical, allocatable :: member(:), near(:)
+    logical, allocatable :: near(:)
     !> Coupled nodes, ascending within a tool, and the first of each tool among them.
     integer, allocatable :: coupled(:), first(:)
     integer :: tool, e, i, last
 
-    allocate (member(model%n_node), near(model%n_node))
+    allocate (near(model%n_node))
     first = [1]
     coupled = [integer ::]
     do tool = 1, model%n_tool
       if (model%tool_row(tool) == 0) cycle
-      member = .false.
-      member(pack(model%contact_node, model%candidate(tool, :))) = .true.
       near = .false.
       do e = 1, model%n_element
-        if (any(member(model%connectivity(:, e)))) near(model%connectivity(:, e)) = .true.
+        if (any(model%member(tool, model%connectivity(:, e)))) &
+            near(model%connectivity(:, e)) = .true.
       end do
       coupled = [coupled, pack([(i, i=1, model%n_node)], near)]
       first = [first, size(coupled) + 1]

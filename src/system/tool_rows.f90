@@ -3,7 +3,7 @@
 !> along its line, and two that constrain it to the line.
 module dd3_system_tool_rows
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : sum_over_ranks
+  use dd3_base_ranks, only : any_rank, sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : block_matrix_t, position_of
   use dd3_linalg_tensor, only : identity
@@ -29,7 +29,7 @@ contains
     reduced%value(row, :, k) = reduced%value(row, :, k) + values
   end subroutine add_to_tool_row
 
-  !> Begin the force balance of the pressed tools, to which the candidates add.
+  !> Begin the force balance of the pressed tools, to which the candidates of all ranks add.
   subroutine start_tool_rows(system, model, phase)
     !> Its reduced matrix is that of the sheet, zero in these rows.
     type(system_t), intent(inout) :: system
@@ -39,6 +39,7 @@ contains
     integer :: tool
 
     system%problem%rhs(3*model%n_node + 1:) = 0.0_wp
+    if (this_rank() > 0) return
     do tool = 1, model%n_tool
       if (phase%pressed(tool)) system%problem%rhs(3*(model%tool_row(tool) - 1) &
           + force_row(phase%direction(:, tool))) = -system%problem%tool_residual(tool)
@@ -70,7 +71,7 @@ contains
           value(i, i, k) = 1.0_wp
           value(i, row, k) = -phase%direction(i, tool)/phase%direction(row, tool)
         end do
-        if (any(contact%tool == tool .and. contact%status /= status_gap)) cycle
+        if (any_rank(any(contact%tool == tool .and. contact%status /= status_gap))) cycle
         value(row, row, k) = 1.0_wp
         problem%rhs(3*(block - 1) + row) = problem%tool_prescribed(row, tool)
       end do
@@ -85,7 +86,7 @@ contains
     row = maxloc(abs(direction), dim=1)
   end function force_row
 
-  !> Sum up the rows of the pressed tools, to which each rank has added those of its nodes.
+  !> Sum up the rows of the pressed tools, to which each rank has added those of its points.
   subroutine share_tool_rows(system, model, phase)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
@@ -93,6 +94,9 @@ contains
 
     integer :: tool, first, last
 
+    associate (rhs => system%problem%rhs(3*model%n_node + 1:))
+      call sum_over_ranks(size(rhs), rhs)
+    end associate
     do tool = 1, model%n_tool
       if (.not. phase%pressed(tool)) cycle
       first = system%matrix%row_start(model%tool_row(tool))

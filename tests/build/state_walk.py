@@ -26,7 +26,7 @@ def visited():
     handed = set(re.findall(r"call visitor%\w+\(.*, (\w+%\w+)\)\n", text))
     handed |= set(re.findall(r"call visit_\w+\((?:.*, )?(\w+%\w+), visitor\)\n", text))
     # The closest points are an array of a type: their components are handed over as arrays.
-    arrays = set(re.findall(r'call visitor%\w+\(name//"_(\w+)", (?:3\*)?n, \1\)\n', text))
+    arrays = set(re.findall(r'call visitor%\w+\(of_points, name//"_(\w+)", (?:3\*)?n_tool, n, \1\)\n', text))
     return handed | {f"hint%{name}" for name in arrays}
 
 

@@ -93,7 +93,9 @@ contains
     model%phase(2)%control = 1
     allocate (model%load_set(0), model%pressure_set(0), model%drawbead(0), model%contact_face(0))
     allocate (model%face_point(4, 0))
-    allocate (model%candidate(2, 2), source=.false.)
+    allocate (model%candidate(2, 2), model%member(2, 12), source=.false.)
+    model%tool_digest = [0, 0]
+    model%n_candidate = [0, 0]
     do i = 1, 2
       allocate (model%phase(i)%active(2), source=.true.)
       allocate (model%phase(i)%turn(2))
