@@ -20,6 +20,7 @@ module dd3_external_mumps_library
     real(wp), pointer :: a(:) => null(), rhs(:) => null()
     real(wp) :: cntl(15) = 0.0_wp
     integer :: icntl(60) = 0, infog(80) = 0
+    character(len=255) :: ooc_tmpdir = ""
   end type dmumps_struc
 
 contains

@@ -8,7 +8,7 @@ contains
   module procedure make_petsc_mumps_solver
   end procedure make_petsc_mumps_solver
 
-  module procedure make_petsc_bicgstab_solver
-  end procedure make_petsc_bicgstab_solver
+  module procedure make_petsc_gamg_solver
+  end procedure make_petsc_gamg_solver
 
 end submodule dd3_absent_petsc_solver

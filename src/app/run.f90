@@ -251,7 +251,8 @@ contains
     else
       call log%say(to_text(model%n_element)//" elements "//trim(model%element%name)//" ("// &
         trim(model%element%title)//"), "//to_text(model%n_node)//" nodes, "// &
-        to_text(model%part%n_point)//" candidates for contact with "//to_text(model%n_tool)//" tools")
+        to_text(model%part%n_point)//" candidates for contact with "//to_text(model%n_tool)// &
+        " tools")
     end if
     do i = 1, size(case%mesh)
       call log%say("mesh of "//case%mesh(i)%file//": thickness from z_min to z_max "// &

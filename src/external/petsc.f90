@@ -7,8 +7,9 @@ module dd3_external_petsc
   implicit none
   private
   public :: petsc_comm_world, insert_values, norm_2, set_option, replace_option
-  public :: mat_create_baij, mat_set_values_blocked, mat_assemble, mat_create_vecs, mat_residual, &
-      mat_destroy
+  public :: mat_create, mat_set_sizes, mat_set_block_size, mat_set_type, mat_set_preallocation, &
+      mat_set_values_blocked, mat_assemble, mat_create_vecs, mat_residual, mat_destroy
+  public :: mat_null_space_create_rigid_body, mat_set_near_null_space, mat_null_space_destroy
   public :: vec_duplicate, vec_set_values, vec_get_values, vec_assemble, vec_axpy, vec_norm, &
       vec_destroy
   public :: ksp_create, ksp_set_options_prefix, ksp_set_from_options, ksp_set_operators, &
@@ -23,18 +24,63 @@ module dd3_external_petsc
   integer(c_int), parameter :: insert_values = 1, norm_2 = 1, final_assembly = 0
 
   interface
-    integer(c_int) function mat_create_baij(comm, block_size, rows, columns, all_rows, &
-        all_columns, none, own, none_other, other, matrix) bind(c, name="MatCreateBAIJ")
+    integer(c_int) function mat_create(comm, matrix) bind(c, name="MatCreate")
       import :: c_int, c_intptr_t, c_ptr
       integer(c_intptr_t), value :: comm
-      !> Scalar rows and columns of this rank, and in all.
-      integer(c_int), value :: block_size, rows, columns, all_rows, all_columns
-      !> Numbers of blocks of each block row in columns of this rank and of the others; those
-      !> valid for all rows are not used.
-      integer(c_int), value :: none, none_other
-      integer(c_int), intent(in) :: own(*), other(*)
       type(c_ptr), intent(out) :: matrix
-    end function mat_create_baij
+    end function mat_create
+
+    !> Set the numbers of scalar rows and columns of this rank, and in all.
+    integer(c_int) function mat_set_sizes(matrix, rows, columns, all_rows, all_columns) &
+        bind(c, name="MatSetSizes")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: matrix
+      integer(c_int), value :: rows, columns, all_rows, all_columns
+    end function mat_set_sizes
+
+    integer(c_int) function mat_set_block_size(matrix, size) bind(c, name="MatSetBlockSize")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: matrix
+      integer(c_int), value :: size
+    end function mat_set_block_size
+
+    integer(c_int) function mat_set_type(matrix, name) bind(c, name="MatSetType")
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: matrix
+      !> Ended by a null character.
+      character(kind=c_char), intent(in) :: name(*)
+    end function mat_set_type
+
+    integer(c_int) function mat_set_preallocation(matrix, block_size, own, other, own_upper, &
+        other_upper) bind(c, name="MatXAIJSetPreallocation")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: matrix
+      integer(c_int), value :: block_size
+      !> Numbers of blocks of each block row in columns of this rank and of the others.
+      integer(c_int), intent(in) :: own(*), other(*)
+      !> Those of symmetric matrices; null.
+      type(c_ptr), value :: own_upper, other_upper
+    end function mat_set_preallocation
+
+    !> Create the rigid motions of nodes with given coordinates.
+    integer(c_int) function mat_null_space_create_rigid_body(coordinates, space) &
+        bind(c, name="MatNullSpaceCreateRigidBody")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: coordinates
+      type(c_ptr), intent(out) :: space
+    end function mat_null_space_create_rigid_body
+
+    !> Set the vectors that a matrix nearly maps to zero.
+    integer(c_int) function mat_set_near_null_space(matrix, space) &
+        bind(c, name="MatSetNearNullSpace")
+      import :: c_int, c_ptr
+      type(c_ptr), value :: matrix, space
+    end function mat_set_near_null_space
+
+    integer(c_int) function mat_null_space_destroy(space) bind(c, name="MatNullSpaceDestroy")
+      import :: c_int, c_ptr
+      type(c_ptr), intent(inout) :: space
+    end function mat_null_space_destroy
 
     integer(c_int) function mat_set_values_blocked(matrix, n_row, row, n_column, column, value, &
         mode) bind(c, name="MatSetValuesBlocked")

@@ -281,6 +281,9 @@ module dd3_input_case
     !> Maximum number of iterations.
     integer :: iterations = 0
     character(len=:), allocatable :: ordering
+    !> Where MUMPS keeps its factors, and the place of the word.
+    character(len=:), allocatable :: factors
+    type(location_t) :: factors_at
   end type solver_spec_t
 
   !> A tool named in a phase.

@@ -30,6 +30,7 @@ contains
     allocate (case%title(0))
     case%solver%method = ""
     case%solver%ordering = ""
+    case%solver%factors = ""
     case%output%directory = ""
     allocate (case%output%fields_value(0))
     i = first_block(deck, "title")
@@ -259,6 +260,8 @@ contains
     solver%method = block%word("method")
     solver%method_at = block%at("method")
     solver%ordering = block%word("ordering")
+    solver%factors = block%word("factors")
+    solver%factors_at = block%at("factors")
     solver%ilu_level = nint(block%number("ilu_level"))
     solver%tolerance = block%number("tolerance")
     solver%iterations = nint(block%number("iterations"))

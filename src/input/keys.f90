@@ -247,7 +247,9 @@ contains
           lower=1.0_wp, upper=1.0e6_wp), &
       row("ordering", kind_name, "", "auto", &
           "ordering of the unknowns; none: as the nodes are numbered; auto: the cheapest one", &
-          choices="auto none amd rcm")]
+          choices="auto none amd rcm"), &
+      row("factors", kind_name, "", "memory", "where MUMPS keeps its factors; disk: in the "// &
+          "folder of the results", choices="memory disk")]
   end function solver_keys
 
   !> Keys of a phase: its own, then those of limits, newton and contact, without defaults.

@@ -15,7 +15,8 @@ module dd3_linalg_mumps
   implicit none
   private
   public :: mumps_t, mumps_verdict, needs_workspace
-  public :: icntl_permutation, icntl_scaling, icntl_workspace, icntl_null_pivots, &
+  public :: icntl_permutation, icntl_scaling, icntl_workspace, icntl_out_of_core, &
+      icntl_null_pivots, &
       cntl_null_pivot, null_pivot, infog_status, infog_argument, infog_null_pivots, &
       first_workspace, more_workspace, most_workspace
 
@@ -23,19 +24,21 @@ module dd3_linalg_mumps
   integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factorise = 2, &
       job_solve = 3
   !> Positions in `icntl`: units and amount of its messages, column permutation, ordering, scaling,
-  !> additional workspace in percent of the estimate, and whether it looks for null pivots.
+  !> additional workspace in percent of the estimate, whether the factors are on the disk, and
+  !> whether it looks for null pivots.
   integer, parameter :: icntl_units(3) = [1, 2, 3], icntl_messages = 4, icntl_permutation = 6, &
-      icntl_ordering = 7, icntl_scaling = 8, icntl_workspace = 14, icntl_null_pivots = 24
+      icntl_ordering = 7, icntl_scaling = 8, icntl_workspace = 14, icntl_out_of_core = 22, &
+      icntl_null_pivots = 24
   !> Position in `cntl`, and its value: largest null pivot (the rows of the matrix add up to one);
   !> negative as it is not a fraction of the matrix's norm.
   integer, parameter :: cntl_null_pivot = 3
   real(wp), parameter :: null_pivot = -1.0e-13_wp
   !> Value of `icntl_ordering`: that of `perm_in`.
   integer, parameter :: ordering_given = 1
-  !> Positions in `infog`: status and its argument, the memory estimated by the analysis, MB, and
-  !> the number of null pivots.
+  !> Positions in `infog`: status and its argument, the memory estimated by the analysis, MB, with
+  !> the factors and without them, and the number of null pivots.
   integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16, &
-      infog_null_pivots = 28
+      infog_megabytes_out_of_core = 26, infog_null_pivots = 28
   !> MUMPS's errors: no memory, workspace too small, singular pattern, singular matrix.
   integer, parameter :: error_memory(3) = [-5, -7, -13], error_workspace(2) = [-8, -9], &
       error_singular(2) = [-6, -10]
@@ -47,6 +50,8 @@ module dd3_linalg_mumps
   type, extends(preconditioner_t) :: mumps_t
     !> Whether `library` is in use.
     logical :: begun = .false.
+    !> Folder of the factors; empty for the memory.
+    character(len=255) :: folder = ""
     !> Outcome of the analysis.
     type(verdict_t) :: analysis
     !> MUMPS's data: the matrix by entries, right-hand side and factors.
@@ -107,6 +112,8 @@ contains
       library%icntl(icntl_scaling) = 0
       library%icntl(icntl_workspace) = first_workspace
       library%icntl(icntl_null_pivots) = 1
+      if (self%folder /= "") library%icntl(icntl_out_of_core) = 1
+      if (self%folder /= "") library%ooc_tmpdir = self%folder
       library%cntl(cntl_null_pivot) = null_pivot
     end associate
   end subroutine begin
@@ -214,9 +221,11 @@ contains
 
     !> Bytes of an entry with its row and column.
     real(wp), parameter :: per_entry = 16.0_wp
+    integer :: position
 
     bytes = 0.0_wp
-    if (self%begun) bytes = megabyte*real(self%library%infog(infog_megabytes), wp) &
+    position = merge(infog_megabytes, infog_megabytes_out_of_core, self%folder == "")
+    if (self%begun) bytes = megabyte*real(self%library%infog(position), wp) &
         + per_entry*real(self%library%nnz, wp)
   end function mumps_bytes
 

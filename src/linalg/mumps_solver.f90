@@ -57,6 +57,7 @@ contains
     class(mumps_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
+    self%factors%folder = self%options%factor_folder
     call self%factors%setup(matrix)
     self%description = self%factors%description
     call self%iteration%setup(3*matrix%n, self%options%tolerance, most_refinements)

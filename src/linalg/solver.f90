@@ -36,6 +36,8 @@ module dd3_linalg_solver
     character(len=24) :: ordering = ""
     !> Number of threads; the results do not depend on it.
     integer :: threads = 1
+    !> Folder in which MUMPS keeps its factors; empty for the memory.
+    character(len=255) :: factor_folder = ""
   end type solver_options_t
 
   !> Outcome of one solution.
@@ -70,6 +72,10 @@ module dd3_linalg_solver
     type(scaled_system_t) :: system
     !> The matrix, in `factor_scaled`: for a solver whose copy has no values.
     type(block_matrix_t), pointer :: original => null()
+    !> Whether the solver needs the positions of the nodes, and these, `(3, n_node)`, mm, set before
+    !> `factor`. The block rows of the nodes are the first ones.
+    logical :: needs_positions = .false.
+    real(wp), allocatable :: positions(:, :)
     !> Right-hand side and solution in its numbering, `(3n)`.
     real(wp), allocatable, private :: scaled_b(:), scaled_x(:)
   contains

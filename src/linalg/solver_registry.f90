@@ -8,7 +8,7 @@ module dd3_linalg_solver_registry
   use dd3_linalg_cgs_solver, only : make_cgs_solver
   use dd3_linalg_mumps_solver, only : make_mumps_solver, mumps_package
   use dd3_linalg_ordering, only : ordering_names
-  use dd3_linalg_petsc_solver, only : make_petsc_bicgstab_solver, make_petsc_mumps_solver, &
+  use dd3_linalg_petsc_solver, only : make_petsc_gamg_solver, make_petsc_mumps_solver, &
       petsc_package
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_umfpack_solver, only : make_umfpack_solver
@@ -55,8 +55,9 @@ contains
             "interchanges rows where pivots are small", mumps_package), &
         entry_t("petsc_mumps", make_petsc_mumps_solver, "complete factorisation by MUMPS "// &
             "through PETSc, on several processes", petsc_package(), .true.), &
-        entry_t("petsc_bicgstab", make_petsc_bicgstab_solver, "BiCGSTAB of PETSc with the "// &
-            "incomplete factorisation of each process, level ilu_level", petsc_package(), .true.), &
+        entry_t("petsc_gamg", make_petsc_gamg_solver, "GMRES with multigrid (GAMG) of "// &
+            "PETSc on several processes, smoothed by their incomplete factorisations of level "// &
+            "ilu_level", petsc_package(), .true.), &
         entry_t("auto", make_auto_solver, "block_lu, or umfpack for a matrix on which that "// &
             "fails; on several processes petsc_mumps")]
   end function registry

@@ -230,7 +230,8 @@ contains
 
   end subroutine set_element
 
-  !> Report a linear solver that is not in the registry or not in this build.
+  !> Report a linear solver that is not in the registry or not in this build, and one that cannot
+  !> keep its factors on the disk.
   subroutine check_solver(case, errors)
     type(case_t), intent(in) :: case
     type(error_list_t), intent(inout) :: errors
@@ -245,6 +246,9 @@ contains
     if (package /= "") call errors%push_input(case%solver%method_at, "the program was built "// &
         "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
         "built with the package "//package, code="E116")
+    if (case%solver%factors /= "disk" .or. index(case%solver%method, "mumps") > 0) return
+    call errors%push_input(case%solver%factors_at, "the linear solver '"//case%solver%method// &
+        "' keeps its factors in the memory", "method = mumps or petsc_mumps", code="E148")
   end subroutine check_solver
 
   !> Join the lines of the title.

@@ -297,8 +297,8 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the contact points of this rank, `(n_contact)`, mm2; zero for a node without
-  !> contact faces.
+  !> Return the areas of the contact points of this rank, `(n_contact)`, mm2; zero for a node
+  !> without contact faces.
   pure function point_areas(model, x) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.

@@ -61,7 +61,8 @@ contains
     if (values(2) < huge(1.0_wp)) nearest = nearest_t(nint(values(2)), values(3))
   end function nearest_candidate
 
-  !> Return the closest points to the contact points of this rank, `(n_contact)`; none is found for a point that is no candidate.
+  !> Return the closest points to the contact points of this rank, `(n_contact)`; none is found for
+  !> a point that is no candidate.
   pure function candidate_hits(model, tool, placement, x, search_distance, depth, outward) &
       result(hit)
     type(model_t), intent(in) :: model
@@ -133,8 +134,8 @@ contains
     call largest_over_ranks(size(contact), contact%pressure)
   end function tool_contacts
 
-  !> Return the gaps at the nodes, `(n_node)`, mm; at most the search distance of the phase, which is
-  !> also the value where no active tool is that near, and at a node that is no candidate.
+  !> Return the gaps at the nodes, `(n_node)`, mm; at most the search distance of the phase, which
+  !> is also the value where no active tool is that near, and at a node that is no candidate.
   function contact_gaps(model, state) result(gap)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

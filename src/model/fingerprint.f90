@@ -115,8 +115,8 @@ contains
     mesh_digest = digest%value()
   end function mesh_digest
 
-  !> Return the check sum of a tool's surface, friction, position and candidates, of a model with the
-  !> contact points of all ranks.
+  !> Return the check sum of a tool's surface, friction, position and candidates, of a model with
+  !> the contact points of all ranks.
   integer function tool_digest(model, tool)
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool

@@ -123,6 +123,7 @@ module dd3_model_model
     procedure :: start_positions
     procedure :: thickness_at
     procedure :: nodal_contact_forces
+    procedure :: own_contact_forces
     procedure :: turns
     procedure :: largest_thickness
     procedure :: least_shear
@@ -159,6 +160,19 @@ contains
     real(wp), intent(in) :: point_force(:, :)
     real(wp) :: force(3, self%n_node)
 
+    force = self%own_contact_forces(x, point_force)
+    call sum_over_ranks(size(force), force)
+  end function nodal_contact_forces
+
+  !> Return what the contact points of this rank contribute to the forces on the nodes.
+  pure function own_contact_forces(self, x, point_force) result(force)
+    class(model_t), intent(in) :: self
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> `(3, n_contact)`, N.
+    real(wp), intent(in) :: point_force(:, :)
+    real(wp) :: force(3, self%n_node)
+
     integer :: c
 
     force = 0.0_wp
@@ -166,8 +180,7 @@ contains
       if (all(abs(point_force(:, c)) <= 0.0_wp)) cycle
       call self%contact_point(c)%add_nodal_forces(x, point_force(:, c), force)
     end do
-    call sum_over_ranks(size(force), force)
-  end function nodal_contact_forces
+  end function own_contact_forces
 
   !> Whether a tool turns in some phase.
   pure logical function turns(self, tool)

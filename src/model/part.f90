@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Part of the sheet that a rank holds: its elements, with the values at their integration points,
-!> its contact points, and the rows of the linear system of its nodes. The vectors at the nodes, mesh
-!> and tools are on all ranks.
+!> its contact points, and the rows of the linear system of its nodes. The vectors at the nodes,
+!> mesh and tools are on all ranks.
 module dd3_model_part
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : gather_reals, n_ranks, this_rank

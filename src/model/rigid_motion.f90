@@ -79,8 +79,8 @@ contains
     self%product = self%product + spread(row, 2, 6)*spread(row, 1, 6)
   end subroutine hold
 
-  !> Hold the body by the conditions of all ranks as well. Those that all ranks have count more, which
-  !> does not change the free motions.
+  !> Hold the body by the conditions of all ranks as well. Those that all ranks have count more,
+  !> which does not change the free motions.
   subroutine share(self)
     class(rigid_motion_t), intent(inout) :: self
 

@@ -16,8 +16,8 @@ module dd3_model_state_walk
   contains
     procedure(visit_reals_interface), deferred :: reals
     procedure(visit_integers_interface), deferred :: integers
-    !> Components that hold values of the elements, or of the contact points, of this rank; these are
-    !> consecutive.
+    !> Components that hold values of the elements, or of the contact points, of this rank; these
+    !> are consecutive.
     procedure :: reals_of_items
     procedure :: integers_of_items
     procedure, private :: logicals
@@ -75,7 +75,8 @@ contains
       call visitor%reals_of_items(of_elements, "internal_variables", n_variable*n_point, n, &
           state%internal_variables)
       call visitor%reals_of_items(of_elements, "orientation", 9*n_point, n, state%orientation)
-      call visitor%reals_of_items(of_elements, "enhanced", size(state%enhanced, 1), n, state%enhanced)
+      call visitor%reals_of_items(of_elements, "enhanced", size(state%enhanced, 1), n, &
+          state%enhanced)
       call visitor%logicals_of_items(of_elements, "plastic", n_point, n, state%plastic)
     end associate
     associate (n => size(state%status))

@@ -235,8 +235,8 @@ contains
     mean = mean/real(max(1, size(node)), wp)
   end function mean
 
-  !> Return the support reactions of the nodes, `(3, n_node)`, N: internal forces less those of loads
-  !> and tools. Fading reactions of freed directions are included.
+  !> Return the support reactions of the nodes, `(3, n_node)`, N: internal forces less those of
+  !> loads and tools. Fading reactions of freed directions are included.
   function reactions(model, state) result(reaction)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

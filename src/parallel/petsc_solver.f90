@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Solvers of PETSc: a matrix of 3x3 blocks (MATBAIJ) of which each rank holds its rows, and a
-!> Krylov solver (KSP) that PETSc's options database configures.
+!> Solvers of PETSc: a matrix of 3x3 blocks of which each rank holds its rows, and a Krylov solver
+!> (KSP) that PETSc's options database configures.
 submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_char, c_null_ptr, c_ptr
@@ -13,15 +13,17 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
       ksp_get_iteration_number, ksp_get_pc, ksp_reset, ksp_set_from_options, &
       ksp_set_initial_guess_nonzero, &
       ksp_set_operators, ksp_set_options_prefix, ksp_set_up, ksp_solve, mat_assemble, &
-      mat_create_baij, mat_create_vecs, mat_destroy, mat_mumps_get_infog, &
-      mat_residual, mat_set_values_blocked, norm_2, pc_factor_get_matrix, petsc_comm_world, &
-      replace_option, &
+      mat_create, mat_create_vecs, mat_destroy, mat_mumps_get_infog, &
+      mat_null_space_create_rigid_body, mat_null_space_destroy, mat_residual, mat_set_block_size, &
+      mat_set_near_null_space, mat_set_preallocation, mat_set_sizes, mat_set_type, &
+      mat_set_values_blocked, norm_2, pc_factor_get_matrix, petsc_comm_world, replace_option, &
       set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, vec_get_values, &
       vec_norm, vec_set_values
   use dd3_linalg_dense, only : dgemm
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_mumps, only : cntl_null_pivot, first_workspace, icntl_null_pivots, &
-      icntl_permutation, icntl_scaling, icntl_workspace, infog_argument, infog_null_pivots, &
+      icntl_out_of_core, icntl_permutation, icntl_scaling, icntl_workspace, infog_argument, &
+      infog_null_pivots, &
       infog_status, more_workspace, mumps_verdict, needs_workspace, null_pivot
   use dd3_linalg_partition, only : own_rows
   use dd3_linalg_preconditioner, only : perturbed_pivots_t
@@ -36,8 +38,9 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   !> Tolerance of the iterations, whose own residual drifts, as a fraction of the one asked for.
   real(wp), parameter :: margin = 0.1_wp
 
-  !> Reason of the end of the iterations: breakdown (KSP_DIVERGED_BREAKDOWN).
-  integer(c_int), parameter :: breakdown = -5
+  !> Vectors that GMRES keeps before it restarts, and its iterations as a smoother. With less
+  !> smoothing the number of iterations grows with the sheet, to no convergence at 20,000 elements.
+  integer, parameter :: krylov_vectors = 100, smoothing_steps = 8
   !> Most restarts of the iterations and refinements of a factorisation, and the ratio of residuals
   !> above which a refinement is the last one.
   integer, parameter :: most_restarts = 5
@@ -51,10 +54,12 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
     logical :: iterative = .false.
     !> MUMPS's additional workspace, per cent.
     integer :: workspace = first_workspace
-    !> Matrix, Krylov solver, right-hand side, solution, residual and correction; null until a
-    !> matrix is factorised.
-    type(c_ptr) :: a = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, x = c_null_ptr, &
-        r = c_null_ptr, d = c_null_ptr
+    !> Matrix, matrix of the preconditioner, Krylov solver, right-hand side, solution, residual and
+    !> correction; null until a matrix is factorised.
+    type(c_ptr) :: a = c_null_ptr, p = c_null_ptr, ksp = c_null_ptr, b = c_null_ptr, &
+        x = c_null_ptr, r = c_null_ptr, d = c_null_ptr
+    !> Number of block rows of nodes, to which the preconditioner is restricted.
+    integer :: n_node = 0
     !> Scalar rows of this rank, 0-based.
     integer(c_int), allocatable :: own(:)
   contains
@@ -70,9 +75,9 @@ contains
     call make_solver(solver, options, "petsc_mumps", .false.)
   end procedure make_petsc_mumps_solver
 
-  module procedure make_petsc_bicgstab_solver
-    call make_solver(solver, options, "petsc_bicgstab", .true.)
-  end procedure make_petsc_bicgstab_solver
+  module procedure make_petsc_gamg_solver
+    call make_solver(solver, options, "petsc_gamg", .true.)
+  end procedure make_petsc_gamg_solver
 
   !> Create a solver.
   subroutine make_solver(solver, options, name, iterative)
@@ -88,6 +93,7 @@ contains
     made%options = options
     made%name = name
     made%iterative = iterative
+    made%needs_positions = iterative
     made%system%has_values = .false.
     call move_alloc(made, solver)
   end subroutine make_solver
@@ -102,7 +108,7 @@ contains
     ranks = to_text(n_ranks())//" ranks"
     if (n_ranks() == 1) ranks = "1 rank"
     self%description = "MUMPS of PETSc on "//ranks
-    if (self%iterative) self%description = "BiCGSTAB of PETSc with ILU("// &
+    if (self%iterative) self%description = "GMRES of PETSc with GAMG, smoothed by ILU("// &
         to_text(self%options%ilu_level)//") on the rows of each rank, "//ranks
     self%description = trim(self%description)//", "//to_text(matrix%n)//" block rows"
   end subroutine petsc_solver_setup
@@ -118,8 +124,10 @@ contains
     if (.not. c_associated(self%a)) call create_objects(self, matrix)
     self%method = self%name
     do
-      call insert_rows(self, matrix)
-      ignored = ksp_set_operators(self%ksp, self%a, self%a)
+      call insert_rows(self, matrix, matrix%n, self%a)
+      if (.not. c_associated(self%p, self%a)) call insert_rows(self, matrix, self%n_node, self%p)
+      if (self%iterative) call set_rigid_motions(self)
+      ignored = ksp_set_operators(self%ksp, self%a, self%p)
       if (ksp_set_up(self%ksp) /= 0) then
         verdict%outcome = verdict_retry
         verdict%cause = cause_solver
@@ -166,13 +174,39 @@ contains
     type(petsc_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
 
-    integer(c_int) :: ignored, n_all, n_own
-    integer(c_int), allocatable :: near(:), far(:)
-    integer :: i, k, first, last
+    integer(c_int) :: ignored
+    integer :: k, first, last
 
     call start_ranks()
     call use_one_blas_thread()
     call reserve_blas_buffer()
+    call own_rows(matrix, first, last)
+    self%own = [(int(k, c_int), k=3*(first - 1), 3*last - 1)]
+    self%n_node = matrix%n
+    if (allocated(self%positions)) self%n_node = size(self%positions, 2)
+    call create_matrix(matrix, trim(merge("aij ", "baij", self%iterative)), self%a)
+    self%p = self%a
+    if (self%n_node < matrix%n .and. self%iterative) call create_matrix(matrix, "aij", self%p)
+    ignored = mat_create_vecs(self%a, self%x, self%b)
+    ignored = vec_duplicate(self%b, self%r)
+    ignored = vec_duplicate(self%b, self%d)
+    call set_options(self)
+    ignored = ksp_create(petsc_comm_world, self%ksp)
+    ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
+    ignored = ksp_set_from_options(self%ksp)
+  end subroutine create_objects
+
+  !> Create a matrix of a pattern.
+  subroutine create_matrix(matrix, kind, created)
+    type(block_matrix_t), intent(in) :: matrix
+    !> PETSc's name.
+    character(len=*), intent(in) :: kind
+    type(c_ptr), intent(out) :: created
+
+    integer(c_int) :: ignored, n_all, n_own
+    integer(c_int), allocatable :: near(:), far(:)
+    integer :: i, first, last
+
     call own_rows(matrix, first, last)
     allocate (near(first:last), far(first:last))
     do i = first, last
@@ -183,17 +217,12 @@ contains
     end do
     n_own = int(3*(last - first + 1), c_int)
     n_all = int(3*matrix%n, c_int)
-    self%own = [(int(k, c_int), k=3*(first - 1), 3*last - 1)]
-    ignored = mat_create_baij(petsc_comm_world, 3_c_int, n_own, n_own, n_all, n_all, 0_c_int, &
-        near, 0_c_int, far, self%a)
-    ignored = mat_create_vecs(self%a, self%x, self%b)
-    ignored = vec_duplicate(self%b, self%r)
-    ignored = vec_duplicate(self%b, self%d)
-    call set_options(self)
-    ignored = ksp_create(petsc_comm_world, self%ksp)
-    ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
-    ignored = ksp_set_from_options(self%ksp)
-  end subroutine create_objects
+    ignored = mat_create(petsc_comm_world, created)
+    ignored = mat_set_sizes(created, n_own, n_own, n_all, n_all)
+    ignored = mat_set_block_size(created, 3_c_int)
+    ignored = mat_set_type(created, kind//c_null_char)
+    ignored = mat_set_preallocation(created, 3_c_int, near, far, c_null_ptr, c_null_ptr)
+  end subroutine create_matrix
 
   !> Let OpenBLAS allocate its buffer. In a factorisation it would wait for the memory for ever;
   !> here the program ends if there is none.
@@ -227,43 +256,88 @@ contains
       call set_option(prefix//"icntl_"//to_text(icntl_scaling), "0")
       call set_option(prefix//"icntl_"//to_text(icntl_workspace), to_text(self%workspace))
       call set_option(prefix//"icntl_"//to_text(icntl_null_pivots), "1")
+      if (self%options%factor_folder /= "") then
+        call set_option(prefix//"icntl_"//to_text(icntl_out_of_core), "1")
+        call set_option(prefix//"ooc_tmpdir", trim(self%options%factor_folder))
+      end if
       call set_option(prefix//"cntl_"//to_text(cntl_null_pivot), to_text(null_pivot))
       return
     end if
-    call set_option(prefix//"ksp_type", "bcgs")
-    call set_option(prefix//"ksp_pc_side", "right")
+    call set_option(prefix//"ksp_type", "fgmres")
+    call set_option(prefix//"ksp_gmres_restart", to_text(krylov_vectors))
     call set_option(prefix//"ksp_rtol", to_text(margin*self%options%tolerance))
     call set_option(prefix//"ksp_max_it", to_text(self%options%iterations))
+    call set_option(prefix//"pc_type", "gamg")
+    call set_option(prefix//"pc_gamg_reuse_interpolation", "false")
+    prefix = prefix//"mg_levels_"
+    call set_option(prefix//"ksp_type", "gmres")
+    call set_option(prefix//"ksp_max_it", to_text(smoothing_steps))
     call set_option(prefix//"pc_type", "asm")
     call set_option(prefix//"sub_pc_type", "ilu")
     call set_option(prefix//"sub_pc_factor_levels", to_text(self%options%ilu_level))
   end subroutine set_options
 
-  !> Scale the own rows and hand them to PETSc, which holds the only copy.
-  subroutine insert_rows(self, matrix)
-    type(petsc_solver_t), intent(inout) :: self
+  !> Scale the own rows and hand them to PETSc, which holds the only copy. Of the rows and columns
+  !> behind those of the nodes, which are dense, a matrix of the nodes alone has unit diagonals.
+  subroutine insert_rows(self, matrix, n_node, to)
+    type(petsc_solver_t), intent(in) :: self
     type(block_matrix_t), intent(in) :: matrix
+    !> Number of block rows of nodes in the original numbering.
+    integer, intent(in) :: n_node
+    type(c_ptr), intent(in) :: to
 
+    real(wp), parameter :: unit(9) = [1, 0, 0, 0, 1, 0, 0, 0, 1]
     !> Column component, column, row component: the row by scalar rows.
     real(wp), allocatable :: row(:, :, :)
+    integer, allocatable :: k(:)
     integer(c_int) :: ignored
     integer :: i, j, first, last
 
     call own_rows(matrix, first, last)
     do i = first, last
-      associate (from => matrix%row_start(i), to => matrix%row_start(i + 1) - 1)
-        if (allocated(row)) deallocate (row)
-        allocate (row(3, to - from + 1, 3))
-        do j = 1, 3
-          row(:, :, j) = self%system%scale(j, i)*self%original%value(j, :, &
-              self%system%source(from:to))
-        end do
-        ignored = mat_set_values_blocked(self%a, 1_c_int, [int(i - 1, c_int)], &
-            int(to - from + 1, c_int), int(matrix%column(from:to) - 1, c_int), row, insert_values)
+      if (self%system%order(i) > n_node) then
+        ignored = mat_set_values_blocked(to, 1_c_int, [int(i - 1, c_int)], 1_c_int, &
+            [int(i - 1, c_int)], unit, insert_values)
+        cycle
+      end if
+      k = [(j, j=matrix%row_start(i), matrix%row_start(i + 1) - 1)]
+      if (n_node < matrix%n) k = pack(k, self%system%order(matrix%column(k)) <= n_node)
+      if (allocated(row)) deallocate (row)
+      allocate (row(3, size(k), 3))
+      do j = 1, 3
+        row(:, :, j) = self%system%scale(j, i)*self%original%value(j, :, self%system%source(k))
+      end do
+      ignored = mat_set_values_blocked(to, 1_c_int, [int(i - 1, c_int)], int(size(k), c_int), &
+          int(matrix%column(k) - 1, c_int), row, insert_values)
+    end do
+    call mat_assemble(to)
+  end subroutine insert_rows
+
+  !> Give the preconditioner the rigid motions of the sheet.
+  subroutine set_rigid_motions(self)
+    type(petsc_solver_t), intent(in) :: self
+
+    type(c_ptr) :: coordinates, unused, motions
+    real(wp), allocatable :: own(:)
+    integer(c_int) :: ignored
+    integer :: i
+
+    if (.not. allocated(self%positions)) return
+    ignored = mat_create_vecs(self%p, coordinates, unused)
+    allocate (own(size(self%own)), source=0.0_wp)
+    do i = 1, size(own)/3
+      associate (node => self%system%order(self%own(3*i)/3 + 1))
+        if (node <= self%n_node) own(3*i - 2:3*i) = self%positions(:, node)
       end associate
     end do
-    call mat_assemble(self%a)
-  end subroutine insert_rows
+    ignored = vec_set_values(coordinates, size(own, kind=c_int), self%own, own, insert_values)
+    call vec_assemble(coordinates)
+    ignored = mat_null_space_create_rigid_body(coordinates, motions)
+    ignored = mat_set_near_null_space(self%p, motions)
+    ignored = mat_null_space_destroy(motions)
+    ignored = vec_destroy(coordinates)
+    ignored = vec_destroy(unused)
+  end subroutine set_rigid_motions
 
   !> Solve, check the true residual and give all ranks the solution.
   subroutine petsc_solver_solve(self, matrix, b, x, report)
@@ -286,11 +360,11 @@ contains
       call keep_solution(self, matrix, x, report, reason)
       if (report%residual <= self%options%tolerance .or. report%restarts == most_restarts) exit
       if (self%iterative) then
-        if (reason /= breakdown .and. reason < 0) exit
+        if (reason < 0) exit
       else if (.not. report%residual < least_gain*last) then
         exit
       end if
-      call improve(self, reason)
+      call improve(self)
       report%restarts = report%restarts + 1
     end do
     if (.not. report%converged) report%reason = trim(self%name)//" found no solution (reason "// &
@@ -333,12 +407,10 @@ contains
     report%converged = report%residual <= limit
   end subroutine keep_solution
 
-  !> Improve PETSc's solution: refine that of a factorisation by its residual, or iterate again. If
-  !> vectors of BiCGSTAB are orthogonal, a step along the residual gives others; if its own residual
-  !> has drifted from the true one, the solution so far is a good start.
-  subroutine improve(self, reason)
+  !> Improve PETSc's solution: refine that of a factorisation by its residual, or iterate again from
+  !> it, where the residual of the iterations has drifted from the true one.
+  subroutine improve(self)
     type(petsc_solver_t), intent(in) :: self
-    integer(c_int), intent(in) :: reason
 
     integer(c_int) :: ignored
 
@@ -347,7 +419,6 @@ contains
       ignored = vec_axpy(self%x, 1.0_wp, self%d)
       return
     end if
-    if (reason == breakdown) ignored = vec_axpy(self%x, 1.0_wp, self%r)
     ignored = ksp_set_initial_guess_nonzero(self%ksp, 1_c_int)
     ignored = ksp_solve(self%ksp, self%b, self%x)
     ignored = ksp_set_initial_guess_nonzero(self%ksp, 0_c_int)
@@ -377,6 +448,7 @@ contains
     self%method = ""
     if (.not. c_associated(self%a)) return
     ignored = ksp_destroy(self%ksp)
+    if (.not. c_associated(self%p, self%a)) ignored = mat_destroy(self%p)
     ignored = mat_destroy(self%a)
     ignored = vec_destroy(self%b)
     ignored = vec_destroy(self%x)

@@ -29,9 +29,11 @@ module dd3_process_attempt_report
   character(len=*), parameter :: surface_remedy = "a surface of the tool that continues beyond "// &
       "this edge"
   character(len=*), parameter :: memory_remedy = "method = cgs in *SOLVER"
-  character(len=*), parameter :: ranks_remedy = "more processes, method = petsc_bicgstab in *SOLVER"
+  character(len=*), parameter :: ranks_remedy = "more processes, factors = disk in *SOLVER"
   character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
       "stop rigid motion"
+  character(len=*), parameter :: mumps_remedy = "method = petsc_mumps in *SOLVER, "// &
+      "supports that stop rigid motion"
   character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
   character(len=*), parameter :: cutback_remedy = "cutback = on in *NEWTON"
   character(len=*), parameter :: line_search_remedy = "line_search = on in *NEWTON"
@@ -232,6 +234,8 @@ contains
     case (cause_solver)
       remedy = solver_remedy
       if (attempt%solver%solver == "umfpack") remedy = support_remedy
+      if (n_ranks() > 1) remedy = mumps_remedy
+      if (attempt%solver%solver == "petsc_mumps") remedy = support_remedy
     case (cause_large_step)
       if (committed%increment == 0) remedy = support_remedy
     end select

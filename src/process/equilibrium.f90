@@ -6,7 +6,7 @@
 module dd3_process_equilibrium
   use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks
+  use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
@@ -204,14 +204,20 @@ contains
     class(equilibrium_t), intent(in) :: self
     real(wp) :: work
 
-    real(wp) :: inner(1)
-    integer :: tool
+    real(wp) :: own(1)
+    logical :: free(3, self%model%n_node)
+    integer :: tool, rank
 
+    rank = this_rank()
     associate (model => self%model, problem => self%system%problem, step => self%step, &
         phase => self%model%phase(self%trial%phase))
-      inner = sum(sum(self%system%enhanced%residual*step%enhanced, dim=1))
-      call sum_over_ranks(1, inner)
-      work = sum(problem%law_residual*step%x, mask=.not. phase%prescribed) + inner(1)
+      free = .not. phase%prescribed
+      if (model%part%divided) &
+          free = free .and. spread(model%part%node_owner == rank, 1, 3)
+      own = sum(problem%law_residual*step%x, mask=free) &
+          + sum(sum(self%system%enhanced%residual*step%enhanced, dim=1))
+      call sum_over_ranks(1, own)
+      work = own(1)
       do tool = 1, model%n_tool
         if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
             *dot_product(phase%direction(:, tool), step%tool(:, tool))

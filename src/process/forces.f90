@@ -92,7 +92,7 @@ contains
     !> Gets contact and residuals.
     type(system_t), intent(inout) :: system
 
-    real(wp) :: nearest(1)
+    real(wp) :: nearest(1), contact_forces(3, model%n_node)
     integer :: b, c, node, tool
 
     call evaluate_contact(system%contact, model, committed, trial)
@@ -102,11 +102,14 @@ contains
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)
+      contact_forces = model%own_contact_forces(trial%x, trial%lambda)
+      call system%partition%complete_forces(contact_forces)
       problem%residual = trial%internal_force - trial%external_force
-      problem%residual = problem%residual + model%nodal_contact_forces(trial%x, trial%lambda)
+      problem%residual = problem%residual + contact_forces
       problem%contact_residual = contact%force - trial%lambda
-      problem%law_residual = problem%residual &
-          + model%nodal_contact_forces(trial%x, problem%contact_residual)
+      contact_forces = model%own_contact_forces(trial%x, problem%contact_residual)
+      call system%partition%complete_forces(contact_forces)
+      problem%law_residual = problem%residual + contact_forces
       force = 0.0_wp
       do node = 1, merge(model%n_node, 0, this_rank() == 0)
         tool = trial%fading_tool(node)

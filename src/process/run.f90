@@ -135,6 +135,7 @@ contains
     solver_options%iterations = start%solver%iterations
     solver_options%ordering = start%solver%ordering
     solver_options%threads = start%threads
+    if (start%solver%factors == "disk") solver_options%factor_folder = start%directory
   end function solver_options
 
   !> Open the records, or continue those of a restart.

@@ -96,6 +96,7 @@ contains
       call json%add("tolerance", solver%tolerance)
       call json%add("iterations", solver%iterations)
       call json%add("ordering", solver%ordering)
+      call json%add("factors", solver%factors)
       call json%end_object()
     end associate
   end subroutine add_solver

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Contact of the candidates of this rank: nearest tool, status, force and linearisation, in a trial state
-!> (corrector) or at the committed state with its stored status (predictor).
+!> Contact of the candidates of this rank: nearest tool, status, force and linearisation, in a trial
+!> state (corrector) or at the committed state with its stored status (predictor).
 module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank

@@ -24,7 +24,7 @@ module dd3_system_linear_problem
   !> Right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
     !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N, and
-    !> that with the forces F_equ of the contact law.
+    !> that with the forces F_equ of the contact law; of several ranks each has those of its nodes.
     real(wp), allocatable :: residual(:, :), law_residual(:, :)
     !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: contact_residual(:, :)

@@ -46,6 +46,7 @@ contains
     call system%profile%start()
     call reduce(system, model, state)
     call system%profile%add(section_assembly)
+    if (system%solver%needs_positions) system%solver%positions = state%x
     call system%solver%factor(system%matrix, verdict)
     call system%profile%add(section_factorisation)
     call add_perturbed(system%solver%perturbed, info%perturbed)

@@ -7,7 +7,7 @@
 !> that are cut, per cent; nodes of the elements of a part that belong to other parts, on average
 !> and at most; neighbours at most; bytes of rows that a part sends in an iteration at most, MB;
 !> bytes of all values at the nodes that are summed over the parts in an iteration, MB (internal
-!> forces, forces of the condensation, solution). Then the complete factorisation: largest front,
+!> forces, solution). Then the complete factorisation: largest front,
 !> operations, and how often the operations on the longest path of the tree of fronts are contained
 !> in all: a bound of the speed-up where each front is on one process.
 program benchmark_parts
@@ -18,7 +18,7 @@ program benchmark_parts
   implicit none
 
   !> Sums over the parts of values at all nodes in an iteration.
-  integer, parameter :: sums = 3
+  integer, parameter :: sums = 2
   real(wp), parameter :: megabyte = 1.0e6_wp
   type(block_matrix_t) :: graph
   integer, allocatable :: connectivity(:, :), owner(:)

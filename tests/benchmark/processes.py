@@ -27,8 +27,11 @@ DECK = ROOT / "input_files" / "square_cup" / "square_cup.dat"
 SIZES, DEPTH = (100, 142), 0.5
 # Processes of the comparison of results, and the size and depth of its cup.
 PROCESSES, SMALL, FAR = range(1, 9), 30, 5
+# Processes (0: the serial program), threads and place of the factors there.
+WAYS = ((0, 2, "memory"), (0, 1, "memory"), (2, 1, "memory"), (2, 1, "disk"), (4, 1, "memory"), (8, 1, "memory"),
+        (8, 1, "disk"))
 # Sizes and depth of the comparison of solvers.
-SOLVED, SHORT = (30, 60, 100), 0.1
+SOLVED, SHORT = (30, 60, 100, 142), 0.1
 # Components of the last state that are compared, and their names.
 STATE = {"x": "positions", "stress": "stresses", "internal_variables": "plastic strains", "lambda": "contact forces"}
 # Runs its arguments after the first, and writes its largest memory, MB, into a file of the folder in the first.
@@ -63,18 +66,29 @@ class Measured:
         return sum(self.job["sections"][name] for name in sections)
 
 
+def deck_of(options, method, factors="memory"):
+    """Return the deck of the cup with a linear solver."""
+    deck = options.work / f"{method}_{factors}.dat"
+    deck.parent.mkdir(parents=True, exist_ok=True)
+    deck.write_text(f"*INCLUDE {DECK}\n*SOLVER\n  method = {method}\n  factors = {factors}\n", encoding="utf-8")
+    return deck
+
+
 def cost(options):
     """Return the table of time and memory, and its runs."""
     rows, jobs = [], []
     for size in SIZES:
-        for processes, threads in ((0, 2), (0, 1), (2, 1), (4, 1), (8, 1)):
-            run_of = Measured(options, f"cost_{size}_{processes}_{threads}", processes, size, DEPTH, threads)
+        for processes, threads, factors in WAYS:
+            method = "petsc_mumps" if processes else "auto"
+            deck = deck_of(options, method, factors)
+            run_of = Measured(options, f"cost_{size}_{processes}_{threads}_{factors}", processes, size, DEPTH, threads,
+                              deck)
             jobs.append(run_of.job)
             memory = f"{run_of.memory[0]:.0f}" + (f" to {run_of.memory[-1]:.0f}" if processes else "")
-            rows.append([f"{size*size:,}", str(max(1, processes)), str(threads), memory, f"{run_of.job['seconds']:.1f}",
-                         f"{run_of.seconds('material', 'assembly'):.1f}", f"{run_of.seconds('contact'):.2f}",
-                         f"{run_of.seconds('factorisation', 'solve'):.1f}"])
-    return table(["elements", "processes", "threads of each", "memory of a process, MB", "wall, s",
+            rows.append([f"{size*size:,}", str(max(1, processes)), str(threads), factors, memory,
+                         f"{run_of.job['seconds']:.1f}", f"{run_of.seconds('material', 'assembly'):.1f}",
+                         f"{run_of.seconds('contact'):.2f}", f"{run_of.seconds('factorisation', 'solve'):.1f}"])
+    return table(["elements", "processes", "threads of each", "factors", "memory of a process, MB", "wall, s",
                   "material and assembly, s", "contact, s", "factorisation and solution, s"], rows), jobs
 
 
@@ -109,18 +123,16 @@ def solvers(options):
     rows, jobs = [], []
     for size in SOLVED:
         row = [f"{size*size:,}"]
-        for method in ("petsc_bicgstab", "petsc_mumps"):
-            deck = options.work / f"{method}.dat"
-            deck.write_text(f"*INCLUDE {DECK}\n*SOLVER\n  method = {method}\n", encoding="utf-8")
-            run_of = Measured(options, f"{method}_{size}", 2, size, SHORT, deck=deck)
+        for method in ("petsc_gamg", "petsc_mumps"):
+            run_of = Measured(options, f"{method}_{size}", 2, size, SHORT, deck=deck_of(options, method))
             jobs.append(run_of.job)
-            if method == "petsc_bicgstab":
+            if method == "petsc_gamg":
                 solutions = run_of.counts["iterations"] + run_of.counts["increments"]
                 row.append(f"{run_of.counts['solver_iterations']/solutions:.0f}")
             row += [f"{run_of.seconds('factorisation', 'solve'):.2f}" if run_of.ended else "stops",
                     f"{run_of.memory[0]:.0f}"]
         rows.append(row)
-    return table(["elements", "iterations in a solution", "`petsc_bicgstab`, s", "memory, MB", "`petsc_mumps`, s",
+    return table(["elements", "iterations in a solution", "`petsc_gamg`, s", "memory, MB", "`petsc_mumps`, s",
                   "memory, MB"], rows), jobs
 
 
