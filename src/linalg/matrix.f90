@@ -287,6 +287,7 @@ contains
   subroutine clear(self)
     type(block_matrix_t), intent(inout) :: self
 
+    if (.not. allocated(self%value)) allocate (self%value(3, 3, size(self%column)))
     call set_zero(size(self%value), self%value)
   end subroutine clear
 

@@ -3,12 +3,13 @@
 !> connected, with few couplings to those of the others (multilevel k-way partitioning, Karypis and
 !> Kumar, J. Parallel Distrib. Comput. 48, 1998; METIS 5).
 module dd3_linalg_partition
+  use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_integers, n_ranks, this_rank
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_metis, only : partition_graph
   implicit none
   private
-  public :: divide_rows, holds_row, order_by_owner, own_rows
+  public :: divide_rows, holds_row, order_by_owner, own_rows, column_squares
 
 contains
 
@@ -38,6 +39,26 @@ contains
     holds_row = .true.
     if (allocated(matrix%owner)) holds_row = matrix%owner(row) == this_rank()
   end function holds_row
+
+  !> Return the sums of the squares in the first columns over the first rows, those of this rank.
+  function column_squares(matrix, n) result(square)
+    type(block_matrix_t), intent(in) :: matrix
+    !> Number of block rows and columns.
+    integer, intent(in) :: n
+    !> `(3, n)`.
+    real(wp), allocatable :: square(:, :)
+
+    integer :: i, j, k
+
+    allocate (square(3, n), source=0.0_wp)
+    do i = 1, n
+      if (.not. holds_row(matrix, i)) cycle
+      do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+        j = matrix%column(k)
+        if (j <= n) square(:, j) = square(:, j) + sum(matrix%value(:, :, k)**2, dim=1)
+      end do
+    end do
+  end function column_squares
 
   !> Return the order in which the rows of each rank are consecutive.
   function order_by_owner(matrix) result(order)

@@ -36,6 +36,8 @@ module dd3_linalg_solver
     character(len=24) :: ordering = ""
     !> Number of threads; the results do not depend on it.
     integer :: threads = 1
+    !> Whether the matrix keeps its values where the solver has a copy.
+    logical :: keeps_matrix = .true.
     !> Folder in which MUMPS keeps its factors; empty for the memory.
     character(len=255) :: factor_folder = ""
   end type solver_options_t
@@ -150,7 +152,8 @@ contains
   !> Copy, scale and factorise a matrix of the pattern set up.
   subroutine factor(self, matrix, verdict)
     class(linear_solver_t), intent(inout) :: self
-    type(block_matrix_t), intent(in), target :: matrix
+    !> Loses its values unless the options say otherwise.
+    type(block_matrix_t), intent(inout), target :: matrix
     !> Retry if the matrix is singular or not finite; `node` is a block row, if one is to blame.
     type(verdict_t), intent(out) :: verdict
 

@@ -123,10 +123,11 @@ contains
 
     if (.not. c_associated(self%a)) call create_objects(self, matrix)
     self%method = self%name
+    call insert_rows(self, matrix, matrix%n, self%a)
+    if (.not. c_associated(self%p, self%a)) call insert_rows(self, matrix, self%n_node, self%p)
+    if (self%iterative) call set_rigid_motions(self)
+    if (.not. self%options%keeps_matrix) deallocate (self%original%value)
     do
-      call insert_rows(self, matrix, matrix%n, self%a)
-      if (.not. c_associated(self%p, self%a)) call insert_rows(self, matrix, self%n_node, self%p)
-      if (self%iterative) call set_rigid_motions(self)
       ignored = ksp_set_operators(self%ksp, self%a, self%p)
       if (ksp_set_up(self%ksp) /= 0) then
         verdict%outcome = verdict_retry

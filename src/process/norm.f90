@@ -15,8 +15,7 @@ module dd3_process_norm
   use dd3_base_ranks, only : agreed, broadcast_reals, norm_over_ranks, rank_of_smallest, &
       sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_linalg_partition, only : holds_row
+  use dd3_linalg_partition, only : column_squares
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -151,6 +150,7 @@ contains
     type(unknowns_t), intent(in) :: step
     type(residual_t), intent(inout) :: residual
 
+    real(wp), allocatable :: square(:, :)
     real(wp) :: force, scale, round_off
 
     associate (phase => model%phase(trial%phase))
@@ -159,10 +159,13 @@ contains
           negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase)*scale .and. force < largest_round_off*scale) then
         if (allocated(system%stiffness%value) .and. phase%mixed) then
-          round_off = attainable_residual(system%stiffness, trial%x)
+          square = column_squares(system%stiffness, model%n_node)
+        else if (allocated(system%matrix%value)) then
+          square = column_squares(system%matrix, model%n_node)
         else
-          round_off = attainable_residual(system%matrix, trial%x)
+          square = system%column_square
         end if
+        round_off = attainable_residual(square, trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase))
       end if
     end associate
@@ -170,31 +173,19 @@ contains
   end subroutine scale_norm
 
   !> Return the norm of the residual below which it is round-off, N.
-  function attainable_residual(stiffness, x) result(residual)
-    !> Of the sheet; its first rows are those of the nodes, N/mm.
-    type(block_matrix_t), intent(in) :: stiffness
+  function attainable_residual(square, x) result(residual)
+    !> Sums of the squares in the columns of the stiffness over the rows of this rank, `(3, n_node)`,
+    !> (N/mm)2.
+    real(wp), intent(in) :: square(:, :)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     real(wp) :: residual
 
-    real(wp) :: variance(3, size(x, 2)), square(1)
-    integer :: node, k, i
+    real(wp) :: variance(1)
 
-    variance = spacing(x)**2/12.0_wp
-    square = 0.0_wp
-    do node = 1, size(x, 2)
-      if (.not. holds_row(stiffness, node)) cycle
-      do k = stiffness%row_start(node), stiffness%row_start(node + 1) - 1
-        associate (neighbour => stiffness%column(k))
-          if (neighbour > size(x, 2)) cycle
-          do i = 1, 3
-            square = square + sum(stiffness%value(:, i, k)**2)*variance(i, neighbour)
-          end do
-        end associate
-      end do
-    end do
-    call sum_over_ranks(1, square)
-    residual = multiple*sqrt(square(1))
+    variance = sum(square*(spacing(x)**2/12.0_wp))
+    call sum_over_ranks(1, variance)
+    residual = multiple*sqrt(variance(1))
   end function attainable_residual
 
   !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has

@@ -135,6 +135,7 @@ contains
     solver_options%iterations = start%solver%iterations
     solver_options%ordering = start%solver%ordering
     solver_options%threads = start%threads
+    solver_options%keeps_matrix = n_ranks() == 1
     if (start%solver%factors == "disk") solver_options%factor_folder = start%directory
   end function solver_options
 

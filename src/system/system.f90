@@ -40,6 +40,9 @@ module dd3_system_system
     !> Matrix, with the rows that this rank holds: the stiffness of the sheet, once assembled, which
     !> `reduce` makes the reduced matrix.
     type(block_matrix_t) :: matrix
+    !> Sums of the squares in its columns of nodes over the rows of this rank, `(3, n_node)`, of
+    !> several ranks: the matrix has no values after its factorisation.
+    real(wp), allocatable :: column_square(:, :)
     !> Stiffness of the sheet, from which the contact forces of the mixed formulation follow; kept
     !> in its phases alone.
     type(block_matrix_t) :: stiffness

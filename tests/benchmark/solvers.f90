@@ -70,7 +70,7 @@ contains
   !> Compare the solvers on a system and print a table.
   subroutine compare(name, matrix, b)
     character(len=*), intent(in) :: name
-    type(block_matrix_t), intent(in) :: matrix
+    type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(in) :: b(:)
 
     integer, parameter :: levels(6) = [0, 1, 2, 3, 5, complete]
@@ -115,7 +115,7 @@ contains
   !> Time one solver on a system and print a line.
   subroutine measure(options, matrix, b, reference)
     type(solver_options_t), intent(in) :: options
-    type(block_matrix_t), intent(in) :: matrix
+    type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(in) :: b(:)
     !> Direct solution; set if it is zero.
     real(wp), intent(inout) :: reference(:)
