@@ -3,6 +3,7 @@
 !> tools is checked. All errors of the input are collected.
 module dd3_model_build
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : n_ranks
   use dd3_base_error, only : error_list_t, error_t, location_t
   use dd3_base_text, only : same_name, text_buffer_t, to_text
   use dd3_contact_closest, only : hit_t
@@ -237,7 +238,7 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     character(len=:), allocatable :: package
-    integer :: position
+    integer :: position, ranks
 
     if (case%solver%method == "") return
     call check_known_name(case%solver%method, case%solver%method_at, "linear solver", &
@@ -247,6 +248,9 @@ contains
         "without the linear solver '"//case%solver%method//"'", "another one, or a program "// &
         "built with the package "//package, code="E116")
     if (case%solver%factors /= "disk" .or. index(case%solver%method, "mumps") > 0) return
+    ranks = n_ranks()
+    ! On several ranks this is petsc_mumps.
+    if (ranks > 1 .and. case%solver%method == "auto") return
     call errors%push_input(case%solver%factors_at, "the linear solver '"//case%solver%method// &
         "' keeps its factors in the memory", "method = mumps or petsc_mumps", code="E148")
   end subroutine check_solver

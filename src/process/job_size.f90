@@ -133,8 +133,11 @@ contains
       text = text//"factors not known before the factorisation"
     end if
     text = text//newline//"memory: about "//to_text(nint(self%total/megabyte))//" MB"
-    if (self%factors > 0.0_wp) text = text//", of which factors "// &
-        to_text(nint(self%factors/megabyte))//" MB"
+    if (self%factors > 0.0_wp) then
+      text = text//", of which factors "//to_text(nint(self%factors/megabyte))//" MB"
+    else
+      text = text//" without factors"
+    end if
     text = text//newline
   end function size_report
 
