@@ -5,8 +5,8 @@ module dd3_base_cause_text
   use dd3_base_verdict, only : verdict_t, cause_inverted, cause_inverted_strain, cause_not_finite, &
       cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
       cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
-      cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, cause_residual, &
-      cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
+      cause_factor_files, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
+      cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
   implicit none
   private
   public :: cause_code, cause_text
@@ -33,14 +33,14 @@ contains
     character(len=4) :: code
 
     ! Causes and their codes.
-    integer, parameter :: cause(18) = [cause_inverted, cause_inverted_strain, cause_not_finite, &
+    integer, parameter :: cause(19) = [cause_inverted, cause_inverted_strain, cause_not_finite, &
         cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
         cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
-        cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, cause_residual, &
-        cause_tool_force]
-    character(len=4), parameter :: code_of(18) = ["E211", "E212", "E213", "E214", "E215", "E221", &
-        "E222", "E223", "E224", "E231", "E232", "E233", "E241", "E242", "E243", "E244", "E245", &
-        "E246"]
+        cause_factor_files, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
+        cause_residual, cause_tool_force]
+    character(len=4), parameter :: code_of(19) = ["E211", "E212", "E213", "E214", "E215", "E221", &
+        "E222", "E223", "E224", "E231", "E232", "E233", "E235", "E241", "E242", "E243", "E244", &
+        "E245", "E246"]
     integer :: i
 
     code = ""
@@ -77,7 +77,7 @@ contains
         text = "no strain found for the target stress; residual "//to_text(value(1), 4)//" MPa"
       case (cause_gradient)
         text = "det F is not positive"
-      case (cause_singular, cause_solver_memory, cause_solver)
+      case (cause_singular, cause_solver_memory, cause_solver, cause_factor_files)
         text = "linear solver: "//trim(verdict%detail)
       case (cause_lost_tool)
         text = "nothing resists the pressed tool "//tool

@@ -39,6 +39,8 @@ module dd3_base_verdict
     enumerator :: cause_singular
     enumerator :: cause_solver_memory
     enumerator :: cause_solver
+    !> Factors that cannot be written to the disk.
+    enumerator :: cause_factor_files
     !> A pressed tool without contact: `tool`.
     enumerator :: cause_lost_tool
     !> A node that its supports hold inside a tool: `node`.
@@ -60,8 +62,8 @@ module dd3_base_verdict
   public :: cause_none, cause_inverted, cause_inverted_strain, cause_not_finite, &
       cause_large_strain, cause_return_mapping, cause_strain_bound, cause_singular_tangent, &
       cause_no_strain, cause_gradient, cause_singular, cause_solver_memory, cause_solver, &
-      cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, cause_residual, &
-      cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
+      cause_factor_files, cause_lost_tool, cause_led_inside, cause_large_step, cause_unsettled, &
+      cause_residual, cause_tool_force, cause_no_progress, cause_beyond_until, cause_interrupted
 
   !> Result of a numerical step; initially a failure.
   type :: verdict_t

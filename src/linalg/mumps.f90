@@ -5,8 +5,8 @@
 module dd3_linalg_mumps
   use dd3_base_kinds, only : i8, wp
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_singular, &
-      cause_solver, cause_solver_memory
+  use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_factor_files, &
+      cause_singular, cause_solver, cause_solver_memory
   use dd3_external_blas_threads, only : use_one_blas_thread
   use dd3_external_mumps_library, only : dmumps, dmumps_struc
   use dd3_linalg_front_tree, only : choose_ordering
@@ -39,9 +39,9 @@ module dd3_linalg_mumps
   !> the factors and without them, and the number of null pivots.
   integer, parameter :: infog_status = 1, infog_argument = 2, infog_megabytes = 16, &
       infog_megabytes_out_of_core = 26, infog_null_pivots = 28
-  !> MUMPS's errors: no memory, workspace too small, singular pattern, singular matrix.
+  !> MUMPS's errors: no memory, workspace too small, singular pattern or matrix, files of factors.
   integer, parameter :: error_memory(3) = [-5, -7, -13], error_workspace(2) = [-8, -9], &
-      error_singular(2) = [-6, -10]
+      error_singular(2) = [-6, -10], error_files = -90
   !> Additional workspace: percent at first, factor after `error_workspace`, and limit.
   integer, parameter :: first_workspace = 5, more_workspace = 3, most_workspace = 1000
   real(wp), parameter :: megabyte = 1.0e6_wp
@@ -192,6 +192,9 @@ contains
     else if (any(status == error_memory) .or. any(status == error_workspace)) then
       verdict%cause = cause_solver_memory
       verdict%detail = "not enough memory for MUMPS"
+    else if (status == error_files) then
+      verdict%cause = cause_factor_files
+      verdict%detail = "MUMPS cannot write its factors to the disk"
     else
       verdict%cause = cause_solver
       verdict%detail = "MUMPS failed with INFOG(1) = "//to_text(status)//", INFOG(2) = "// &

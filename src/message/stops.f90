@@ -86,7 +86,10 @@ contains
           "The factors need more memory than there is.", "`method = cgs` in `*SOLVER`."), &
       row("E233", "failure of the linear solver", &
           "The iteration does not reach the tolerance, most often because the sheet is hardly "// &
-          "held.", "`method = umfpack` in `*SOLVER`; supports that stop rigid motion.")]
+          "held.", "`method = umfpack` in `*SOLVER`; supports that stop rigid motion."), &
+      row("E235", "factors that cannot be written", &
+          "With `factors = disk` MUMPS keeps its factors in the folder of the results; its disk "// &
+          "is full.", "A folder on a larger disk; `factors = memory` in `*SOLVER`.")]
   end function in_solver
 
   !> Return the failures of the contact and of the iteration.

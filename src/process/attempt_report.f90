@@ -6,9 +6,9 @@ module dd3_process_attempt_report
   use dd3_base_ranks, only : count_over_ranks, largest_over_ranks, n_ranks
   use dd3_base_cause_text, only : cause_text
   use dd3_base_text, only : to_text
-  use dd3_base_verdict, only : cause_inverted, cause_inverted_strain, cause_large_step, &
-      cause_led_inside, cause_lost_tool, cause_no_progress, cause_singular, cause_solver, &
-      cause_solver_memory, verdict_converged
+  use dd3_base_verdict, only : cause_factor_files, cause_inverted, cause_inverted_strain, &
+      cause_large_step, cause_led_inside, cause_lost_tool, cause_no_progress, cause_singular, &
+      cause_solver, cause_solver_memory, verdict_converged
   use dd3_contact_operator, only : status_gap, status_slip, status_stick
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_model, only : model_t
@@ -32,6 +32,8 @@ module dd3_process_attempt_report
   character(len=*), parameter :: ranks_remedy = "more processes, factors = disk in *SOLVER"
   character(len=*), parameter :: solver_remedy = "method = umfpack in *SOLVER, supports that "// &
       "stop rigid motion"
+  character(len=*), parameter :: files_remedy = "a folder of results on a larger disk, "// &
+      "factors = memory in *SOLVER"
   character(len=*), parameter :: mumps_remedy = "method = petsc_mumps in *SOLVER, "// &
       "supports that stop rigid motion"
   character(len=*), parameter :: support_remedy = "supports that stop rigid motion"
@@ -229,6 +231,8 @@ contains
     case (cause_solver_memory)
       remedy = memory_remedy
       if (n_ranks() > 1) remedy = ranks_remedy
+    case (cause_factor_files)
+      remedy = files_remedy
     case (cause_singular)
       remedy = support_remedy
     case (cause_solver)
