@@ -152,7 +152,7 @@ contains
   !> Copy, scale and factorise a matrix of the pattern set up.
   subroutine factor(self, matrix, verdict)
     class(linear_solver_t), intent(inout) :: self
-    !> Loses its values unless the options say otherwise.
+    !> Loses its values if the options say so and the solver has a copy.
     type(block_matrix_t), intent(inout), target :: matrix
     !> Retry if the matrix is singular or not finite; `node` is a block row, if one is to blame.
     type(verdict_t), intent(out) :: verdict

@@ -32,13 +32,12 @@ module dd3_model_contact_results
 contains
 
   !> Return the candidate with the smallest value of a measure of its distance.
-  function nearest_candidate(model, distance, counts, measure) result(nearest)
+  function nearest_candidate(model, distance, measure, counts) result(nearest)
     type(model_t), intent(in) :: model
-    !> Distances of the contact points of this rank, mm, and whether they count, `(n_contact)`.
-    real(wp), intent(in) :: distance(:)
+    !> Distances of the contact points of this rank, their measure, mm, and whether they count,
+    !> `(n_contact)`.
+    real(wp), intent(in) :: distance(:), measure(:)
     logical, intent(in) :: counts(:)
-    !> Default: the distance itself, mm, `(n_contact)`.
-    real(wp), intent(in), optional :: measure(:)
     type(nearest_t) :: nearest
 
     real(wp) :: values(3)
@@ -46,16 +45,10 @@ contains
 
     values = huge(1.0_wp)
     node = huge(1)
-    if (present(measure)) then
-      c = minloc(measure, dim=1, mask=counts)
-      if (c > 0) values(1) = measure(c)
-    else
-      c = minloc(distance, dim=1, mask=counts)
-      if (c > 0) values(1) = distance(c)
-    end if
+    c = minloc(measure, dim=1, mask=counts)
     if (c > 0) then
       node = model%contact_node(c)
-      values(2:) = [real(node, wp), distance(c)]
+      values = [measure(c), real(node, wp), distance(c)]
     end if
     if (model%part%divided) call broadcast_reals(rank_of_smallest(values(1), node), 3, values)
     if (values(2) < huge(1.0_wp)) nearest = nearest_t(nint(values(2)), values(3))

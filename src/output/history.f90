@@ -211,7 +211,7 @@ contains
                              - mean(model%x0, model%history(i)%node))
       end if
       if (model%history(i)%reaction) then
-        call table%add_reals(sum_of(reaction, model%history(i)%node))
+        call table%add_reals(sum(reaction(:, model%history(i)%node), dim=2))
       end if
       if (model%history(i)%position) call table%add_reals(mean(state%x, model%history(i)%node))
       if (model%history(i)%moment) &
@@ -246,15 +246,6 @@ contains
     where (spread(state%fading_tool == 0, 1, 3)) reaction = reaction - state%fading
     reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
   end function reactions
-
-  !> Return the sum of the vectors of some nodes.
-  pure function sum_of(vector, node)
-    real(wp), intent(in) :: vector(:, :)
-    integer, intent(in) :: node(:)
-    real(wp) :: sum_of(3)
-
-    sum_of = sum(vector(:, node), dim=2)
-  end function sum_of
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.
   pure function moment(x, reaction, node)

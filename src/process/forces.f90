@@ -103,12 +103,12 @@ contains
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)
       contact_forces = model%own_contact_forces(trial%x, trial%lambda)
-      call system%partition%complete_forces(contact_forces)
+      call system%partition%complete_forces(model%n_node, contact_forces)
       problem%residual = trial%internal_force - trial%external_force
       problem%residual = problem%residual + contact_forces
       problem%contact_residual = contact%force - trial%lambda
       contact_forces = model%own_contact_forces(trial%x, problem%contact_residual)
-      call system%partition%complete_forces(contact_forces)
+      call system%partition%complete_forces(model%n_node, contact_forces)
       problem%law_residual = problem%residual + contact_forces
       force = 0.0_wp
       do node = 1, merge(model%n_node, 0, this_rank() == 0)

@@ -142,7 +142,8 @@ contains
       if (.not. returns(model, number, tool)) cycle
       hit = candidate_hits(model, tool, state%placement(tool), state%x, &
           model%tolerance%start_search, wrong_side_depth*model%largest_thickness())
-      deepest = nearest_candidate(model, hit%distance, hit%found .and. -hit%distance > start_depth)
+      deepest = nearest_candidate(model, hit%distance, hit%distance, &
+          hit%found .and. -hit%distance > start_depth)
       if (deepest%node == 0) cycle
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
           model%tool(tool)%name//"', which was released, but node "// &

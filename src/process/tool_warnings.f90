@@ -81,7 +81,7 @@ contains
     associate (distance => model%tolerance%tool_search)
       hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
     end associate
-    nearest = nearest_candidate(model, hit%distance, hit%found, abs(hit%distance))
+    nearest = nearest_candidate(model, hit%distance, abs(hit%distance), hit%found)
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
     if (nearest%node > 0) then
       text = text//"the nearest candidate, node "//to_text(nearest%node)//", is "// &

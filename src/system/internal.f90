@@ -40,7 +40,7 @@ contains
     call share_verdict(verdict)
     if (verdict%outcome /= verdict_converged) return
     call sum_over_ranks(size(trial%internal_force), trial%internal_force)
-    if (with_stiffness) call system%partition%complete_forces(system%enhanced%force)
+    if (with_stiffness) call system%partition%complete_forces(model%n_node, system%enhanced%force)
   end subroutine update_material
 
   !> Assemble the exact stiffness of the trial configuration from the tangents of the last update
@@ -55,7 +55,7 @@ contains
     type(verdict_t) :: verdict
 
     call visit_elements(system, model, committed, .false., .true., verdict, trial)
-    call system%partition%complete_forces(system%enhanced%force)
+    call system%partition%complete_forces(model%n_node, system%enhanced%force)
   end subroutine assemble_stiffness
 
   !> Update the elements of this rank, or set their workspaces, and add their stiffness.

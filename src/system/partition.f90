@@ -127,10 +127,11 @@ contains
 
   !> Add to the forces on the nodes of this rank what the other ranks hold of them. Those on other
   !> nodes are not complete, and not to be used.
-  subroutine complete_forces(self, force)
+  subroutine complete_forces(self, n_node, force)
     class(partition_t), intent(in) :: self
-    !> `(3, n_node)`; what of a node's force no element or contact point has, its rank alone holds.
-    real(wp), intent(inout) :: force(:, :)
+    integer, intent(in) :: n_node
+    !> What of a node's force no element or contact point has, its rank alone holds.
+    real(wp), intent(inout) :: force(3, n_node)
 
     real(wp), allocatable :: received(:, :)
     integer :: i

@@ -47,7 +47,7 @@ contains
       else
         call add_points(system, model, phase, state%x)
         call system%partition%complete_rows(system%matrix)
-        if (model%part%divided) call complete_rhs(system, model%n_node)
+        call system%partition%complete_forces(model%n_node, problem%rhs)
       end if
       if (model%part%divided) call share_tool_rows(system, model, phase)
       call finish_tool_rows(system, model, phase)
@@ -70,18 +70,6 @@ contains
       if (model%part%node_owner(node) /= rank) problem%rhs(3*node - 2:3*node) = 0.0_wp
     end do
   end subroutine start_rhs
-
-  !> Add to the right-hand side of the nodes of this rank what the contact points of others hold.
-  subroutine complete_rhs(system, n_node)
-    type(system_t), intent(inout) :: system
-    integer, intent(in) :: n_node
-
-    real(wp) :: force(3, n_node)
-
-    force = reshape(system%problem%rhs(:3*n_node), shape(force))
-    call system%partition%complete_forces(force)
-    system%problem%rhs(:3*n_node) = reshape(force, [3*n_node])
-  end subroutine complete_rhs
 
   !> Complete the stiffness of the sheet and keep a copy.
   subroutine keep_stiffness(system)

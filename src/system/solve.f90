@@ -60,6 +60,8 @@ contains
       verdict%detail = report%reason
       verdict%norm = report%residual
       if (report%cause == cause_singular) verdict%node = system%solver%perturbed%row
+    else if (len_trim(info%solver) == 0) then
+      info%solver = system%solver%method
     end if
     if (verdict%node <= model%n_node) return
     verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
