@@ -7,13 +7,13 @@ module dd3_base_clock
   private
   public :: wall_time, processor_time, profile_t, section_names
   public :: section_material, section_assembly, section_contact, section_factorisation, &
-      section_solve, section_output
+      section_solve, section_elimination, section_output
 
   !> Sections that are timed separately.
   integer, parameter :: section_material = 1, section_assembly = 2, section_contact = 3, &
-      section_factorisation = 4, section_solve = 5, section_output = 6
-  character(len=13), parameter :: section_names(6) = [character(len=13) :: "material", "assembly", &
-      "contact", "factorisation", "solve", "output"]
+      section_factorisation = 4, section_solve = 5, section_elimination = 6, section_output = 7
+  character(len=13), parameter :: section_names(7) = [character(len=13) :: "material", "assembly", &
+      "contact", "factorisation", "solve", "elimination", "output"]
 
   !> Seconds spent in each section.
   type :: profile_t

@@ -267,6 +267,8 @@ module dd3_input_case
     logical :: cutback = .false.
     !> Whether there is a line search.
     logical :: line_search = .false.
+    !> Whether there is nonlinear elimination.
+    logical :: elimination = .false.
   end type newton_spec_t
 
   !> Settings of the linear solver.

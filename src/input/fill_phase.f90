@@ -216,6 +216,7 @@ contains
     if (block%has("iterations")) newton%iterations = nint(block%number("iterations"))
     if (block%has("cutback")) newton%cutback = block%number("cutback") > 0.5_wp
     if (block%has("line_search")) newton%line_search = block%number("line_search") > 0.5_wp
+    if (block%has("elimination")) newton%elimination = block%number("elimination") > 0.5_wp
   end subroutine fill_newton
 
   !> Set the contact's settings that a block gives. A penalty belongs to the mixed formulation.

@@ -229,7 +229,9 @@ contains
       row("cutback", kind_logical, "", "on", &
           "on: repeat a failed increment with a smaller r; off: stop the run"), &
       row("line_search", kind_logical, "", "on", "on: shorten an iteration that inverts "// &
-          "an element or overshoots, end iterations that do not approach a solution")]
+          "an element or overshoots, end iterations that do not approach a solution"), &
+      row("elimination", kind_logical, "", "on", "on: with line_search and compliant contact, "// &
+          "solve the equilibrium of the few nodes with most of the residual alone")]
   end function newton_keys
 
   function solver_keys() result(key)

@@ -4,7 +4,8 @@
 !> in one residual.
 !> Source: Menezes and Teodosiu 2000.
 module dd3_process_equilibrium
-  use dd3_base_clock, only : section_assembly, section_contact, section_material
+  use dd3_base_clock, only : section_assembly, section_contact, section_elimination, &
+      section_material
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
@@ -13,6 +14,7 @@ module dd3_process_equilibrium
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
+  use dd3_process_elimination, only : find_worst, local_equilibrium_t
   use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_norm, only : evaluate_norm, residual_t, tool_imbalance
@@ -53,6 +55,7 @@ module dd3_process_equilibrium
     procedure :: linearise
     procedure :: apply
     procedure :: slope
+    procedure :: eliminate
     procedure :: explain
     procedure :: changing
   end type equilibrium_t
@@ -226,6 +229,46 @@ contains
       work = agreed(work)
     end associate
   end function slope
+
+  !> Solve the equilibrium of the nodes with most of the residual alone, in the compliant
+  !> formulation; without it if that leaves the norm above the bound.
+  recursive subroutine eliminate(self, bound, eliminated)
+    class(equilibrium_t), intent(inout) :: self
+    real(wp), intent(in) :: bound
+    logical, intent(out) :: eliminated
+
+    type(local_equilibrium_t) :: local
+    type(residual_t) :: before
+    logical :: chosen(self%model%n_node)
+
+    eliminated = .false.
+    associate (model => self%model, trial => self%trial, system => self%system, &
+        phase => self%model%phase(self%trial%phase))
+      if (phase%mixed .or. .not. phase%newton%elimination) return
+      call system%profile%start()
+      call find_worst(model, trial, system, chosen)
+      if (any(chosen)) then
+        before = self%residual
+        local%model => self%model
+        local%committed => self%committed
+        local%trial => self%trial
+        local%system => self%system
+        call local%settle(chosen, eliminated)
+        if (eliminated) then
+          call evaluate_forces(model, self%committed, trial, system)
+          call evaluate_norm(model, self%committed, trial, system, self%step, .true., self%residual)
+          eliminated = self%residual%scaled < bound
+          if (.not. eliminated) then
+            call local%restore()
+            call evaluate_forces(model, self%committed, trial, system)
+            self%residual = before
+          end if
+          self%scaled_norm = self%residual%scaled
+        end if
+      end if
+      call system%profile%add(section_elimination)
+    end associate
+  end subroutine eliminate
 
   !> Return the number of candidates whose status changed in the last linearisations.
   integer function changing(self)

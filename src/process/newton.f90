@@ -6,8 +6,14 @@
 !> ends short of the minimum or g there is small against g(0), or if g(0) says nothing; otherwise it
 !> is shortened to where g is small, or where it is in the domain of the problem. Full steps are too
 !> long where points return from plastic to elastic behaviour: the tangent is that of plastic flow.
+!>
+!> A few unknowns may be far more nonlinear than the rest; a step that suits them would be short for
+!> all. A problem may therefore solve for them alone after a full step, the rest held: nonlinear
+!> elimination. Where that reduces the norm, the step is not shortened.
 !> Source: H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626 (line search);
-!> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction).
+!> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction); P. J. Lanzkron,
+!> D. J. Rose, J. T. Wilkes, SIAM J. Sci. Comput. 17 (1996) 538-559, X.-C. Cai, X. Li, SIAM J. Sci.
+!> Comput. 33 (2011) 746-762 (nonlinear elimination).
 module dd3_process_newton
   use dd3_base_interrupt, only : interrupted
   use dd3_base_kinds, only : wp
@@ -34,6 +40,7 @@ module dd3_process_newton
     procedure(linearise_interface), deferred :: linearise
     procedure(apply_interface), deferred :: apply
     procedure(slope_interface), deferred :: slope
+    procedure :: eliminate => eliminate_nothing
   end type newton_problem_t
 
   abstract interface
@@ -86,6 +93,8 @@ module dd3_process_newton
     real(wp), allocatable :: norm(:)
     !> Number of times that a step was shortened.
     integer :: shortened = 0
+    !> Number of nonlinear eliminations that reduced the norm.
+    integer :: eliminations = 0
     !> Of the last evaluation or linearisation.
     type(verdict_t) :: verdict = verdict_t()
   end type newton_course_t
@@ -112,8 +121,19 @@ module dd3_process_newton
 
 contains
 
+  !> Solve for a few unknowns alone, unless that leaves the norm above a bound: then the trial
+  !> solution is as before. A problem that does not override this has no such unknowns.
+  recursive subroutine eliminate_nothing(self, bound, eliminated)
+    class(newton_problem_t), intent(inout) :: self
+    real(wp), intent(in) :: bound
+    !> Whether the trial solution has changed.
+    logical, intent(out) :: eliminated
+
+    eliminated = self%scaled_norm < bound .and. .false.
+  end subroutine eliminate_nothing
+
   !> Iterate from the present trial solution.
-  subroutine solve(problem, tolerance, iterations, line_search, course)
+  recursive subroutine solve(problem, tolerance, iterations, line_search, course)
     class(newton_problem_t), intent(inout) :: problem
     !> Of the scaled norm.
     real(wp), intent(in) :: tolerance
@@ -154,7 +174,7 @@ contains
   !> Evaluate the problem after a step, which is shortened if need be: regula falsi between a
   !> fraction short of the minimum and one beyond it. The step to the first iteration, that of the
   !> prediction, is only kept in the domain of the problem.
-  subroutine evaluate(problem, line_search, start, course)
+  recursive subroutine evaluate(problem, line_search, start, course)
     class(newton_problem_t), intent(inout) :: problem
     logical, intent(in) :: line_search
     !> Slope at the start of the step.
@@ -164,7 +184,7 @@ contains
 
     !> Fractions of the step, and the slopes there.
     real(wp) :: fraction, short, beyond, slope, slope_short, slope_beyond
-    logical :: too_far
+    logical :: too_far, eliminated
     integer :: k
 
     fraction = 1.0_wp
@@ -179,7 +199,12 @@ contains
       too_far = .true.
       if (course%verdict%outcome == verdict_converged) then
         if (course%iterations == 1) return
-        if (k == 0 .and. problem%scaled_norm < near) return
+        if (k == 0) then
+          if (problem%scaled_norm < near) return
+          call problem%eliminate(course%norm(course%iterations - 1), eliminated)
+          if (eliminated) course%eliminations = course%eliminations + 1
+          if (eliminated) return
+        end if
         slope = problem%slope()
         too_far = slope*start < 0.0_wp
         if (is_small(slope, start)) return

@@ -317,6 +317,7 @@ contains
     call json%add("iterations", newton%iterations)
     call json%add("cutback", newton%cutback)
     call json%add("line_search", newton%line_search)
+    call json%add("elimination", newton%elimination)
     call json%end_object()
   end subroutine add_newton
 

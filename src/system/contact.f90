@@ -35,17 +35,25 @@ contains
 
   !> Evaluate the contact in a trial state: search, status, force and linearisation. The outward
   !> normals are those of the predictor.
-  subroutine evaluate_contact(self, model, committed, trial)
+  subroutine evaluate_contact(self, model, committed, trial, points)
     type(contact_work_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Origin of the slip.
     type(state_t), intent(in) :: committed
     !> Gets status, tool and closest points.
     type(state_t), intent(inout) :: trial
+    !> Numbers of the candidates; all if not present.
+    integer, intent(in), optional :: points(:)
 
     integer :: c
 
     self%search_distance = model%phase(trial%phase)%search_distance
+    if (present(points)) then
+      do c = 1, size(points)
+        call find_and_evaluate(self, model, committed, trial, points(c))
+      end do
+      return
+    end if
     !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
     !$omp& schedule(dynamic, chunk)
     do c = 1, model%n_contact

@@ -18,7 +18,7 @@ module dd3_system_internal
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: update_material, assemble_stiffness
+  public :: update_material, assemble_stiffness, update_element, set_element
 
 contains
 
@@ -91,6 +91,8 @@ contains
             call update_element(model, committed, trial, e, system%element(thread), &
                 system%tangent(:, :, :, e), mine)
             system%enhanced%residual(:, e) = system%element(thread)%enhanced_force
+            if (mine%outcome == verdict_converged) &
+                call add_forces(model, e, system%element(thread)%force, trial%internal_force)
           else
             call set_element(model, e, system%element(thread), committed, trial)
           end if
@@ -116,13 +118,13 @@ contains
     type(state_t), intent(inout) :: trial
     !> Number in the part.
     integer, intent(in) :: e
-    !> Workspace; on return it holds all that the stiffness needs but the tangents.
+    !> Workspace; on return it holds the forces, and all that the stiffness needs but the tangents.
     type(element_work_t), intent(inout) :: work
     !> Consistent tangents, `(6, 6, n_point)`, MPa.
     real(wp), intent(inout) :: tangent(:, :, :)
     type(verdict_t), intent(out) :: verdict
 
-    integer :: number, p, a
+    integer :: number, p
 
     number = model%part%element(e)
     associate (nodes => model%connectivity(:, number), element => model%element, &
@@ -148,11 +150,26 @@ contains
       work%stress(:, :) = trial%stress(:, :, e)
       call element%set_stress(element, work)
       call element%evaluate_force(element, work)
-      do a = 1, size(nodes)
-        trial%internal_force(:, nodes(a)) = trial%internal_force(:, nodes(a)) + work%force(:, a)
-      end do
     end associate
   end subroutine update_element
+
+  !> Add the forces of an element to those of its nodes.
+  pure subroutine add_forces(model, e, force, sum)
+    type(model_t), intent(in) :: model
+    !> Number in the part.
+    integer, intent(in) :: e
+    !> `(3, n_element_node)` and `(3, n_node)`, N.
+    real(wp), intent(in) :: force(:, :)
+    real(wp), intent(inout) :: sum(:, :)
+
+    integer :: a
+
+    associate (nodes => model%connectivity(:, model%part%element(e)))
+      do a = 1, size(nodes)
+        sum(:, nodes(a)) = sum(:, nodes(a)) + force(:, a)
+      end do
+    end associate
+  end subroutine add_forces
 
   !> Set the workspace of an element to its trial configuration, or to the committed one.
   subroutine set_element(model, e, work, committed, trial)

@@ -10,7 +10,7 @@
 module dd3_system_point_rows
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_matrix, only : position_of
+  use dd3_linalg_matrix, only : block_matrix_t, position_of
   use dd3_linalg_tensor, only : identity, inverse
   use dd3_model_contact_point, only : contact_point_t, most_point_nodes
   use dd3_model_model, only : model_t
@@ -22,7 +22,7 @@ module dd3_system_point_rows
   use dd3_system_tool_rows, only : add_to_tool_row, force_row
   implicit none
   private
-  public :: add_points, set_point_forces
+  public :: add_points, add_point, set_point_forces, force_change
 
 contains
 
@@ -34,70 +34,106 @@ contains
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
 
-    real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3), force(3)
-    integer :: c, tool
+    real(wp) :: motion(3)
+    integer :: c, e
 
     associate (contact => system%contact, problem => system%problem, point => model%contact_point)
       do c = 1, model%n_contact
+        motion = 0.0_wp
         if (contact%status(c) == status_gap) then
           if (all(abs(problem%contact_residual(:, c)) <= 0.0_wp)) cycle
-          call point(c)%gradient(x, b)
-          call add_force(point(c), b, -problem%contact_residual(:, c), problem%rhs)
-          cycle
+        else if (.not. phase%pressed(contact%tool(c))) then
+          motion = problem%tool_prescribed(:, contact%tool(c))
         end if
-        tool = contact%tool(c)
-        call eliminate(contact, c, weight, stiffness)
-        force = matmul(weight, problem%contact_residual(:, c))
-        if (.not. phase%pressed(tool)) &
-            force = force - matmul(stiffness, problem%tool_prescribed(:, tool))
-        call point(c)%gradient(x, b)
-        call add_force(point(c), b, -force, problem%rhs)
-        if (phase%pressed(tool)) call add_to_balance(problem%rhs, model%tool_row(tool), &
-            phase%direction(:, tool), matmul(weight - identity, problem%contact_residual(:, c)))
-        if (point(c)%n_node == 1) then
-          call add_node_stiffness(system, point(c)%node(1), stiffness)
-        else
-          call add_stiffness(system, point(c), system%position(:, :, &
-              model%part%place(point(c)%element)), x, b, stiffness, contact%force(:, c))
-        end if
-        if (phase%pressed(tool)) call couple_tool(system, point(c), model%tool_row(tool), &
-            phase%direction(:, tool), b, stiffness)
+        e = 1
+        if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
+        call add_point(point(c), contact, c, problem%contact_residual(:, c), motion, x, &
+            point(c)%node, system%position(:, :, e), system%matrix, problem%rhs)
+        if (contact%status(c) == status_gap) cycle
+        if (phase%pressed(contact%tool(c))) call add_to_tool(system, model, phase, c, x)
       end do
     end associate
   end subroutine add_points
 
+  !> Add the contributions of a point to the rows of its nodes.
+  pure subroutine add_point(point, contact, c, residual, motion, x, row, position, matrix, rhs)
+    type(contact_point_t), intent(in) :: point
+    type(contact_work_t), intent(in) :: contact
+    !> Number of the point.
+    integer, intent(in) :: c
+    !> F - lambda, N.
+    real(wp), intent(in) :: residual(3)
+    !> Of the tool, known in advance, mm.
+    real(wp), intent(in) :: motion(3)
+    !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Block rows of its nodes, and positions of the blocks of its element, which a point at a node
+    !> does not need: it may belong to another rank.
+    integer, intent(in) :: row(:), position(:, :)
+    type(block_matrix_t), intent(inout) :: matrix
+    real(wp), intent(inout) :: rhs(:)
+
+    real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
+
+    call point%gradient(x, b)
+    if (contact%status(c) == status_gap) then
+      call add_force(point, b, -residual, row, rhs)
+      return
+    end if
+    call eliminate(contact, c, weight, stiffness)
+    call add_force(point, b, matmul(stiffness, motion) - matmul(weight, residual), row, rhs)
+    if (point%n_node > 1) then
+      call add_stiffness(matrix, point, position, x, b, stiffness, contact%force(:, c))
+    else
+      associate (block => matrix%value(:, :, matrix%diagonal(row(1))))
+        block = block + stiffness
+      end associate
+    end if
+  end subroutine add_point
+
+  !> Couple a point with its pressed tool.
+  subroutine add_to_tool(system, model, phase, c, x)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    !> Number of the point.
+    integer, intent(in) :: c
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+
+    real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
+
+    associate (tool => system%contact%tool(c), point => model%contact_point(c))
+      call eliminate(system%contact, c, weight, stiffness)
+      call add_to_balance(system%problem%rhs, model%tool_row(tool), phase%direction(:, tool), &
+          matmul(weight - identity, system%problem%contact_residual(:, c)))
+      call point%gradient(x, b)
+      call couple_tool(system, point, model%tool_row(tool), phase%direction(:, tool), b, stiffness)
+    end associate
+  end subroutine add_to_tool
+
   !> Add nodal forces B^T f to a right-hand side.
-  pure subroutine add_force(point, b, force, rhs)
+  pure subroutine add_force(point, b, force, row, rhs)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: b(:, :, :)
     !> N.
     real(wp), intent(in) :: force(3)
+    !> Block rows of the nodes of the point.
+    integer, intent(in) :: row(:)
     real(wp), intent(inout) :: rhs(:)
 
     integer :: i
 
     do i = 1, point%n_node
-      associate (n => 3*point%node(i))
+      associate (n => 3*row(i))
         rhs(n - 2:n) = rhs(n - 2:n) + matmul(force, b(:, :, i))
       end associate
     end do
   end subroutine add_force
 
-  !> Add C of a point at a node to the matrix. Its element may be one of another rank.
-  pure subroutine add_node_stiffness(system, node, stiffness)
-    type(system_t), intent(inout) :: system
-    integer, intent(in) :: node
-    !> C, N/mm.
-    real(wp), intent(in) :: stiffness(3, 3)
-
-    associate (block => system%matrix%value(:, :, system%matrix%diagonal(node)))
-      block = block + stiffness
-    end associate
-  end subroutine add_node_stiffness
-
   !> Add B^T C B + G of a point between nodes to the matrix.
-  pure subroutine add_stiffness(system, point, position, x, b, stiffness, force)
-    type(system_t), intent(inout) :: system
+  pure subroutine add_stiffness(matrix, point, position, x, b, stiffness, force)
+    type(block_matrix_t), intent(inout) :: matrix
     type(contact_point_t), intent(in) :: point
     !> Of the blocks of its element.
     integer, intent(in) :: position(:, :)
@@ -110,7 +146,7 @@ contains
     real(wp) :: block(3, 3, most_point_nodes, most_point_nodes), right(3, 3)
     integer :: i, j, k
 
-    associate (local => point%local, value => system%matrix%value)
+    associate (local => point%local, value => matrix%value)
       call point%bending_stiffness(x, force, block)
       do j = 1, point%n_node
         right = matmul(stiffness, b(:, :, j))
@@ -183,17 +219,31 @@ contains
     !> Has the displacements.
     type(unknowns_t), intent(inout) :: step
 
-    real(wp) :: weight(3, 3), stiffness(3, 3)
+    real(wp) :: motion(3)
     integer :: c
 
     step%lambda = -state%lambda
     do c = 1, model%n_contact
       if (system%contact%status(c) == status_gap) cycle
-      call eliminate(system%contact, c, weight, stiffness)
-      step%lambda(:, c) = matmul(weight, system%problem%contact_residual(:, c)) &
-          + matmul(stiffness, model%contact_point(c)%change(state%x, step%x) &
-          - step%tool(:, system%contact%tool(c)))
+      motion = model%contact_point(c)%change(state%x, step%x) &
+          - step%tool(:, system%contact%tool(c))
+      step%lambda(:, c) = force_change(system%contact, c, system%problem%contact_residual(:, c), &
+          motion)
     end do
   end subroutine set_point_forces
+
+  !> Return the increment of the force of a point in contact, N.
+  pure function force_change(contact, c, residual, motion) result(change)
+    type(contact_work_t), intent(in) :: contact
+    integer, intent(in) :: c
+    !> F - lambda, N, and the displacement of the point relative to the tool, mm.
+    real(wp), intent(in) :: residual(3), motion(3)
+    real(wp) :: change(3)
+
+    real(wp) :: weight(3, 3), stiffness(3, 3)
+
+    call eliminate(contact, c, weight, stiffness)
+    change = matmul(weight, residual) + matmul(stiffness, motion)
+  end function force_change
 
 end module dd3_system_point_rows
