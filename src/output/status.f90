@@ -17,7 +17,7 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed,eliminated"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -66,6 +66,8 @@ module dd3_output_status
     integer :: shortened = 0
     !> Number of blocks of pivots that the linear solver perturbed.
     integer :: perturbed = 0
+    !> Number of nonlinear eliminations.
+    integer :: eliminated = 0
   end type status_row_t
 
   !> Status table of a run.
@@ -136,6 +138,7 @@ contains
       call add_known(table, row%force_size, limited)
       call table%add_integer(row%shortened)
       call table%add_integer(row%perturbed)
+      call table%add_integer(row%eliminated)
       call table%end_row(error)
     end associate
   end subroutine status_add

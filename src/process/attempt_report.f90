@@ -102,6 +102,7 @@ contains
     associate (verdict => attempt%verdict)
       row%iterations = verdict%iterations
       row%shortened = attempt%course%shortened
+      row%eliminated = attempt%course%eliminations
       if (allocated(attempt%course%norm)) then
         if (size(attempt%course%norm) > 0) &
             row%criterion = attempt%course%norm(size(attempt%course%norm))

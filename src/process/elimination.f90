@@ -45,14 +45,14 @@ module dd3_process_elimination
   end type local_equilibrium_t
 
   !> Part of the square of the residual that the worst nodes have. Larger: larger regions.
-  real(wp), parameter :: share = 0.8_wp
+  real(wp), parameter :: share = 0.9_wp
   !> Layers of elements around the worst nodes, and the largest part of all nodes in a region. More:
   !> fewer iterations of the sheet, whose residual is not local then, for more of the regions.
   integer, parameter :: n_layers = 2
-  real(wp), parameter :: largest_part = 0.05_wp
+  real(wp), parameter :: largest_part = 0.2_wp
   !> Residual of a region over that at first at which its iterations end, and their largest number.
-  real(wp), parameter :: local_tolerance = 0.05_wp
-  integer, parameter :: most_iterations = 12
+  real(wp), parameter :: local_tolerance = 0.1_wp
+  integer, parameter :: most_iterations = 20
 
 contains
 

@@ -257,7 +257,7 @@ contains
         if (eliminated) then
           call evaluate_forces(model, self%committed, trial, system)
           call evaluate_norm(model, self%committed, trial, system, self%step, .true., self%residual)
-          eliminated = self%residual%scaled < bound
+          eliminated = self%residual%scaled < min(bound, before%scaled)
           if (.not. eliminated) then
             call local%restore()
             call evaluate_forces(model, self%committed, trial, system)

@@ -9,7 +9,8 @@
 !>
 !> A few unknowns may be far more nonlinear than the rest; a step that suits them would be short for
 !> all. A problem may therefore solve for them alone after a full step, the rest held: nonlinear
-!> elimination. Where that reduces the norm, the step is not shortened.
+!> elimination. Where that reduces the norm, the step is not shortened; another step follows, which
+!> takes the residual that is left to the rest, and converges quadratically.
 !> Source: H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626 (line search);
 !> P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2011 (contraction); P. J. Lanzkron,
 !> D. J. Rose, J. T. Wilkes, SIAM J. Sci. Comput. 17 (1996) 538-559, X.-C. Cai, X. Li, SIAM J. Sci.
@@ -32,7 +33,7 @@ module dd3_process_newton
 
   !> Problem F(u) = 0 with its trial solution u and the last step.
   type, abstract :: newton_problem_t
-    !> Norm of residual and step over their scale at the trial solution, which tells convergence.
+    !> Norm over its scale at the trial solution, which tells convergence.
     real(wp) :: scaled_norm = 0.0_wp
   contains
     procedure(evaluate_interface), deferred :: evaluate
@@ -144,7 +145,7 @@ contains
     type(newton_course_t), intent(out) :: course
 
     real(wp) :: start
-    integer :: j
+    integer :: j, eliminations
 
     start = 0.0_wp
     course%norm = [real(wp) ::]
@@ -153,11 +154,12 @@ contains
       if (interrupted()) return
       course%iterations = j
       course%outcome = newton_invalid
+      eliminations = course%eliminations
       call evaluate(problem, line_search, start, course)
       if (course%verdict%outcome /= verdict_converged) return
       course%norm = [course%norm, problem%scaled_norm]
       course%outcome = newton_converged
-      if (j > 1 .and. course%norm(j) < tolerance) then
+      if (j > 1 .and. course%norm(j) < tolerance .and. course%eliminations == eliminations) then
         if (problem%is_admissible()) return
       end if
       course%outcome = newton_diverging

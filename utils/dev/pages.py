@@ -68,10 +68,11 @@ MIXED_PROBLEMS = ("holder_gap first_contact flat_punch air_bending capstan u_ben
                   "aluminium_15 steel_15")
 PAGES = {
     "ablation": Page(12, MECHANICS, (
-        labelled("compliant", contact=COMPLIANT), labelled("no_line_search", contact=COMPLIANT, newton=OFF),
+        labelled("compliant", contact=COMPLIANT), labelled("no_elimination", contact=COMPLIANT, newton="elimination = off"),
+        labelled("no_line_search", contact=COMPLIANT, newton=OFF),
         labelled("mixed", contact=MIXED) + f" --problems {MIXED_PROBLEMS}",
         labelled("mixed_no_line_search", contact=MIXED, newton=OFF) + f" --problems {MIXED_PROBLEMS}",
-        envelope("--compare compliant no_line_search mixed mixed_no_line_search --ablation"))),
+        envelope("--compare compliant no_elimination no_line_search mixed mixed_no_line_search --ablation"))),
     "answers": Page(2, "src tests/answers", (f"tests/answers/run.py{RUN}",)),
     "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),

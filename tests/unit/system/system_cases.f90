@@ -23,16 +23,20 @@ module system_cases
 contains
 
   !> Read a model whose input has no errors.
-  subroutine load_model(model, file)
+  subroutine load_model(model, file, setting)
     type(model_t), intent(out) :: model
     character(len=*), intent(in) :: file
+    !> name=value of a parameter.
+    character(len=*), intent(in), optional :: setting
 
     type(case_t) :: case
     type(error_list_t) :: errors
-    type(text_t) :: none(0)
+    type(text_t), allocatable :: settings(:)
     integer :: i
 
-    call read_case(case, file, none, errors)
+    allocate (settings(0))
+    if (present(setting)) settings = [text_t(setting)]
+    call read_case(case, file, settings, errors)
     if (errors%count == 0) call new_model(model, case, errors)
     do i = 1, errors%count
       write (error_unit, '(a)') errors%item(i)%message
