@@ -90,7 +90,7 @@ contains
       end do
       chosen = layer
     end do
-    if (count(chosen) > largest_part*model%n_node) chosen = .false.
+    if (real(count(chosen), wp) > largest_part*real(model%n_node, wp)) chosen = .false.
   end subroutine find_worst
 
   !> Return the squares of the residuals of the nodes, with those of the enhanced strains, N2.
