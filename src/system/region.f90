@@ -64,25 +64,28 @@ contains
     logical, intent(in) :: prescribed(:, :)
 
     type(error_t), allocatable :: error
-    integer, allocatable :: touching(:), all_nodes(:, :)
-    integer :: e, i, c
+    integer, allocatable :: touching(:), numbers(:, :)
+    logical, allocatable :: own(:)
+    integer :: e, i
 
     touching = pack([(e, e=1, model%n_element)], &
         [(any(chosen(model%connectivity(:, e))), e=1, model%n_element)])
     allocate (self%number(model%n_node), source=0)
-    self%number(reshape(model%connectivity(:, touching), &
-        [size(touching)*size(model%connectivity, 1)])) = 1
+    do i = 1, size(touching)
+      self%number(model%connectivity(:, touching(i))) = 1
+    end do
     self%node = pack([(i, i=1, model%n_node)], self%number > 0)
     self%number(self%node) = [(i, i=1, size(self%node))]
     self%free = spread(chosen(self%node), 1, 3) .and. .not. prescribed(:, self%node)
-    all_nodes = reshape(self%number(reshape(model%connectivity(:, touching), &
-        [size(touching)*size(model%connectivity, 1)])), [size(model%connectivity, 1), size(touching)])
-    self%element = pack(model%part%place(touching), model%part%place(touching) > 0)
-    self%connectivity = all_nodes(:, pack([(i, i=1, size(touching))], &
-        model%part%place(touching) > 0))
-    self%point = pack([(c, c=1, model%n_contact)], [(any(chosen(model%contact_point(c)%node( &
-        :model%contact_point(c)%n_node))), c=1, model%n_contact)])
-    call new_pattern(self%matrix, size(self%node), all_nodes)
+    allocate (numbers(size(model%connectivity, 1), size(touching)))
+    do i = 1, size(touching)
+      numbers(:, i) = self%number(model%connectivity(:, touching(i)))
+    end do
+    own = model%part%place(touching) > 0
+    self%element = pack(model%part%place(touching), own)
+    self%connectivity = numbers(:, pack([(i, i=1, size(touching))], own))
+    self%point = points_of(model, chosen)
+    call new_pattern(self%matrix, size(self%node), numbers)
     call find_positions(self%matrix, self%connectivity, self%position)
     call new_linear_solver(self%solver, solver_options_t(method="umfpack", ilu_level=0, &
         tolerance=1.0e-10_wp, iterations=1, ordering="none"), error)
@@ -91,6 +94,23 @@ contains
     allocate (self%step%x(3, size(self%node)), self%step%lambda(3, size(self%point)), &
         self%step%enhanced(model%element%n_enhanced, size(self%element)), source=0.0_wp)
   end subroutine new_region
+
+  !> Return the contact points of this rank whose forces act on chosen nodes.
+  pure function points_of(model, chosen) result(points)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: chosen(:)
+    integer, allocatable :: points(:)
+
+    logical :: acts(model%n_contact)
+    integer :: c
+
+    do c = 1, model%n_contact
+      associate (point => model%contact_point(c))
+        acts(c) = any(chosen(point%node(:point%n_node)))
+      end associate
+    end do
+    points = pack([(c, c=1, model%n_contact)], acts)
+  end function points_of
 
   !> Evaluate stresses, contact and residual of the region in a trial state.
   subroutine evaluate(self, model, committed, trial, system, verdict)

@@ -68,7 +68,8 @@ MIXED_PROBLEMS = ("holder_gap first_contact flat_punch air_bending capstan u_ben
                   "aluminium_15 steel_15")
 PAGES = {
     "ablation": Page(12, MECHANICS, (
-        labelled("compliant", contact=COMPLIANT), labelled("no_elimination", contact=COMPLIANT, newton="elimination = off"),
+        labelled("compliant", contact=COMPLIANT),
+        labelled("no_elimination", contact=COMPLIANT, newton="elimination = off"),
         labelled("no_line_search", contact=COMPLIANT, newton=OFF),
         labelled("mixed", contact=MIXED) + f" --problems {MIXED_PROBLEMS}",
         labelled("mixed_no_line_search", contact=MIXED, newton=OFF) + f" --problems {MIXED_PROBLEMS}",
