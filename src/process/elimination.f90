@@ -46,6 +46,9 @@ module dd3_process_elimination
 
   !> Part of the square of the residual that the worst nodes have. Larger: larger regions.
   real(wp), parameter :: share = 0.9_wp
+  !> Ratio of squares that count as equal, as where round-off alone tells nodes apart that are
+  !> symmetric to each other.
+  real(wp), parameter :: equal = 0.99_wp
   !> Layers of elements around the worst nodes, and the largest part of all nodes in a region. More:
   !> fewer iterations of the sheet, whose residual is not local then, for more of the regions.
   integer, parameter :: n_layers = 2
@@ -80,7 +83,7 @@ contains
         high = middle
       end if
     end do
-    chosen = square >= low .and. square > 0.0_wp
+    chosen = square >= equal*low .and. square > 0.0_wp
     do k = 1, n_layers
       layer = chosen
       do e = 1, model%n_element

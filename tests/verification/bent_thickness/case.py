@@ -16,18 +16,16 @@ CYLINDERS = ((5, (10, 20, 40)), (20, (20, 60)))
 HALF = math.sqrt(0.5)
 
 
-def changes(bench, radius, length, elements):
-    """Return the largest changes in thickness at the cells, and of the distance of opposite nodes, away from the end
-    that is led, and the turn of an element, degrees."""
+def largest_change(bench, radius, length, elements):
+    """Return the largest change in thickness at the cells away from the end that is led, and the turn of an element,
+    degrees."""
     angle = math.degrees(length / radius)
     found = bench.run(f"bent_{radius}_{elements}", HERE / "case.dat",
                       {"elements": elements, "angle": angle, "length": length})
     sheet = Sheet(found.folder)
     inner = sheet.points(0)[sheet.corners].mean(axis=1)[:, 0] < length * (1 - max(1.5 / elements, 0.2))
     cells = sheet.values(sheet.last, "thickness", True)[0][inner] - 1
-    points = sheet.points(sheet.last)[sheet.corners[inner]]
-    nodes = np.linalg.norm(points[:, 4:] - points[:, :4], axis=2)
-    return float(cells[np.abs(cells).argmax()]), float(nodes.max() - 1), angle / elements
+    return float(cells[np.abs(cells).argmax()]), angle / elements
 
 
 def bent(bench):
@@ -35,9 +33,9 @@ def bent(bench):
     result = []
     for radius, length, numbers in STRIPS:
         for elements in numbers:
-            change, nodes, turn = changes(bench, radius, length, elements)
-            result.append(Value(f"R = {radius} t, elements that turn by {turn:.1f} degrees (nodes {100 * nodes:+.2f} %)",
-                                0.0, change, 1e-3, absolute=True))
+            change, turn = largest_change(bench, radius, length, elements)
+            result.append(Value(f"R = {radius} t, elements that turn by {turn:.1f} degrees", 0.0, change, 1e-3,
+                                absolute=True))
     return Outcome(result)
 
 
@@ -95,8 +93,8 @@ SECTIONS = [
     Section("V25 Thickness of a bent strip", """
 A strip of 1 mm without hardening is bent in plane strain to the radius R. Plastic bending without hardening does not
 change the thickness (Hill, 1950); the radial stress leaves an elastic change of the order of Y/E = 0.001 at most. The
-field `thickness` at the cells, its largest change away from the end that is led; in brackets the change of the distance
-between opposite nodes, which is too large by θ²/8 where elements turn by θ. One layer of `solid_shell`; the geometry of
+field `thickness` at the cells, its largest change away from the end that is led. The distance between opposite nodes
+would be too large by θ²/8 where elements turn by θ, 3.1 % at 28.6 degrees. One layer of `solid_shell`; the geometry of
 the other elements is in the unit test `test_model_sheet_thickness`. Deck `tests/verification/bent_thickness/case.dat`.
 """, bent),
     Section("V25 Thickness and strains over a radius", """
