@@ -6,7 +6,7 @@ module dd3_linalg_matrix
   implicit none
   private
   public :: block_matrix_t, lists_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-      keep_rows, multiply, clear, copy_blocks, copy_values, add_element
+      keep_rows, set_unit_row, multiply, clear, copy_blocks, copy_values, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t
@@ -282,6 +282,15 @@ contains
       end if
     end do
   end function position_of
+
+  !> Make the row of one component of a block row a unit row.
+  pure subroutine set_unit_row(self, row, component)
+    type(block_matrix_t), intent(inout) :: self
+    integer, intent(in) :: row, component
+
+    self%value(component, :, self%row_start(row):self%row_start(row + 1) - 1) = 0.0_wp
+    self%value(component, component, self%diagonal(row)) = 1.0_wp
+  end subroutine set_unit_row
 
   !> Set all blocks to zero.
   subroutine clear(self)

@@ -68,16 +68,17 @@ contains
     !> None if they are too many, or if there is no residual.
     logical, intent(out) :: chosen(:)
 
-    real(wp) :: square(model%n_node), low, high, middle
+    real(wp) :: square(model%n_node), enough, low, high, middle
     logical :: layer(model%n_node)
     integer :: k, e
 
     square = squares(model, trial, system)
+    enough = share*sum(square)
     low = 0.0_wp
     high = maxval(square)
     do k = 1, digits(high)
       middle = 0.5_wp*(low + high)
-      if (sum(square, mask=square >= middle) >= share*sum(square)) then
+      if (sum(square, mask=square >= middle) >= enough) then
         low = middle
       else
         high = middle
@@ -118,7 +119,8 @@ contains
     call sum_over_ranks(size(square), square)
   end function squares
 
-  !> Return the square of the residual of the enhanced strains of an element, as a force, N2.
+  !> Return the square of the residual of the enhanced strains of an element, as a force, N2; that of
+  !> the norm.
   pure real(wp) function enhanced_square(model, residual) result(square)
     type(model_t), intent(in) :: model
     !> N/mm.
@@ -132,7 +134,7 @@ contains
     class(local_equilibrium_t), intent(inout) :: self
     !> The free nodes, `(n_node)`.
     logical, intent(in) :: chosen(:)
-    !> If not, the trial state is as before.
+    !> If not, the trial state is as before, but for the round-off of the contact.
     logical, intent(out) :: converged
 
     type(newton_course_t) :: course

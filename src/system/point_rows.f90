@@ -45,10 +45,10 @@ contains
         else if (.not. phase%pressed(contact%tool(c))) then
           motion = problem%tool_prescribed(:, contact%tool(c))
         end if
-        e = 1
+        e = 0
         if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
         call add_point(point(c), contact, c, problem%contact_residual(:, c), motion, x, &
-            point(c)%node, system%position(:, :, e), system%matrix, problem%rhs)
+            point(c)%node, system%position, e, system%matrix, problem%rhs)
         if (contact%status(c) == status_gap) cycle
         if (phase%pressed(contact%tool(c))) call add_to_tool(system, model, phase, c, x)
       end do
@@ -56,7 +56,7 @@ contains
   end subroutine add_points
 
   !> Add the contributions of a point to the rows of its nodes.
-  pure subroutine add_point(point, contact, c, residual, motion, x, row, position, matrix, rhs)
+  pure subroutine add_point(point, contact, c, residual, motion, x, row, position, e, matrix, rhs)
     type(contact_point_t), intent(in) :: point
     type(contact_work_t), intent(in) :: contact
     !> Number of the point.
@@ -67,9 +67,9 @@ contains
     real(wp), intent(in) :: motion(3)
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Block rows of its nodes, and positions of the blocks of its element, which a point at a node
-    !> does not need: it may belong to another rank.
-    integer, intent(in) :: row(:), position(:, :)
+    !> Block rows of its nodes; positions of the blocks of elements, and its element among them. A
+    !> point at a node needs none: its element may belong to another rank.
+    integer, intent(in) :: row(:), position(:, :, :), e
     type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(inout) :: rhs(:)
 
@@ -83,7 +83,7 @@ contains
     call eliminate(contact, c, weight, stiffness)
     call add_force(point, b, matmul(stiffness, motion) - matmul(weight, residual), row, rhs)
     if (point%n_node > 1) then
-      call add_stiffness(matrix, point, position, x, b, stiffness, contact%force(:, c))
+      call add_stiffness(matrix, point, position(:, :, e), x, b, stiffness, contact%force(:, c))
     else
       associate (block => matrix%value(:, :, matrix%diagonal(row(1))))
         block = block + stiffness

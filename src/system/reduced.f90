@@ -12,7 +12,7 @@ module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : this_rank
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_matrix, only : copy_blocks, position_of
+  use dd3_linalg_matrix, only : copy_blocks, position_of, set_unit_row
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
@@ -189,9 +189,7 @@ contains
             system%problem%rhs(3*node - 2:3*node), phase%prescribed(:, node))
         if (.not. holds_row(reduced, node)) cycle
         do i = 1, 3
-          if (.not. phase%prescribed(i, node)) cycle
-          reduced%value(i, :, reduced%row_start(node):reduced%row_start(node + 1) - 1) = 0.0_wp
-          reduced%value(i, i, reduced%diagonal(node)) = 1.0_wp
+          if (phase%prescribed(i, node)) call set_unit_row(reduced, node, i)
         end do
       end do
     end associate

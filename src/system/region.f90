@@ -12,7 +12,8 @@ module dd3_system_region
   use dd3_base_ranks, only : broadcast_reals, sum_over_ranks, this_rank
   use dd3_base_threads, only : least_points, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry
-  use dd3_linalg_matrix, only : add_element, block_matrix_t, clear, find_positions, new_pattern
+  use dd3_linalg_matrix, only : add_element, block_matrix_t, clear, find_positions, new_pattern, &
+      set_unit_row
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_contact_operator, only : status_gap
@@ -230,19 +231,23 @@ contains
     call clear(self%matrix)
     residual = point_forces(self, model, trial%x, trial%lambda)
     if (this_rank() == 0) residual = residual + self%force - trial%external_force(:, self%node)
-    rhs = -reshape(residual, shape(rhs))
     do k = 1, size(self%element)
       call add_element(self%matrix, model%element%n_node, self%position(:, :, k), stiffness(:, k))
-      call add_nodal(self%connectivity(:, k), condensed(:, :, k), rhs)
+      associate (nodes => self%connectivity(:, k))
+        residual(:, nodes) = residual(:, nodes) - condensed(:, :, k)
+      end associate
     end do
+    rhs = -reshape(residual, shape(rhs))
     call add_contact(self, model, trial, system%contact, rhs)
     call sum_over_ranks(size(rhs), rhs)
     call sum_over_ranks(size(self%matrix%value), self%matrix%value)
     call hold(self, rhs)
     call self%solver%factor(self%matrix, verdict)
+    call share_verdict(verdict)
     if (verdict%outcome /= verdict_converged) return
     call self%solver%solve(rhs, solution, report)
     if (.not. report%converged) verdict%outcome = verdict_retry
+    call share_verdict(verdict)
     call broadcast_reals(0, size(solution), solution)
     self%step%x = reshape(solution, shape(self%step%x))
     do k = 1, size(self%element)
@@ -251,22 +256,6 @@ contains
     end do
     call set_forces(self, model, trial, system%contact)
   end subroutine solve
-
-  !> Add forces on the nodes of an element to a right-hand side.
-  pure subroutine add_nodal(nodes, force, rhs)
-    integer, intent(in) :: nodes(:)
-    !> `(3, size(nodes))`, N.
-    real(wp), intent(in) :: force(:, :)
-    real(wp), intent(inout) :: rhs(:)
-
-    integer :: a
-
-    do a = 1, size(nodes)
-      associate (n => 3*nodes(a))
-        rhs(n - 2:n) = rhs(n - 2:n) + force(:, a)
-      end associate
-    end do
-  end subroutine add_nodal
 
   !> Add the contributions of the contact points of this rank.
   subroutine add_contact(self, model, trial, contact, rhs)
@@ -277,15 +266,14 @@ contains
     real(wp), intent(inout) :: rhs(:)
 
     real(wp), parameter :: no_motion(3) = 0.0_wp
-    integer :: position(size(self%position, 1), size(self%position, 2)), k
+    integer :: k, e
 
-    position = 0
+    e = 0
     do k = 1, size(self%point)
       associate (c => self%point(k), point => model%contact_point(self%point(k)))
-        if (point%n_node > 1) position = self%position(:, :, &
-            findloc(self%element, model%part%place(point%element), dim=1))
+        if (point%n_node > 1) e = findloc(self%element, model%part%place(point%element), dim=1)
         call add_point(point, contact, c, contact%force(:, c) - trial%lambda(:, c), no_motion, &
-            trial%x, self%number(point%node(:point%n_node)), position, self%matrix, rhs)
+            trial%x, self%number(point%node(:point%n_node)), self%position, e, self%matrix, rhs)
       end associate
     end do
   end subroutine add_contact
@@ -297,16 +285,13 @@ contains
 
     integer :: n, i
 
-    associate (matrix => self%matrix)
-      do n = 1, size(self%node)
-        do i = 1, 3
-          if (self%free(i, n)) cycle
-          rhs(3*n - 3 + i) = 0.0_wp
-          matrix%value(i, :, matrix%row_start(n):matrix%row_start(n + 1) - 1) = 0.0_wp
-          matrix%value(i, i, matrix%diagonal(n)) = 1.0_wp
-        end do
+    do n = 1, size(self%node)
+      do i = 1, 3
+        if (self%free(i, n)) cycle
+        rhs(3*n - 3 + i) = 0.0_wp
+        call set_unit_row(self%matrix, n, i)
       end do
-    end associate
+    end do
   end subroutine hold
 
   !> Set the increments of the contact forces from the displacements.
