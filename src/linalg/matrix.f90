@@ -5,8 +5,8 @@ module dd3_linalg_matrix
   use dd3_base_threads, only : least_values, threads_for
   implicit none
   private
-  public :: block_matrix_t, lists_t, new_pattern, new_pattern_from_rows, find_positions, position_of, &
-      keep_rows, set_unit_row, multiply, clear, copy_blocks, copy_values, add_element
+  public :: block_matrix_t, lists_t, new_pattern, new_pattern_from_rows, find_positions, &
+      position_of, keep_rows, set_unit_row, multiply, clear, copy_blocks, copy_values, add_element
 
   !> Sparse matrix of 3x3 blocks. Vectors that go with it have rank 1 and size 3n.
   type :: block_matrix_t

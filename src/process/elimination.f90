@@ -119,8 +119,8 @@ contains
     call sum_over_ranks(size(square), square)
   end function squares
 
-  !> Return the square of the residual of the enhanced strains of an element, as a force, N2; that of
-  !> the norm.
+  !> Return the square of the residual of the enhanced strains of an element, as a force, N2; the
+  !> norm has the same.
   pure real(wp) function enhanced_square(model, residual) result(square)
     type(model_t), intent(in) :: model
     !> N/mm.
