@@ -465,7 +465,7 @@ contains
 
     part = parts_of_nodes(model%connectivity, model%n_node)
     do i = 1, size(model%phase)
-      if (any(model%phase(i)%active)) cycle
+      if (any(model%phase(i)%active .and. .not. model%phase(i)%withdrawn)) cycle
       do k = 1, maxval(part)
         call new_supported_part(body, model%start_positions(), model%phase(i)%prescribed, part == k)
         motion = body%free_motion()

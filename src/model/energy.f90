@@ -75,15 +75,15 @@ contains
     contact_energy = energy(1)
   end function contact_energy
 
-  !> Return the work on the sheet less internal work, friction work, that of draw-beads and the
-  !> energy of the contact layers, mJ. It vanishes with the increments and the tolerance of
+  !> Return the work on the sheet less internal work, friction work, that of draw-beads and viscous
+  !> forces and the energy of the contact layers, mJ. It vanishes with the increments and the tolerance of
   !> equilibrium.
   real(wp) function energy_error(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
     energy_error = state%tool_work + state%external_work - state%internal_work &
-        - state%friction_work - state%bead_work - contact_energy(model, state)
+        - state%friction_work - state%bead_work - state%damping_work - contact_energy(model, state)
   end function energy_error
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of

@@ -218,7 +218,8 @@ contains
     call digest%add(name)
     if (phase%turns(tool)) &
         call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
-    call digest%add([phase%pressed(tool), phase%active(tool), phase%keeps_tool_load(tool)])
+    call digest%add([phase%pressed(tool), phase%active(tool), phase%withdrawn(tool), &
+        phase%keeps_tool_load(tool)])
     call digest%add([phase%move(:, tool), phase%direction(:, tool)])
     if (phase%gap_other(tool) > 0) call digest%add([phase%gap_offset(tool)])
     if (.not. phase%keeps_tool_load(tool)) call digest%add(phase%tool_load_end(:, tool))

@@ -4,7 +4,7 @@
 !>
 !> A sheet whose supports leave it free, above the tools or on a few points of them, has no
 !> equilibrium under its weight until it lies on the tools. Forces and springs at the nodes carry it
-!> at the start of the phase, as those of lost constraints do, and fade: it is laid down.
+!> at the start of the phase and fade: it is laid down.
 module dd3_model_gravity
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : determinant
@@ -67,7 +67,7 @@ contains
         from = to
         state%load(:, s) = to
         do i = 1, size(set%node)
-          state%fading(:, set%node(i)) = state%fading(:, set%node(i)) + set%weight(i)*to
+          state%start%laying(:, set%node(i)) = set%weight(i)*to
         end do
       end associate
     end do

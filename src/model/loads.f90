@@ -12,14 +12,13 @@ module dd3_model_loads
   implicit none
   private
   public :: load_set_t, face_load_weights, nodal_forces, spring_stiffness
-  public :: fading_factor, fading_rate
+  public :: laying_factor, laying_rate
   public :: pressure_set_t, add_pressure_forces, face_force, face_stiffness
 
-  !> Displacement at which the spring at a released node carries its contact force once more, in
-  !> thicknesses of the sheet. Half a thickness is where the couple of two opposing forces balances
-  !> that of their springs.
+  !> Displacement at which the spring at a node of a free sheet carries its weight once more, in
+  !> thicknesses of the sheet.
   real(wp), parameter :: spring_length = 0.25_wp
-  !> Decades by which fading forces fall over a phase before the rest is taken away, and that rest.
+  !> Decades by which these forces fall over a phase before the rest is taken away, and that rest.
   real(wp), parameter :: decades = 6.0_wp, rest = 10.0_wp**(-decades)
 
   !> Node set that carries a load in some phase.
@@ -78,11 +77,9 @@ contains
     if (all(on_face(node))) weight = force(node)/sum(force(node))
   end subroutine face_load_weights
 
-  !> Return the stiffness of the spring that replaces a lost constraint of a node, N/mm. A contact
-  !> force that only faded would be a dead load: two opposing ones deflect the sheet between them
-  !> further, and a sheet that yields collapses under loads that the tools' shape could bear.
+  !> Return the stiffness of the spring at a node of a free sheet that is laid down, N/mm.
   pure real(wp) function spring_stiffness(force, thickness)
-    !> Force at the loss, N.
+    !> Force that carries the node at the start, N.
     real(wp), intent(in) :: force(3)
     !> Of the sheet at the node, mm.
     real(wp), intent(in) :: thickness
@@ -90,28 +87,28 @@ contains
     spring_stiffness = norm2(force)/(spring_length*thickness)
   end function spring_stiffness
 
-  !> Return the fraction of fading forces and springs that remains at a progress of the phase. It
-  !> falls by the same factor in equal increments: a sheet in bending is softer than its springs at
-  !> first by four or more decades, and springs back where they are alike.
-  pure real(wp) function fading_factor(progress)
+  !> Return the fraction of the forces that lay a sheet down, and of their springs, that is left at a
+  !> progress of the phase. It falls by the same factor in equal increments: the sheet is softer
+  !> than the springs at first by four or more decades, and sags where they are alike.
+  pure real(wp) function laying_factor(progress)
     real(wp), intent(in) :: progress
 
-    fading_factor = (10.0_wp**(-decades*progress) - rest)/(1.0_wp - rest)
-  end function fading_factor
+    laying_factor = (10.0_wp**(-decades*progress) - rest)/(1.0_wp - rest)
+  end function laying_factor
 
-  !> Return the negative derivative of `fading_factor`.
-  pure real(wp) function fading_rate(progress)
+  !> Return the negative derivative of `laying_factor`.
+  pure real(wp) function laying_rate(progress)
     real(wp), intent(in) :: progress
 
-    fading_rate = log(10.0_wp)*decades*10.0_wp**(-decades*progress)/(1.0_wp - rest)
-  end function fading_rate
+    laying_rate = log(10.0_wp)*decades*10.0_wp**(-decades*progress)/(1.0_wp - rest)
+  end function laying_rate
 
   !> Evaluate the external forces on the nodes.
   pure subroutine nodal_forces(set, load, fading, force)
     type(load_set_t), intent(in) :: set(:)
     !> Total force on each set, `(3, size(set))`, N.
     real(wp), intent(in) :: load(:, :)
-    !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
+    !> Forces of the nodes on lost constraints that are left, `(3, n_node)`, N.
     real(wp), intent(in) :: fading(:, :)
     !> Nodal forces, `(3, n_node)`, N.
     real(wp), intent(out) :: force(:, :)

@@ -40,8 +40,12 @@ module dd3_model_phase
     logical, allocatable :: keeps_tool_load(:)
     !> Unit vector along the line of motion of a pressed or moved tool, `(3, n_tool)`.
     real(wp), allocatable :: direction(:, :)
-    !> Tools with contact, `(n_tool)`.
-    logical, allocatable :: active(:)
+    !> Tools with contact, `(n_tool)`, and those among them that the phase withdraws: their contact is
+    !> kept while they move away, and they have none afterwards.
+    logical, allocatable :: active(:), withdrawn(:)
+    !> Progress at which withdrawn tools begin to move; up to then loads and lost constraints reach
+    !> their final values between closed tools. 0: all change over the whole phase.
+    real(wp) :: opening = 0.0_wp
     !> Whether the phase sets gravity.
     logical :: has_gravity = .false.
     !> Whether this phase or an earlier one unloads the sheet, and no tool acts.
@@ -95,6 +99,10 @@ module dd3_model_phase
     procedure :: turn_factor
     procedure :: turn_slope
     procedure :: tool_motion
+    procedure :: tool_rate
+    procedure :: acts
+    procedure :: fading
+    procedure :: fading_rate
     procedure :: tool_load
     procedure :: tool_load_rate
     procedure :: next_kink
@@ -117,6 +125,7 @@ contains
     real(wp), intent(in) :: progress
 
     factor = table_value(self%table, progress)
+    if (self%opening > 0.0_wp) factor = min(1.0_wp, progress/self%opening)
   end function factor
 
   !> Return the derivative of the factor behind a progress.
@@ -125,7 +134,35 @@ contains
     real(wp), intent(in) :: progress
 
     slope = table_slope(self%table, progress)
+    if (self%opening > 0.0_wp) slope = self%fading_rate(progress)
   end function slope
+
+  !> Return the fraction of the forces of lost constraints that is left at a progress.
+  pure real(wp) function fading(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    fading = 1.0_wp - progress
+    if (self%opening > 0.0_wp) fading = max(0.0_wp, 1.0_wp - progress/self%opening)
+  end function fading
+
+  !> Return the negative derivative of `fading` behind a progress.
+  pure real(wp) function fading_rate(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    fading_rate = 1.0_wp
+    if (self%opening > 0.0_wp) &
+        fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
+  end function fading_rate
+
+  !> Whether a tool has contact in the phase and after it.
+  elemental logical function acts(self, tool)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    acts = self%active(tool) .and. .not. self%withdrawn(tool)
+  end function acts
 
   !> Return the derivative of the factor on the displacements of the tools behind a progress.
   pure real(wp) function move_slope(self, progress)
@@ -204,6 +241,23 @@ contains
     end associate
   end function tool_motion
 
+  !> Return the displacement of a tool that is not pressed by the progress, behind a progress, mm.
+  pure function tool_rate(self, tool, progress, start) result(rate)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: progress
+    !> Displacements of the tools at the start of the phase, `(3, n_tool)`, mm.
+    real(wp), intent(in) :: start(:, :)
+    real(wp) :: rate(3)
+
+    if (self%withdrawn(tool)) then
+      rate = 0.0_wp
+      if (progress >= self%opening - step) rate = self%move(:, tool)/(1.0_wp - self%opening)
+    else
+      rate = self%move_slope(progress)*self%tool_motion(tool, start)
+    end if
+  end function tool_rate
+
   !> Return the force pressed on a tool at a progress, N.
   pure function tool_load(self, tool, progress, start, end) result(load)
     class(phase_t), intent(in) :: self
@@ -253,6 +307,7 @@ contains
 
     next_kink = min(next_place(self%table, progress), next_place(self%move_table, progress), &
         next_place(self%turn_table, progress), next_place(self%press_table, progress))
+    if (progress < self%opening - step) next_kink = min(next_kink, self%opening)
   end function next_kink
 
   !> Return the next place of a table behind a progress; 1 without a table.

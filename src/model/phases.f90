@@ -14,12 +14,16 @@ module dd3_model_phases
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_turn, only : new_turn, turn_t
+  use dd3_model_withdrawal, only : withdrawal
   implicit none
   private
   public :: new_phases
 
   !> Default height of the contact layer over the thickness.
   real(wp), parameter :: default_layer = 0.02_wp
+  !> Progress of an unloading at which the tools begin to open: loads and draw-beads end before, as
+  !> they would bend a sheet that no tool holds.
+  real(wp), parameter :: opening = 0.1_wp
 
 contains
 
@@ -46,10 +50,11 @@ contains
     do i = 1, size(case%phase)
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
-      call set_tools(case%phase(i), model%phase(i))
+      call set_tools(model, case%phase(i), model%phase(i))
       call set_turns(case%phase(i), model%phase(i))
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
-      unloaded = (unloaded .or. case%phase(i)%unload) .and. .not. any(model%phase(i)%active)
+      unloaded = (unloaded .or. case%phase(i)%unload) .and. &
+          .not. any(model%phase(i)%active .and. .not. model%phase(i)%withdrawn)
       model%phase(i)%unloaded = unloaded
       model%phase(i)%has_gravity = case%phase(i)%has_gravity
       call set_supports(model, unloaded, led, model%phase(i))
@@ -76,7 +81,7 @@ contains
     allocate (phase%turn(n_tool))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
-    allocate (phase%pressed(n_tool), source=.false.)
+    allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), source=.false.)
     allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
     allocate (phase%keeps_load(n_load), source=.true.)
     allocate (phase%displacement(3, n_node), source=0.0_wp)
@@ -94,6 +99,9 @@ contains
     type(phase_t), intent(out) :: phase
 
     phase = before
+    phase%active = before%active .and. .not. before%withdrawn
+    phase%withdrawn = .false.
+    phase%opening = 0.0_wp
     phase%move = 0.0_wp
     phase%turn = turn_t()
     phase%gap_other = 0
@@ -160,8 +168,9 @@ contains
   end subroutine set_turns
 
   !> Set the motion and load of the tools, and the trial increment as a fraction of the phase. A
-  !> tool that is named after its release has contact again.
-  subroutine set_tools(spec, phase)
+  !> tool that is released is withdrawn; one that is named after that has contact again.
+  subroutine set_tools(model, spec, phase)
+    type(model_t), intent(in) :: model
     type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
 
@@ -190,18 +199,30 @@ contains
       phase%tool_load_end(:, t) = spec%press(i)%vector
       call set_line(phase, t, spec%press(i)%vector)
     end do
-    do i = 1, size(spec%release)
-      call stop_pressing(phase, spec%release(i)%tool, .false.)
+    do t = 1, size(phase%active)
+      if (spec%unload .or. any(spec%release%tool == t)) call withdraw(model, t, phase)
     end do
-    do t = 1, merge(size(phase%active), 0, spec%unload)
-      call stop_pressing(phase, t, .false.)
-    end do
+    if (spec%unload .and. any(phase%withdrawn) .and. size(spec%table) == 0) phase%opening = opening
     phase%trial = spec%trial
     phase%length = 0.0_wp
     if (spec%control == 0) return
     phase%length = norm2(phase%move(:, spec%control))
     if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
   end subroutine set_tools
+
+  !> Withdraw a tool that has contact, by its `move` in the phase or else along its line.
+  subroutine withdraw(model, tool, phase)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    !> With the lines of all tools.
+    type(phase_t), intent(inout) :: phase
+
+    if (.not. phase%active(tool)) return
+    call stop_pressing(phase, tool, .true.)
+    phase%withdrawn(tool) = .true.
+    if (.not. norm2(phase%move(:, tool)) > 0.0_wp) &
+        phase%move(:, tool) = withdrawal(model, tool, phase%direction)
+  end subroutine withdraw
 
   !> Set the line along which a tool moves; a vector of zero leaves it unchanged.
   subroutine set_line(phase, tool, vector)
@@ -258,7 +279,7 @@ contains
     phase%bead_active = .not. unloaded
     do b = 1, size(model%drawbead)
       associate (tool => model%drawbead(b)%tool)
-        if (tool > 0) phase%bead_active(b) = phase%active(tool)
+        if (tool > 0) phase%bead_active(b) = phase%acts(tool)
       end associate
     end do
     phase%bead_new = phase%bead_active .and. .not. before

@@ -35,11 +35,13 @@ module dd3_model_state
     real(wp), allocatable :: pressure(:), pressure_end(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Forces of the nodes on constraints that are lost, tools, draw-beads and supports, which fade
-    !> over the phase, `(3, n_node)`, N.
-    real(wp), allocatable :: fading(:, :)
+    !> Forces of the nodes on constraints that are lost, supports, draw-beads and those of an earlier
+    !> run, which fade over the phase, and those that lay a free sheet down, `(3, n_node)`, N.
+    real(wp), allocatable :: fading(:, :), laying(:, :)
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
+    !> Elastic energy, and work of viscous forces until then, mJ.
+    real(wp) :: elastic_energy = 0.0_wp, damping_work = 0.0_wp
     !> Whether the force of `until` is approached from below; true for a displacement.
     logical :: until_from_below = .true.
   end type phase_start_t
@@ -88,7 +90,8 @@ module dd3_model_state
     integer, allocatable :: contact_tool(:)
     !> Last closest point on each tool, `(n_tool, n_contact)`.
     type(hint_t), allocatable :: hint(:, :)
-    !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
+    !> Forces of the nodes on lost constraints that are left, with those that lay a sheet down,
+    !> `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :)
     !> Tool that released each node, while the force fades, `(n_node)`; 0 for none.
     integer, allocatable :: fading_tool(:)
@@ -135,6 +138,8 @@ module dd3_model_state
     real(wp) :: plastic_work = 0.0_wp, friction_work = 0.0_wp
     !> Work dissipated by the draw-beads since the start of the job, mJ.
     real(wp) :: bead_work = 0.0_wp
+    !> Work dissipated by viscous forces since the start of the job, mJ.
+    real(wp) :: damping_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   contains
@@ -257,7 +262,7 @@ contains
         n_load => size(state%load, 2), n_pressure => size(state%pressure))
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), &
           self%tool_load_end(3, n_tool), self%load(3, n_load), self%load_end(3, n_load), &
-          self%fading(3, n_node), source=0.0_wp)
+          self%fading(3, n_node), self%laying(3, n_node), source=0.0_wp)
       allocate (self%layer_offset(n_tool), self%pressure(n_pressure), &
           self%pressure_end(n_pressure), source=0.0_wp)
     end associate

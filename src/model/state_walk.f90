@@ -116,6 +116,7 @@ contains
     call visitor%one_real("plastic_work", state%plastic_work)
     call visitor%one_real("friction_work", state%friction_work)
     call visitor%one_real("bead_work", state%bead_work)
+    call visitor%one_real("damping_work", state%damping_work)
     call visit_phase_start(state%start, visitor)
   end subroutine visit_state
 
@@ -139,8 +140,11 @@ contains
     call visitor%reals("start_pressure_end", size(start%pressure_end), start%pressure_end)
     call visitor%reals("start_x", size(start%x), start%x)
     call visitor%reals("start_fading", size(start%fading), start%fading)
+    call visitor%reals("start_laying", size(start%laying), start%laying)
     call visitor%reals_of_items(of_elements, "start_plastic_strain", &
         size(start%plastic_strain, 1), size(start%plastic_strain, 2), start%plastic_strain)
+    call visitor%one_real("start_elastic_energy", start%elastic_energy)
+    call visitor%one_real("start_damping_work", start%damping_work)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
 

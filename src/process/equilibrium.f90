@@ -245,6 +245,7 @@ contains
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
       if (phase%mixed .or. .not. phase%newton%elimination) return
+      if (any(system%problem%damping > 0.0_wp)) return
       call system%profile%start()
       call find_worst(model, trial, system, chosen)
       if (any(chosen)) then

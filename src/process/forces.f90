@@ -1,13 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Forces of a trial state: external ones, those of the contact, and the residuals of the nodes and
-!> of the pressed tools. External are loads, pressures, draw-beads, and the forces of lost
-!> constraints, which fade over the phase with springs that hold the sheet where the constraints
-!> left it.
+!> of the pressed tools. External are loads, pressures, draw-beads, the forces of lost constraints,
+!> which fall linearly over the phase, and those that lay a free sheet down, with their springs.
 module dd3_process_forces
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks, this_rank
   use dd3_model_contact_layer, only : offset_factor
-  use dd3_model_loads, only : add_pressure_forces, fading_factor, nodal_forces, spring_stiffness
+  use dd3_model_loads, only : add_pressure_forces, laying_factor, laying_rate, nodal_forces, &
+      spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_contact, only : evaluate_contact
@@ -15,7 +15,7 @@ module dd3_process_forces
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: set_loads, applied_forces, evaluate_external, unfaded_forces
+  public :: set_loads, applied_forces, evaluate_external, released_rate
   public :: evaluate_forces, lost_tool
 
 contains
@@ -48,7 +48,7 @@ contains
     real(wp), intent(in) :: load(:, :), pressure(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Forces of the nodes on lost constraints that have not faded yet, `(3, n_node)`, N.
+    !> Forces of the nodes on lost constraints that are left, `(3, n_node)`, N.
     real(wp), intent(in) :: fading(:, :)
     real(wp) :: force(3, model%n_node)
 
@@ -63,26 +63,40 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
 
-    state%fading = fading_factor(state%progress)*unfaded_forces(model, state)
+    state%fading = model%phase(state%phase)%fading(state%progress)*state%start%fading
+    if (any(abs(state%start%laying) > 0.0_wp)) state%fading = state%fading &
+        + laying_factor(state%progress)*laying_forces(model, state)
     state%external_force = applied_forces(model, state%load, state%pressure, state%x, state%fading)
     if (size(state%bead_load) > 0) state%external_force = state%external_force + state%bead_load
   end subroutine evaluate_external
 
-  !> Return the forces of the nodes on lost constraints and on their springs before they fade, N.
-  pure function unfaded_forces(model, state) result(force)
+  !> Return the negative derivative of the fading forces in the progress, behind it, N.
+  pure function released_rate(model, state) result(rate)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: rate(3, model%n_node)
+
+    rate = model%phase(state%phase)%fading_rate(state%progress)*state%start%fading
+    if (any(abs(state%start%laying) > 0.0_wp)) rate = rate &
+        + laying_rate(state%progress)*laying_forces(model, state)
+  end function released_rate
+
+  !> Return the forces that lay a free sheet down, with those of their springs, at their full size,
+  !> N.
+  pure function laying_forces(model, state) result(force)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp) :: force(3, model%n_node)
 
     integer :: node
 
-    force = state%start%fading
+    force = state%start%laying
     do node = 1, model%n_node
       if (all(abs(force(:, node)) <= 0.0_wp)) cycle
       force(:, node) = force(:, node) + spring_stiffness(force(:, node), &
           model%thickness_at(node))*(state%x(:, node) - state%start%x(:, node))
     end do
-  end function unfaded_forces
+  end function laying_forces
 
   !> Evaluate the contact of a trial state, and the residuals from it and the internal forces.
   subroutine evaluate_forces(model, committed, trial, system)
@@ -98,7 +112,7 @@ contains
     call evaluate_contact(system%contact, model, committed, trial)
     if (size(trial%bead_load) > 0) call evaluate_beads(system%bead, model, committed, trial)
     if (size(trial%bead_load) > 0 .or. any(abs(trial%pressure) > 0.0_wp) &
-        .or. any(abs(trial%start%fading) > 0.0_wp)) &
+        .or. any(abs(trial%start%laying) > 0.0_wp)) &
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)
@@ -106,6 +120,8 @@ contains
       call system%partition%complete_forces(model%n_node, contact_forces)
       problem%residual = trial%internal_force - trial%external_force
       problem%residual = problem%residual + contact_forces
+      if (any(problem%damping > 0.0_wp)) problem%residual = problem%residual &
+          + spread(problem%damping, 1, 3)*(trial%x - committed%x)
       problem%contact_residual = contact%force - trial%lambda
       contact_forces = model%own_contact_forces(trial%x, problem%contact_residual)
       call system%partition%complete_forces(model%n_node, contact_forces)

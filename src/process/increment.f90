@@ -9,6 +9,7 @@ module dd3_process_increment
   use dd3_model_motions, only : motion_displacement
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : set_rotations
+  use dd3_process_damping, only : damping_coefficients, is_release
   use dd3_process_equilibrium, only : equilibrium_t
   use dd3_process_forces, only : evaluate_external, set_loads
   use dd3_process_limiters, only : limit_increment
@@ -59,6 +60,9 @@ contains
     associate (prediction => stepper%prediction, attempt => stepper%attempt, &
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
+      equilibrium%system%problem%damping = 0.0_wp
+      if (attempt%number > 1 .and. attempt%after_failure .and. is_release(model, committed)) &
+          equilibrium%system%problem%damping = damping_coefficients(model, attempt%number - 1)
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
@@ -146,6 +150,8 @@ contains
     type(state_t), intent(inout) :: committed
 
     call add_work(model, stepper%system%contact, committed, trial)
+    trial%damping_work = committed%damping_work &
+        + sum(stepper%system%problem%damping*sum((trial%x - committed%x)**2, dim=1))
     call observe_passages(model, committed, trial)
     committed = trial
     committed%enhanced = 0.0_wp

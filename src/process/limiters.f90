@@ -35,6 +35,8 @@ module dd3_process_limiters
   !> The largest modulus of a principal strain is at least this fraction of the norm of the tensor;
   !> 1/sqrt(3) less a margin for round-off.
   real(wp), parameter :: least_principal = 0.577_wp
+  !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
+  real(wp), parameter :: opening_step = 2.5_wp
 
 contains
 
@@ -63,6 +65,7 @@ contains
       call end_after("phase", 1.0_wp - state%progress)
       call end_after("table", phase%next_kink(state%progress) - state%progress)
       call apply("gap", gap_limit)
+      call apply("opening", opening_limit)
       call apply("until", until_limit)
       if (any(state%start%layer_offset > 0.0_wp)) &
           call end_after("layer", progress_left(state%progress))
@@ -346,6 +349,29 @@ contains
       end do
     end associate
   end function gap_limit
+
+  !> Limit the motion of the tools that are withdrawn while they are in contact: the sheet slides
+  !> over their radii.
+  function opening_limit(model, state, stepper) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(stepper_t), intent(in) :: stepper
+    type(limit_t) :: limit
+
+    real(wp) :: motion
+    integer :: tool
+
+    associate (phase => model%phase(state%phase))
+      do tool = 1, model%n_tool
+        if (.not. phase%withdrawn(tool)) cycle
+        motion = norm2(stepper%prediction%step%tool(:, tool))
+        if (.not. motion > 0.0_wp) cycle
+        if (.not. state%touches(tool)) cycle
+        if (opening_step*model%thickness < limit%r*motion) &
+            limit = limit_t(r=opening_step*model%thickness/motion, tool=tool)
+      end do
+    end associate
+  end function opening_limit
 
   !> Return the bound at the early end of the phase, extrapolated linearly. The value is met with
   !> either sign: that of its rate or, from above, the opposite one.

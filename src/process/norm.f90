@@ -71,7 +71,7 @@ contains
 
     tolerance = phase%newton%tolerance
     if (phase%unloaded .or. phase%has_gravity .or. &
-        (size(phase%active) > 0 .and. .not. any(phase%active))) &
+        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) &
         tolerance = min(tolerance, free_tolerance)
   end function convergence_tolerance
 

@@ -11,7 +11,7 @@ module dd3_process_phase_start
   use dd3_input_case, only : until_force
   use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
-  use dd3_model_energy, only : contact_energy
+  use dd3_model_energy, only : contact_energy, elastic_energy
   use dd3_model_gravity, only : lay_down
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
@@ -24,7 +24,7 @@ module dd3_process_phase_start
   use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   implicit none
   private
-  public :: begin_phase, check_returns, gap_of_tool
+  public :: begin_phase, check_returns, gap_of_tool, return_tools
 
   !> Largest number of advances of a pressed tool towards the sheet; each covers the smallest gap.
   integer, parameter :: most_advances = 200
@@ -33,8 +33,6 @@ contains
 
   !> Begin a phase: forces continue from their present values, those of lost constraints become
   !> forces that fade over the phase, and a pressed tool without contact approaches the sheet.
-  !>
-  !> The energy of the contact layers of released tools goes to the tools.
   !>
   !> A release is predicted elastic: beyond the maximum of the force, the tangents of loading would
   !> continue on the descending branch instead of unloading.
@@ -72,6 +70,7 @@ contains
       start%pressure_end = phase%pressure_end
       where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
+      start%laying = 0.0_wp
       call lay_down(model, state)
       call begin_turns(phase, state)
       call set_tool_loads(phase, state)
@@ -79,6 +78,7 @@ contains
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(model, phase, state)
+      if (any(phase%withdrawn)) state%plastic = .false.
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
@@ -87,6 +87,8 @@ contains
       start%held_offset = held_offsets(model, phase, state)
       start%tool_displacement = state%tool_displacement
       start%plastic_strain = state%internal_variables(1, :, :)
+      start%elastic_energy = elastic_energy(model, state)
+      start%damping_work = state%damping_work
     end associate
     state%tool_work = state%tool_work + contact_energy(model, state) - stored
     call evaluate_external(model, state)
@@ -100,8 +102,22 @@ contains
     integer, intent(in) :: tool
 
     returns = number > 1 .and. model%phase(number)%active(tool)
-    if (returns) returns = .not. model%phase(number - 1)%active(tool)
+    if (returns) returns = .not. model%phase(number - 1)%acts(tool)
   end function returns
+
+  !> Put the tools that the phase before withdrew back to where they were: they have no contact, and
+  !> a phase that names them again tells their motion from there.
+  pure subroutine return_tools(model, number, state)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> The state at the end of the phase before.
+    type(state_t), intent(inout) :: state
+
+    if (number == 1) return
+    where (spread(model%phase(number - 1)%withdrawn, 1, 3)) &
+        state%tool_displacement = state%start%tool_displacement
+  end subroutine return_tools
 
   !> Set the layers of tools that begin to act back by the clearance that is missing.
   subroutine place_layers(model, number, state)

@@ -138,8 +138,7 @@ contains
   end function press_warning
 
   !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at
-  !> the start of a phase; empty otherwise, and where fading forces with their springs hold all
-  !> nodes.
+  !> the start of a phase; empty otherwise, and where it is laid down.
   function support_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the start of the phase.
@@ -150,7 +149,7 @@ contains
     integer :: part(model%n_node), k, tool
 
     text = ""
-    if (all(any(abs(state%fading) > 0.0_wp, dim=1))) return
+    if (any(abs(state%start%laying) > 0.0_wp)) return
     part = parts_of_nodes(model%connectivity, model%n_node)
     associate (phase => model%phase(state%phase))
       do k = 1, maxval(part)

@@ -12,12 +12,11 @@ module dd3_process_predictor
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
   use dd3_model_contact_layer, only : offset_rate
-  use dd3_model_loads, only : fading_rate
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_forces, only : applied_forces, unfaded_forces
+  use dd3_process_forces, only : applied_forces, released_rate
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_drawbead, only : place_beads
@@ -119,21 +118,19 @@ contains
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
 
-    real(wp) :: faded
     integer :: tool
 
-    faded = self%progress*fading_rate(committed%progress)
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
       problem%residual = applied_forces(model, -factor*(start%load_end - start%load), &
           -factor*(start%pressure_end - start%pressure), committed%x, &
-          faded*unfaded_forces(model, committed))
+          self%progress*released_rate(model, committed))
       call move_contacts(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
       do tool = 1, model%n_tool
-        problem%tool_prescribed(:, tool) = self%progress*phase%move_slope(committed%progress) &
-            *phase%tool_motion(tool, start%tool_displacement)
+        problem%tool_prescribed(:, tool) = self%progress &
+            *phase%tool_rate(tool, committed%progress, start%tool_displacement)
         problem%tool_residual(tool) = self%progress &
             *dot_product(phase%tool_load_rate(tool, committed%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))

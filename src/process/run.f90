@@ -27,7 +27,7 @@ module dd3_process_run
   use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
   use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
       until_fraction
-  use dd3_process_phase_start, only : begin_phase, check_returns
+  use dd3_process_phase_start, only : begin_phase, check_returns, return_tools
   use dd3_process_phase_warnings, only : end_notes, start_notes
   use dd3_process_predictor, only : new_prediction
   use dd3_process_taken_over, only : balance_sheet
@@ -182,6 +182,7 @@ contains
 
     associate (phase => model%phase(number), committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
+        call return_tools(model, number, committed)
         call check_returns(model, number, committed, error)
         if (allocated(error)) return
         call begin_phase(model, number, committed)

@@ -72,7 +72,7 @@ contains
     type(phase_t), intent(in) :: phase
     type(phase_spec_t), intent(in) :: spec
 
-    character(len=7) :: motion
+    character(len=9) :: motion
     integer :: t
 
     call json%begin_array("tools")
@@ -80,10 +80,11 @@ contains
       motion = "held"
       if (norm2(phase%move(:, t)) > 0.0_wp .or. phase%gap_other(t) > 0) motion = "moved"
       if (phase%pressed(t)) motion = "pressed"
+      if (phase%withdrawn(t)) motion = "withdrawn"
       call json%begin_object("", flat=.true.)
       call json%add("name", model%tool(t)%name)
       call json%add("motion", trim(motion))
-      call json%add("active", phase%active(t))
+      call json%add("active", phase%acts(t))
       call add_vector(json, "displacement", phase%move(:, t), .not. phase%pressed(t))
       call add_turn(json, pack(spec%turn, spec%turn%tool == t))
       call add_gap(json, model, pack(spec%gap, spec%gap%tool == t))

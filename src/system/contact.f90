@@ -223,9 +223,8 @@ contains
       self%onset(c) = 0.0_wp
       self%distance(c) = hit%distance
       friction = model%tool(tool)%friction
-      leaving = dot_product(phase%move_slope(committed%progress) &
-          *phase%tool_motion(tool, committed%start%tool_displacement) + self%turning(:, c), &
-          hit%normal) < 0.0_wp
+      leaving = dot_product(phase%tool_rate(tool, committed%progress, &
+          committed%start%tool_displacement) + self%turning(:, c), hit%normal) < 0.0_wp
       if (.not. touching(tool)) then
         self%status(c) = status_gap
         if (hit%distance <= model%tolerance%touch .and. .not. leaving) self%status(c) = status_stick

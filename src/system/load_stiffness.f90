@@ -1,19 +1,19 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Stiffness of the loads that depend on the displacements: pressures, which follow the surface,
-!> draw-beads, and the springs that hold the sheet where lost constraints left it, while they fade.
+!> draw-beads, the springs of a free sheet that is laid down, and viscous forces.
 module dd3_system_load_stiffness
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : position_of
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
-  use dd3_model_loads, only : face_stiffness, fading_factor, spring_stiffness
+  use dd3_model_loads, only : face_stiffness, laying_factor, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_drawbead, only : add_bead_stiffness
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: add_load_stiffness, add_release_stiffness
+  public :: add_load_stiffness, add_laying_stiffness
 
 contains
 
@@ -26,7 +26,8 @@ contains
 
     call add_pressure_stiffness(system, model, state)
     call add_bead_stiffness(system%matrix, system%bead)
-    call add_release_stiffness(system, model, state)
+    call add_laying_stiffness(system, model, state)
+    call add_damping_stiffness(system, model)
   end subroutine add_load_stiffness
 
   !> Subtract the derivatives of the pressure forces from the stiffness.
@@ -55,8 +56,23 @@ contains
     end do
   end subroutine add_pressure_stiffness
 
+  !> Add the derivatives of the viscous forces to the stiffness.
+  subroutine add_damping_stiffness(system, model)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+
+    integer :: node, k
+
+    do node = 1, model%n_node
+      if (.not. holds_row(system%matrix, node)) cycle
+      k = system%matrix%diagonal(node)
+      system%matrix%value(:, :, k) = system%matrix%value(:, :, k) &
+          + system%problem%damping(node)*identity
+    end do
+  end subroutine add_damping_stiffness
+
   !> Add the stiffness of the springs to that of the sheet.
-  subroutine add_release_stiffness(system, model, state)
+  subroutine add_laying_stiffness(system, model, state)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -66,14 +82,14 @@ contains
 
     do node = 1, model%n_node
       if (.not. holds_row(system%matrix, node)) cycle
-      associate (fading => state%start%fading(:, node))
-        if (all(abs(fading) <= 0.0_wp)) cycle
-        stiffness = fading_factor(state%progress) &
-            *spring_stiffness(fading, model%thickness_at(node))
+      associate (laying => state%start%laying(:, node))
+        if (all(abs(laying) <= 0.0_wp)) cycle
+        stiffness = laying_factor(state%progress) &
+            *spring_stiffness(laying, model%thickness_at(node))
         k = system%matrix%diagonal(node)
         system%matrix%value(:, :, k) = system%matrix%value(:, :, k) + stiffness*identity
       end associate
     end do
-  end subroutine add_release_stiffness
+  end subroutine add_laying_stiffness
 
 end module dd3_system_load_stiffness
