@@ -72,6 +72,9 @@ module dd3_model_model
     !> Bottom and top node of the column of each node, `(2, n_node)`; a node that is in no column is
     !> its own bottom and top.
     integer, allocatable :: column(:, :)
+    !> Other end of a fibre through the thickness of an element at each node, `(n_node)`; 0 for a
+    !> node in the middle of an edge.
+    integer, allocatable :: fibre_end(:)
     !> Initial inward unit normals of the rim, `(3, n_node)`; zero for a node elsewhere.
     real(wp), allocatable :: rim_normal(:, :)
     type(tolerances_t) :: tolerance

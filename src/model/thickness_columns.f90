@@ -13,9 +13,9 @@ module dd3_model_thickness_columns
 
 contains
 
-  !> Find the column in which each node lies.
+  !> Find the column in which each node lies, and the end of a fibre of it.
   pure subroutine set_columns(model)
-    !> With its mesh; gets `column`.
+    !> With its mesh; gets `column` and `fibre_end`.
     type(model_t), intent(inout) :: model
 
     integer, allocatable :: column(:, :)
@@ -23,6 +23,7 @@ contains
     logical :: has_below(model%n_node)
     integer :: e, p, i
 
+    allocate (model%fibre_end(model%n_node), source=0)
     above = 0
     has_below = .false.
     do e = 1, model%n_element
@@ -30,6 +31,7 @@ contains
         associate (pair => model%connectivity(model%element%pair(:, p), e))
           above(pair(1)) = pair(2)
           has_below(pair(2)) = .true.
+          model%fibre_end(pair) = [pair(2), pair(1)]
         end associate
       end do
     end do

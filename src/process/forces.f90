@@ -1,10 +1,12 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Forces of a trial state: external ones, those of the contact, and the residuals of the nodes and
 !> of the pressed tools. External are loads, pressures, draw-beads, the forces of lost constraints,
-!> which fall linearly over the phase, and those that lay a free sheet down, with their springs.
+!> which turn with the sheet and fall linearly over the phase, and those that lay a free sheet down,
+!> with their springs.
 module dd3_process_forces
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks, this_rank
+  use dd3_model_carried_forces, only : carried_forces
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_loads, only : add_pressure_forces, laying_factor, laying_rate, nodal_forces, &
       spring_stiffness
@@ -63,12 +65,21 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
 
-    state%fading = model%phase(state%phase)%fading(state%progress)*state%start%fading
+    state%fading = model%phase(state%phase)%fading(state%progress)*carried(model, state)
     if (any(abs(state%start%laying) > 0.0_wp)) state%fading = state%fading &
         + laying_factor(state%progress)*laying_forces(model, state)
     state%external_force = applied_forces(model, state%load, state%pressure, state%x, state%fading)
     if (size(state%bead_load) > 0) state%external_force = state%external_force + state%bead_load
   end subroutine evaluate_external
+
+  !> Return the forces on lost constraints at their full size, turned with the sheet, N.
+  pure function carried(model, state) result(force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: force(3, model%n_node)
+
+    force = carried_forces(model%fibre_end, state%start%x, state%x, state%start%fading)
+  end function carried
 
   !> Return the negative derivative of the fading forces in the progress, behind it, N.
   pure function released_rate(model, state) result(rate)
@@ -76,7 +87,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp) :: rate(3, model%n_node)
 
-    rate = model%phase(state%phase)%fading_rate(state%progress)*state%start%fading
+    rate = model%phase(state%phase)%fading_rate(state%progress)*carried(model, state)
     if (any(abs(state%start%laying) > 0.0_wp)) rate = rate &
         + laying_rate(state%progress)*laying_forces(model, state)
   end function released_rate
@@ -112,7 +123,7 @@ contains
     call evaluate_contact(system%contact, model, committed, trial)
     if (size(trial%bead_load) > 0) call evaluate_beads(system%bead, model, committed, trial)
     if (size(trial%bead_load) > 0 .or. any(abs(trial%pressure) > 0.0_wp) &
-        .or. any(abs(trial%start%laying) > 0.0_wp)) &
+        .or. any(abs(trial%start%fading) + abs(trial%start%laying) > 0.0_wp)) &
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)

@@ -37,6 +37,9 @@ module dd3_process_limiters
   real(wp), parameter :: least_principal = 0.577_wp
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
+  !> The first motion over the height of a contact layer: two tools open by twice of it. Smallest
+  !> height in thicknesses, for the mixed formulation, which has none.
+  real(wp), parameter :: first = 0.25_wp, least_layer = 0.01_wp
 
 contains
 
@@ -53,6 +56,7 @@ contains
     associate (attempt => stepper%attempt, limit => stepper%attempt%limit, &
         phase => model%phase(state%phase), limits => model%phase(state%phase)%limits)
       limit = limit_t(r=limits%r_max%value, limiter="r_max")
+      if (is_open(model, state)) limit%r = huge(1.0_wp)
       call apply("strain", strain_limit)
       call apply("rotation", rotation_limit)
       call apply("stress", stress_limit)
@@ -350,25 +354,43 @@ contains
     end associate
   end function gap_limit
 
-  !> Limit the motion of the tools that are withdrawn while they are in contact: the sheet slides
-  !> over their radii.
+  !> Whether the tools that the phase withdraws have all left the sheet, so that only their motion is
+  !> left of the phase.
+  logical function is_open(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    integer :: tool
+
+    associate (phase => model%phase(state%phase))
+      is_open = phase%opening > 0.0_wp .and. state%progress > phase%opening
+      do tool = 1, model%n_tool
+        if (is_open) is_open = .not. state%touches(tool)
+      end do
+    end associate
+  end function is_open
+
+  !> Limit the motion of the tools that are withdrawn while they are in contact: the forces of the
+  !> forming end within the height of the contact layers, and the sheet slides over radii later.
   function opening_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: motion
+    real(wp) :: motion, made, bound
     integer :: tool
 
     associate (phase => model%phase(state%phase))
+      made = max(0.0_wp, state%progress - phase%opening)/(1.0_wp - phase%opening)
       do tool = 1, model%n_tool
         if (.not. phase%withdrawn(tool)) cycle
         motion = norm2(stepper%prediction%step%tool(:, tool))
         if (.not. motion > 0.0_wp) cycle
         if (.not. state%touches(tool)) cycle
-        if (opening_step*model%thickness < limit%r*motion) &
-            limit = limit_t(r=opening_step*model%thickness/motion, tool=tool)
+        bound = min(opening_step*model%thickness, &
+            made*norm2(phase%move(:, tool)) + first*max(phase%layer, least_layer)*model%thickness)
+        if (bound < limit%r*motion) limit = limit_t(r=bound/motion, tool=tool)
       end do
     end associate
   end function opening_limit

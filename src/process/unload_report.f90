@@ -17,6 +17,8 @@ module dd3_process_unload_report
   !> Resultants below this fraction of the forces on the sheet, and reactions at the end below this
   !> fraction of the largest force that faded, are those that the tolerance of the corrector leaves.
   real(wp), parameter :: notable = 1.0e-2_wp, notable_reaction = 1.0e-3_wp
+  !> Strain whose force on the square of the thickness is the smallest scale of the reactions.
+  real(wp), parameter :: negligible_strain = 1.0e-3_wp
 
 contains
 
@@ -82,6 +84,7 @@ contains
             "': the chosen supports carry "//to_text(resultant, 3)//" N of them"
         return
       end if
+      if (any(phase%withdrawn)) return
       force = applied_forces(model, start%load, start%pressure, state%x, start%fading)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
@@ -134,8 +137,9 @@ contains
         end associate
       end do
       k = maxloc(abs(reaction), dim=1)
-      scale = max(0.0_wp, maxval(norm2(start%fading, dim=1)), &
-          maxval(norm2(start%load, dim=1)), maxval(norm2(start%load_end, dim=1)))
+      scale = max(negligible_strain*model%least_shear()*model%thickness**2, &
+          maxval(norm2(start%fading, dim=1)), maxval([0.0_wp, norm2(start%load, dim=1)]), &
+          maxval([0.0_wp, norm2(start%load_end, dim=1)]))
       call notes%add_new(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
           "phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &

@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Stiffness of the loads that depend on the displacements: pressures, which follow the surface,
-!> draw-beads, the springs of a free sheet that is laid down, and viscous forces.
+!> draw-beads, forces of lost constraints, the springs of a free sheet that is laid down, and viscous
+!> forces.
 module dd3_system_load_stiffness
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : position_of
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
+  use dd3_model_carried_forces, only : carried_stiffness
   use dd3_model_loads, only : face_stiffness, laying_factor, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -27,6 +29,7 @@ contains
     call add_pressure_stiffness(system, model, state)
     call add_bead_stiffness(system%matrix, system%bead)
     call add_laying_stiffness(system, model, state)
+    call add_carried_stiffness(system, model, state)
     call add_damping_stiffness(system, model)
   end subroutine add_load_stiffness
 
@@ -55,6 +58,31 @@ contains
       end do
     end do
   end subroutine add_pressure_stiffness
+
+  !> Add the derivatives of the forces of lost constraints, which turn with the sheet.
+  subroutine add_carried_stiffness(system, model, state)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    real(wp) :: factor, stiffness(3, 3)
+    integer :: node, k
+
+    factor = model%phase(state%phase)%fading(state%progress)
+    do node = 1, model%n_node
+      associate (other => model%fibre_end(node), force => state%start%fading(:, node), &
+          before => state%start%x, x => state%x, value => system%matrix%value)
+        if (other == 0 .or. all(abs(force) <= 0.0_wp)) cycle
+        if (.not. holds_row(system%matrix, node)) cycle
+        stiffness = factor*carried_stiffness(before(:, other) - before(:, node), &
+            x(:, other) - x(:, node), force)
+        k = position_of(system%matrix, node, other)
+        value(:, :, k) = value(:, :, k) + stiffness
+        k = system%matrix%diagonal(node)
+        value(:, :, k) = value(:, :, k) - stiffness
+      end associate
+    end do
+  end subroutine add_carried_stiffness
 
   !> Add the derivatives of the viscous forces to the stiffness.
   subroutine add_damping_stiffness(system, model)
