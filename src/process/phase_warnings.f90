@@ -208,8 +208,8 @@ contains
     end do
   end subroutine hold_in_contact
 
-  !> Return a warning if the sheet yields while forces of released tools fade: then the free shape
-  !> depends on how they fade; empty otherwise.
+  !> Return a warning if the sheet yields while nothing acts on it but fading forces of lost
+  !> constraints: then the free shape depends on how they fade; empty otherwise.
   function release_warning(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.
@@ -221,6 +221,9 @@ contains
 
     text = ""
     if (all(abs(state%start%fading) <= 0.0_wp)) return
+    associate (phase => model%phase(state%phase))
+      if (phase%control > 0 .or. any(phase%pressed .or. phase%withdrawn)) return
+    end associate
     increase = 0.0_wp
     increase(model%part%element) = &
         maxval(state%internal_variables(1, :, :) - state%start%plastic_strain, dim=1)
@@ -229,7 +232,7 @@ contains
     if (increase(e) > notable_strain) text = "in phase '"// &
         model%phase(state%phase)%name//"' the plastic strain of element "//to_text(e)// &
         " increased by "//to_text(increase(e), 3)// &
-        " while the forces of released tools faded; compare with tools withdrawn by `move`"
+        " while the forces of lost constraints faded: the free shape depends on how they fade"
   end function release_warning
 
   !> Return a warning if the energy balance at the end of a run is far from closed; empty otherwise.
