@@ -23,7 +23,7 @@ contains
     logical :: has_below(model%n_node)
     integer :: e, p, i
 
-    allocate (model%fibre_end(model%n_node), source=0)
+    model%fibre_end = [(0, i=1, model%n_node)]
     above = 0
     has_below = .false.
     do e = 1, model%n_element
