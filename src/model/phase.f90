@@ -43,6 +43,8 @@ module dd3_model_phase
     !> Tools with contact, `(n_tool)`, and those among them that the phase withdraws: their contact is
     !> kept while they move away, and they have none afterwards.
     logical, allocatable :: active(:), withdrawn(:)
+    !> Whether a withdrawn tool goes back to its place after the phase, as the input gives no path.
+    logical, allocatable :: goes_back(:)
     !> Progress at which withdrawn tools begin to move; up to then loads and lost constraints reach
     !> their final values between closed tools. 0: all change over the whole phase.
     real(wp) :: opening = 0.0_wp

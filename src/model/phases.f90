@@ -81,7 +81,8 @@ contains
     allocate (phase%turn(n_tool))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
-    allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), source=.false.)
+    allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), phase%goes_back(n_tool), &
+        source=.false.)
     allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
     allocate (phase%keeps_load(n_load), source=.true.)
     allocate (phase%displacement(3, n_node), source=0.0_wp)
@@ -101,6 +102,7 @@ contains
     phase = before
     phase%active = before%active .and. .not. before%withdrawn
     phase%withdrawn = .false.
+    phase%goes_back = .false.
     phase%opening = 0.0_wp
     phase%move = 0.0_wp
     phase%turn = turn_t()
@@ -220,8 +222,8 @@ contains
     if (.not. phase%active(tool)) return
     call stop_pressing(phase, tool, .true.)
     phase%withdrawn(tool) = .true.
-    if (.not. norm2(phase%move(:, tool)) > 0.0_wp) &
-        phase%move(:, tool) = withdrawal(model, tool, phase%direction)
+    phase%goes_back(tool) = .not. norm2(phase%move(:, tool)) > 0.0_wp
+    if (phase%goes_back(tool)) phase%move(:, tool) = withdrawal(model, tool, phase%direction)
   end subroutine withdraw
 
   !> Set the line along which a tool moves; a vector of zero leaves it unchanged.

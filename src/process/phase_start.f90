@@ -105,8 +105,8 @@ contains
     if (returns) returns = .not. model%phase(number - 1)%acts(tool)
   end function returns
 
-  !> Put the tools that the phase before withdrew back to where they were: they have no contact, and
-  !> a phase that names them again tells their motion from there.
+  !> Put the tools that the phase before withdrew along paths of the program's choice back to where
+  !> they were: they have no contact, and a phase that names them again tells their motion from there.
   pure subroutine return_tools(model, number, state)
     type(model_t), intent(in) :: model
     !> Number of the phase.
@@ -115,7 +115,7 @@ contains
     type(state_t), intent(inout) :: state
 
     if (number == 1) return
-    where (spread(model%phase(number - 1)%withdrawn, 1, 3)) &
+    where (spread(model%phase(number - 1)%goes_back, 1, 3)) &
         state%tool_displacement = state%start%tool_displacement
   end subroutine return_tools
 

@@ -206,7 +206,7 @@ def action(tool: dict[str, Any]) -> str:
     """Return what a phase does with a tool."""
     if not tool["active"]:
         return "released"
-    said = {"held": "held", "moved": "moved"}.get(tool["motion"], "pressed")
+    said = tool["motion"]
     if tool["gap"]:
         said += f" to a gap of {tool['gap']['value']:g} {tool['gap']['unit']} from {tool['gap']['from']}"
     elif tool["motion"] == "moved":
