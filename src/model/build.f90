@@ -467,7 +467,7 @@ contains
     do i = 1, size(model%phase)
       if (any(model%phase(i)%active .and. .not. model%phase(i)%withdrawn)) cycle
       do k = 1, maxval(part)
-        call new_supported_part(body, model%start_positions(), model%phase(i)%prescribed, part == k)
+        call new_supported_part(body, model%start_positions(), model%phase(i)%held(), part == k)
         motion = body%free_motion()
         if (len(motion) == 0) cycle
         call errors%push_input(case%phase(i)%source%opened, "nothing holds "// &

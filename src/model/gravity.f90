@@ -84,7 +84,7 @@ contains
     part = parts_of_nodes(model%connectivity, model%n_node)
     is_free = .false.
     do k = 1, maxval(part)
-      call new_supported_part(body, state%x, model%phase(state%phase)%prescribed, part == k)
+      call new_supported_part(body, state%x, model%phase(state%phase)%held(), part == k)
       is_free = is_free .or. len(body%free_motion()) > 0
     end do
   end function is_free

@@ -55,8 +55,10 @@ module dd3_model_phase
     !> Degrees of freedom with prescribed displacement, supports included, `(3, n_node)`.
     logical, allocatable :: prescribed(:, :)
     !> Supports chosen against free rigid motions of an unloaded sheet, in columns of node and axis,
-    !> `(2, n)`; they are prescribed too.
+    !> `(2, n)`. They are prescribed too, or springs while tools are withdrawn, between which the
+    !> sheet floats.
     integer, allocatable :: support(:, :)
+    logical :: floats = .false.
     !> Prescribed displacement over the phase, `(3, n_node)`, mm.
     real(wp), allocatable :: displacement(:, :)
     !> Directions that an earlier phase displaced and this one holds, as text: `x of 'tip', ...`.
@@ -103,6 +105,7 @@ module dd3_model_phase
     procedure :: tool_motion
     procedure :: tool_rate
     procedure :: acts
+    procedure :: held
     procedure :: fading
     procedure :: fading_rate
     procedure :: tool_load
@@ -157,6 +160,19 @@ contains
     if (self%opening > 0.0_wp) &
         fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
   end function fading_rate
+
+  !> Return the directions that prescribed displacements and chosen supports hold, `(3, n_node)`.
+  pure function held(self)
+    class(phase_t), intent(in) :: self
+    logical, allocatable :: held(:, :)
+
+    integer :: k
+
+    held = self%prescribed
+    do k = 1, size(self%support, 2)
+      held(self%support(2, k), self%support(1, k)) = .true.
+    end do
+  end function held
 
   !> Whether a tool has contact in the phase and after it.
   elemental logical function acts(self, tool)

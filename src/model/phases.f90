@@ -256,15 +256,13 @@ contains
     logical, intent(in) :: led(:, :)
     type(phase_t), intent(inout) :: phase
 
-    integer :: k
-
     phase%prescribed = led
+    phase%floats = .false.
     phase%support = reshape([integer ::], [2, 0])
     if (.not. unloaded) return
     call choose_supports(model%start_positions(), led, phase%support)
-    do k = 1, size(phase%support, 2)
-      phase%prescribed(phase%support(2, k), phase%support(1, k)) = .true.
-    end do
+    phase%floats = any(phase%withdrawn)
+    if (.not. phase%floats) phase%prescribed = phase%held()
   end subroutine set_supports
 
   !> Set which draw-beads act: those of an active tool, and those without a tool as long as the

@@ -120,6 +120,8 @@ module dd3_model_state
     !> until then, `(n_tool)`, mm.
     integer, allocatable :: open_edge(:, :)
     real(wp), allocatable :: open_edge_displacement(:)
+    !> Whether the tools that the phase withdraws have all left the sheet.
+    logical :: open = .false.
     !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
     real(wp), allocatable :: slip_path(:)
     !> Restraining force per length of each interval of the draw-beads, N/mm, and its slip path, mm,

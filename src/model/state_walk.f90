@@ -97,6 +97,7 @@ contains
     call visitor%reals("layer_offset", size(state%layer_offset), state%layer_offset)
     call visitor%logicals("touched", size(state%touched), state%touched)
     call visitor%reals("tool_depth", size(state%tool_depth), state%tool_depth)
+    call visitor%one_logical("open", state%open)
     call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
     call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
     call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)

@@ -11,6 +11,7 @@ module dd3_process_forces
   use dd3_model_loads, only : add_pressure_forces, laying_factor, laying_rate, nodal_forces, &
       spring_stiffness
   use dd3_model_model, only : model_t
+  use dd3_model_support_springs, only : add_support_springs
   use dd3_model_state, only : state_t
   use dd3_system_contact, only : evaluate_contact
   use dd3_system_drawbead, only : evaluate_beads
@@ -70,6 +71,7 @@ contains
         + laying_factor(state%progress)*laying_forces(model, state)
     state%external_force = applied_forces(model, state%load, state%pressure, state%x, state%fading)
     if (size(state%bead_load) > 0) state%external_force = state%external_force + state%bead_load
+    call add_support_springs(model, state, state%external_force)
   end subroutine evaluate_external
 
   !> Return the forces on lost constraints at their full size, turned with the sheet, N.
@@ -123,7 +125,8 @@ contains
     call evaluate_contact(system%contact, model, committed, trial)
     if (size(trial%bead_load) > 0) call evaluate_beads(system%bead, model, committed, trial)
     if (size(trial%bead_load) > 0 .or. any(abs(trial%pressure) > 0.0_wp) &
-        .or. any(abs(trial%start%fading) + abs(trial%start%laying) > 0.0_wp)) &
+        .or. any(abs(trial%start%fading) + abs(trial%start%laying) > 0.0_wp) &
+        .or. model%phase(trial%phase)%floats) &
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)

@@ -141,6 +141,21 @@ contains
     end associate
   end subroutine set_target
 
+  !> Whether the tools that the running phase withdraws have all left the sheet.
+  logical function has_opened(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    integer :: tool
+
+    associate (phase => model%phase(state%phase))
+      has_opened = phase%opening > 0.0_wp .and. state%progress > phase%opening
+      do tool = 1, model%n_tool
+        if (has_opened) has_opened = .not. state%touches(tool)
+      end do
+    end associate
+  end function has_opened
+
   !> Commit the trial state.
   subroutine accept_increment(model, trial, stepper, committed)
     type(model_t), intent(in) :: model
@@ -153,6 +168,7 @@ contains
     trial%damping_work = committed%damping_work &
         + sum(stepper%system%problem%damping*sum((trial%x - committed%x)**2, dim=1))
     call observe_passages(model, committed, trial)
+    trial%open = has_opened(model, trial)
     committed = trial
     committed%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)

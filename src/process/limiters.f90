@@ -56,7 +56,7 @@ contains
     associate (attempt => stepper%attempt, limit => stepper%attempt%limit, &
         phase => model%phase(state%phase), limits => model%phase(state%phase)%limits)
       limit = limit_t(r=limits%r_max%value, limiter="r_max")
-      if (is_open(model, state)) limit%r = huge(1.0_wp)
+      if (state%open) limit%r = huge(1.0_wp)
       call apply("strain", strain_limit)
       call apply("rotation", rotation_limit)
       call apply("stress", stress_limit)
@@ -353,22 +353,6 @@ contains
       end do
     end associate
   end function gap_limit
-
-  !> Whether the tools that the phase withdraws have all left the sheet, so that only their motion is
-  !> left of the phase.
-  logical function is_open(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-
-    integer :: tool
-
-    associate (phase => model%phase(state%phase))
-      is_open = phase%opening > 0.0_wp .and. state%progress > phase%opening
-      do tool = 1, model%n_tool
-        if (is_open) is_open = .not. state%touches(tool)
-      end do
-    end associate
-  end function is_open
 
   !> Limit the motion of the tools that are withdrawn while they are in contact: the forces of the
   !> forming end within the height of the contact layers, and the sheet slides over radii later.

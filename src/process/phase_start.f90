@@ -60,6 +60,7 @@ contains
     state%largest_depth = 0.0_wp
     state%deepest_face = 0
     state%deepest_radius = huge(1.0_wp)
+    state%open = .false.
     state%open_edge = 0
     state%open_edge_displacement = 0.0_wp
     associate (phase => model%phase(number), start => state%start)

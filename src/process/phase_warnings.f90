@@ -153,7 +153,7 @@ contains
     part = parts_of_nodes(model%connectivity, model%n_node)
     associate (phase => model%phase(state%phase))
       do k = 1, maxval(part)
-        call new_supported_part(body, state%x, phase%prescribed, part == k)
+        call new_supported_part(body, state%x, phase%held(), part == k)
         if (len(body%free_motion()) == 0) cycle
         do tool = 1, model%n_tool
           if (phase%active(tool)) call hold_in_contact(body, model, state, tool, part == k)

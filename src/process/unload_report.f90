@@ -9,6 +9,7 @@ module dd3_process_unload_report
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
+  use dd3_model_support_springs, only : support_stiffness
   use dd3_process_forces, only : applied_forces
   implicit none
   private
@@ -134,6 +135,8 @@ contains
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
           reaction(k) = state%internal_force(axis, node) - state%external_force(axis, node)
+          if (model%phase(state%phase)%floats) reaction(k) = support_stiffness(model, state) &
+              *(start%x(axis, node) - state%x(axis, node))
         end associate
       end do
       k = maxloc(abs(reaction), dim=1)

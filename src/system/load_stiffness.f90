@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Stiffness of the loads that depend on the displacements: pressures, which follow the surface,
-!> draw-beads, forces of lost constraints, the springs of a free sheet that is laid down, and viscous
-!> forces.
+!> draw-beads, forces of lost constraints, the springs of a free sheet that is laid down and of the
+!> supports of one that floats, and viscous forces.
 module dd3_system_load_stiffness
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : position_of
@@ -11,6 +11,7 @@ module dd3_system_load_stiffness
   use dd3_model_loads, only : face_stiffness, laying_factor, spring_stiffness
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_support_springs, only : spring_stiffness_of => support_stiffness
   use dd3_system_drawbead, only : add_bead_stiffness
   use dd3_system_system, only : system_t
   implicit none
@@ -31,6 +32,7 @@ contains
     call add_laying_stiffness(system, model, state)
     call add_carried_stiffness(system, model, state)
     call add_damping_stiffness(system, model)
+    call add_support_stiffness(system, model, state)
   end subroutine add_load_stiffness
 
   !> Subtract the derivatives of the pressure forces from the stiffness.
@@ -83,6 +85,26 @@ contains
       end associate
     end do
   end subroutine add_carried_stiffness
+
+  !> Add the stiffness of the springs at the supports of a sheet that floats.
+  subroutine add_support_stiffness(system, model, state)
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    integer :: k, i
+
+    associate (phase => model%phase(state%phase), value => system%matrix%value)
+      if (.not. phase%floats) return
+      do i = 1, size(phase%support, 2)
+        associate (node => phase%support(1, i), axis => phase%support(2, i))
+          if (.not. holds_row(system%matrix, node)) cycle
+          k = system%matrix%diagonal(node)
+          value(axis, axis, k) = value(axis, axis, k) + spring_stiffness_of(model, state)
+        end associate
+      end do
+    end associate
+  end subroutine add_support_stiffness
 
   !> Add the derivatives of the viscous forces to the stiffness.
   subroutine add_damping_stiffness(system, model)
