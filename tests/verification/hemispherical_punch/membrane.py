@@ -89,9 +89,8 @@ class Membrane:
                                 ((RADIUS, SHOULDER + 0.5*THICKNESS), SHOULDER)):
             away = x - np.array(centre)[:, None]
             distance = np.maximum(np.hypot(*away), 1e-12)
-            gap = (radius + offset - distance)/LAYER
+            gap = np.maximum((radius + offset - distance)/LAYER, -40.0)
             side = x[1] > centre[1] if centre[0] == 0 else (x[0] <= RADIUS) & (x[1] < centre[1])
-            side &= gap > -30
             normal, press = away/distance, np.where(side, STIFFNESS*LAYER*np.logaddexp(0.0, gap), 0.0)
             slope, across = np.where(side, STIFFNESS/(1 + np.exp(-gap)), 0.0), normal[:, None]*normal[None]
             own = -press*normal
