@@ -64,8 +64,10 @@ def hill_ratios():
 
 
 def hill_plane_strain(strain, steps=4000):
-    """Return s11 and s22 over the flow stress by Hill's criterion at a strain along rolling, in plane stress and without
-    transverse strain, from the rates with the elastic strains; Runge and Kutta, in the logarithm of the strain."""
+    """Return s11 and s22 over the flow stress by Hill's criterion at a strain along rolling, without transverse strain.
+
+    Plane stress, from the rates with the elastic strains; Runge and Kutta, in the logarithm of the strain.
+    """
     f, g, h, _ = (HILL[name] for name in "FGHN")
     modulus = YOUNG / (1 - POISSON**2)
 

@@ -184,7 +184,8 @@ def turning_tools(bench):
         slip = path - radius * math.radians(angle)
         values.append(Value(f"cylinder {name}: friction work, mJ", friction * slip, found.last("friction_work"), 1e-2))
         if angle:
-            values.append(Value(f"cylinder {name}: torque, N.mm", friction * radius, found.last("cylinder_torque"), 1e-3))
+            values.append(Value(f"cylinder {name}: torque, N.mm", friction * radius, found.last("cylinder_torque"),
+                                1e-3))
     found = run(bench, "rolling_cylinder", angle=str(math.degrees(path / radius)))
     values.append(Value("it rolls: friction work over that of the dragged one", 0.0,
                         found.last("friction_work") / (friction * path), 1e-3, absolute=True))
@@ -277,9 +278,9 @@ radius 20 mm is pressed on an elastic strip and moved by 10 mm: dragged, turned 
 over the radius). Coulomb: torque µ N R, friction work µ N times the slip, none where it rolls. Two such cylinders draw
 an elastic strip in by 30 degrees against a tension F: without slip their torques sum up to F R, and the strip moves by
 R times the angle, less 0.35 %, by which the pressed strip is longer under the rolls, and less the creep in the contact
-layer, which grows with F. The strip on the cylinder has 118 elements; with 59 the tension is off by 0.3 % and the torque
-by 1.0 %. The friction work of a cylinder is that of increments of 0.05 mm; with those of 0.2 mm, a fifth of the contact,
-it is 1.9 % too small. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
+layer, which grows with F. The strip on the cylinder has 118 elements; with 59 the tension is off by 0.3 % and the
+torque by 1.0 %. The friction work of a cylinder is that of increments of 0.05 mm; with those of 0.2 mm, a fifth of the
+contact, it is 1.9 % too small. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
 """, turning_tools),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (b), the first 5 mm of the draw. No support holds the sheet

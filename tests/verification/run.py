@@ -42,8 +42,8 @@ runs all cases and writes this page; without `--slow` the quick ones only, in le
 `verification` and `verification_slow` compare the page with the program: each error must be within the tolerance.
 
 The numbers are those of a list from which some cases went elsewhere: V3 is in unit tests, V26, V28 and V30 are the
-reports on the [square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the [rail](reports/rail.md);
-V10, V12, V15, V17, V27 and V29 have never been given.
+reports on the [square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the
+[rail](reports/rail.md); V10, V12, V15, V17, V27 and V29 have never been given.
 
 No section compares with an experiment. Measured values stand beside computed ones in the reports on the [split
 ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square

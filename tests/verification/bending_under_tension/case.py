@@ -93,8 +93,8 @@ the last {100 * (1 - STEADY):.0f} % of the draw; sum of the contact pressure at 
 tensions, which is θ. Deck `tests/verification/bending_under_tension/case.dat`.
 """, values, slow=True, after="""
 Dashed: the integration, which has no shear. The strip is pressed on the cylinder over 75 degrees, most where it is bent
-and unbent, as its moment lifts it off where it enters and leaves. The contact forces still sum up to those of a quarter,
-since they turn the tension by 90 degrees: neither the pressed arc nor a smaller one belongs into the friction factor.
+and unbent, as its moment lifts it off where it enters and leaves. The contact forces still sum up to those of a
+quarter, since they turn the tension by 90 degrees: the pressed arc does not belong into the friction factor.
 With friction the strip stretches less than by the integration, in which all friction acts before the unbending; here it
 begins at two thirds of the arc. A strip of 240 x 6 `hex8` stretches by 0.0428 at 74.6 N/mm without friction.
 """),

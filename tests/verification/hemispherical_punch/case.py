@@ -81,8 +81,8 @@ Sheet of 1 mm, clamped at a radius of 59.18 mm, where the die's shoulder of 6.35
 E = 69004 MPa, ν = 0.3, σ = 589 (1e-4 + p)^0.216 MPa, von Mises; a quarter, one layer of `solid_shell`, 180 elements.
 Expected: a membrane without friction, elastoplastic, in contact with punch and shoulder (`membrane.py`), 60 elements;
 with 120 its forces change by less than 0.1 % from 20 mm on. It has no bending, which counts early: at 10 mm the sheet
-needs 3 % more. With 10 x 20 elements in place of 6 x 12 the force at 44 mm is 0.5 % higher. From 37.4 to 44 mm the force
-still rises by 7 %; that of the membrane is largest near 44 mm.
+needs 3 % more. With 10 x 20 elements in place of 6 x 12 the force at 44 mm is 0.5 % higher. From 37.4 to 44 mm the
+force still rises by 7 %; that of the membrane is largest near 44 mm.
 
 Published: the test of Wagoner, Nakamachi and Lee (1988) as in the validation manual of Code_Aster, SSNV501 (V6.04.501),
 model A: the displacement of the punch at given forces, without friction, read from a curve within 5 % and compared
@@ -94,8 +94,8 @@ program nor on another. Code_Aster's own run, one layer of linear quadrilaterals
 readings.
 
 Not met: model B, with a friction of 0.15, has two readings in whole millimetres, 5 mm at 3 kN and 7 mm at 6 kN, where
-this program gives 5.6 and 8.1 mm, 12 and 16 % more, and the membrane without friction 5.8 and 8.3 mm; Code_Aster 4.8 and
-7.4 mm. At these heights friction changes the height by less than 0.5 %.
+this program gives 5.6 and 8.1 mm, 12 and 16 % more, and the membrane without friction 5.8 and 8.3 mm; Code_Aster 4.8
+and 7.4 mm. At these heights friction changes the height by less than 0.5 %.
 
 No measured strain is known. Friction keeps the sheet on the pole from stretching, and the place of the largest thinning
 moves outwards.
