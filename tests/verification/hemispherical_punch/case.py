@@ -89,9 +89,9 @@ model A: the displacement of the punch at given forces, without friction, read f
 there within 10 %; at the last two readings the force. Deck `tests/verification/hemispherical_punch/case.dat`.
 """, values, slow=True, after="""
 The published curve is too high at its end: 70 and 75 kN are 4 and 5 % above the membrane, which depends neither on this
-program nor on another. Code_Aster's own run, one layer of linear quadrilaterals, takes 70 kN at 37.05 mm and 75 kN at
-40.6 mm. With a friction of 0.15 the force is 79.2 kN at 40 mm here: a curve with some friction would pass through the
-readings.
+program nor on another. Code_Aster's own run with linear quadrilaterals, as its test file states, takes 70 kN at 37.05 mm
+and 75 kN at 40.6 mm. With a friction of 0.15 the force is 79.2 kN at 40 mm here: a curve with some friction would pass
+through the readings.
 
 Not met: model B, with a friction of 0.15, has two readings in whole millimetres, 5 mm at 3 kN and 7 mm at 6 kN, where
 this program gives 5.6 and 8.1 mm, 12 and 16 % more, and the membrane without friction 5.8 and 8.3 mm; Code_Aster 4.8
