@@ -3,8 +3,8 @@
 #: {"name": "forming_parts", "timeout": 400}
 """Run the parts of input_files with coarse meshes for a short travel; compare their tools with their shape files.
 
-Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, and the ears and
-the height of the round cup's script on a profile that is known.
+Checked besides the end of each run: the holder force of the clamp, the centre of symmetry of the rail, the ears and the
+height of the round cup's script on a profile that is known, and the opening of the split ring's on an arc.
 """
 import math
 import pathlib
@@ -26,6 +26,7 @@ RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
         "square_cup/aluminium.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
         "round_cup/round_cup.dat": ({"divisions": "3 5 1", "pressed": 1, "held": 0.5}, 5550),
         "round_cup_aa6016/round_cup_aa6016.dat": ({"divisions": "3 5 1", "pressed": 1, "held": 0.5}, 10000),
+        "split_ring/split_ring.dat": ({"divisions": "3 5 1", "points": 3, "pressed": 1, "held": 0.5}, 1500),
         "rail/rail.dat": ({"divisions": "10 6 1", "points": 3, "depth": 1}, 20000)}
 
 
@@ -49,7 +50,7 @@ def check_rail(options):
 def check_tools(work):
     """Check that the tools are those of the shape files."""
     shapes = sorted((ROOT / "input_files").glob("*/*.shape"))
-    assert len(shapes) == 19, shapes
+    assert len(shapes) == 22, shapes
     for shape in shapes:
         target = work / f"{shape.stem}.bez"
         subprocess.run([sys.executable, "-m", "dd3", "tool", shape, target], check=True, capture_output=True)
@@ -67,10 +68,21 @@ def check_ears():
     assert math.isclose(round_cup.WALL, (97.46 / 2 + 101.48 / 2) / 2)
 
 
+def check_opening():
+    """Check the end of half a split ring: a quarter whose arc has the radius 20 mm and turns by 85 degrees."""
+    import split_ring
+    radius, angle = 20.0, math.radians(85)
+    direction = np.array([math.cos(angle), math.sin(angle)])
+    fixed, centre = np.array([17.0, 0.0]), np.array([17.0 - radius, 0.0])
+    end = split_ring.end_of_half(centre + radius*direction, direction, fixed)
+    assert np.allclose(end, centre + radius*np.array([math.cos(2*angle), math.sin(2*angle)])), end
+
+
 def main():
     options = parser_of_runs(__doc__).parse_args()
     check_tools(options.work)
     check_ears()
+    check_opening()
     check_runs(Bench(options.program, options.work))
     check_rail(options)
     print("the parts run")

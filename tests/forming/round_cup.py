@@ -103,10 +103,11 @@ def draw(cups, estimates):
 
 
 def row(name, angles, heights, rest):
-    """Return a row of the table of heights."""
-    found = ears(angles, heights)
-    return [name, *(f"{value:.2f}" for value in np.interp(ANGLES, angles, heights)), f"{heights.mean():.2f}",
-            f"{np.ptp(heights):.2f}", str(number(found)), ", ".join(f"{angle:g}" for angle in found), *rest]
+    """Return a row of the table of heights: those at ANGLES and their mean round the cup, to which the ends of the
+    quarter belong by half; range and ears of all angles of the row."""
+    found, at = ears(angles, heights), np.interp(ANGLES, angles, heights)
+    return [name, *(f"{value:.2f}" for value in at), f"{(at[1:] + at[:-1]).mean() / 2:.2f}", f"{np.ptp(heights):.2f}",
+            str(number(found)), ", ".join(f"{angle:g}" for angle in found), *rest]
 
 
 def main():

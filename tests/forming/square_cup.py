@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: []
-"""The square cup of NUMISHEET'93, steel and aluminium, by several meshes and elements: draw-in and thickness.
+"""The square cup of NUMISHEET'93, steel and aluminium, by several meshes and elements: draw-in, force and thickness.
 
     square_cup.py --program build/release/dd3imp --work build/square_cup            make the runs that are missing
     square_cup.py --program build/release/dd3imp --work build/square_cup --write    and put them into docs/reports
 """
 import math
+import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import studies
@@ -23,13 +25,19 @@ ALUMINIUM = DECK.with_name("aluminium.dat")
 SIZE = 75.0  # of the quarter, mm
 TRAVELS = (15.0, 40.0)
 FINE_ALUMINIUM = "aluminium 30 x 30"
+ISOTROPIC = "aluminium 30 x 30, von Mises"
 # Name of the run, elements along a side, through the thickness, element, points.
 RUNS = [("solid_shell 15 x 15", 15, 1, "solid_shell", 5), ("solid_shell 20 x 20", 20, 1, "solid_shell", 5),
         ("solid_shell 30 x 30", 30, 1, "solid_shell", 5), ("solid_shell 45 x 45", 45, 1, "solid_shell", 5),
+        ("solid_shell 60 x 60", 60, 1, "solid_shell", 5),
         ("hex8 30 x 30 x 2", 30, 2, "hex8", 0), ("hex8 30 x 30 x 3", 30, 3, "hex8", 0),
-        ("aluminium 15 x 15", 15, 1, "solid_shell", 5), (FINE_ALUMINIUM, 30, 1, "solid_shell", 5)]
-STEPS = range(5, 41, 5)  # travels of the table of the aluminium sheet, mm
+        ("aluminium 15 x 15", 15, 1, "solid_shell", 5), (FINE_ALUMINIUM, 30, 1, "solid_shell", 5),
+        ("aluminium 45 x 45", 45, 1, "solid_shell", 5), (ISOTROPIC, 30, 1, "solid_shell", 5)]
+STEPS = range(5, 41, 5)  # travels of the tables of the forces and of the aluminium sheet, mm
 PLACES = (20.0, 40.0, 50.0, 60.0, 70.0, 80.0, 100.0)  # along the diagonal of the blank, mm from the centre
+# Draw-in of the aluminium sheet at TRAVELS, mm: DX, DY as one value, DD; repository of DEFORM-3D's documentation,
+# Sheet Forming in DEFORM 3D, Table 1. Its simulation has an isotropic criterion.
+PUBLISHED = {"measured, averages": (5.3, 3.3, 28.5, 15.0), "DEFORM-3D": (5.5, 3.3, 26.9, 15.5)}
 
 
 class Cup:
@@ -47,21 +55,48 @@ class Cup:
         middle = self.fields.points(self.fields.nearest_step(travel)).reshape(*self.shape, 3).mean(axis=2)
         return [SIZE - middle[-1, 0, 0], SIZE - middle[0, -1, 1], math.sqrt(2)*SIZE - math.hypot(*middle[-1, -1, :2])]
 
+    def thicknesses(self, travel):
+        """Return the thickness at the columns of nodes, mm."""
+        values, _ = self.fields.values(self.fields.nearest_step(travel), "thickness")
+        return values.reshape(self.shape).mean(axis=2)
+
     def thickness(self, travel):
         """Return the thickness at the nodes of the diagonal, mm."""
-        values, _ = self.fields.values(self.fields.nearest_step(travel), "thickness")
-        return values.reshape(self.shape).mean(axis=2)[self.diagonal]
+        return self.thicknesses(travel)[self.diagonal]
+
+    def extremes(self, travel):
+        """Return the smallest and the largest thickness of the whole sheet, mm, and their initial places, as texts."""
+        values = self.thicknesses(travel)
+        found = []
+        for index in (values.argmin(), values.argmax()):
+            i, j = np.unravel_index(index, values.shape)
+            found += [f"{values[i, j]:.3f}", f"{SIZE*i/(len(values) - 1):.0f}, {SIZE*j/(len(values) - 1):.0f}"]
+        return found
+
+    def forces(self):
+        """Return the force of the punch on the quarter at STEPS, kN."""
+        history = read_table(self.folder / "history.csv")
+        travel, force = ([float(row[name]) for row in history] for name in ("travel", "punch_fz"))
+        return [abs(interpolate(travel, force, step))/1000 for step in STEPS]
 
 
 def course(cup):
     """Return the rows of a cup's draw: travel, DX, DD, smallest thickness, mm, and punch force, kN."""
-    history = read_table(cup.folder / "history.csv")
-    travel, force = ([float(row[name]) for row in history] for name in ("travel", "punch_fz"))
-    for step in STEPS:
+    for step, force in zip(STEPS, cup.forces()):
         dx, _, dd = cup.draw_in(step)
-        thickness, _ = cup.fields.values(cup.fields.nearest_step(step), "thickness")
-        yield [f"{step}", f"{dx:.2f}", f"{dd:.2f}", f"{thickness.min():.3f}",
-               f"{abs(interpolate(travel, force, step))/1000:.1f}"]
+        yield [f"{step}", f"{dx:.2f}", f"{dd:.2f}", f"{cup.thicknesses(step).min():.3f}", f"{force:.1f}"]
+
+
+def beside_published(cups):
+    """Return the rows of draw-in of the aluminium sheet: values and their differences from the measured ones, %."""
+    measured, *_ = PUBLISHED.values()
+    found = dict(PUBLISHED)
+    for name, cup in cups.items():
+        if name.startswith("aluminium"):
+            early, late = (cup.draw_in(travel) for travel in TRAVELS)
+            found[name.removeprefix("aluminium ")] = ((early[0] + early[1])/2, early[2], (late[0] + late[1])/2, late[2])
+    return [[name, *(f"{value:.1f}" + (f" ({100*(value/exact - 1):+.0f} %)" if values is not measured else "")
+                     for value, exact in zip(values, measured))] for name, values in found.items()]
 
 
 def draw(cups):
@@ -75,40 +110,71 @@ def draw(cups):
     figure.savefig(PICTURE, dpi=110)
 
 
+def deck_of(options, name, settings):
+    """Return the input file of a run; `hex8` has no points through the thickness, ISOTROPIC another criterion."""
+    deck = ALUMINIUM if name.startswith("aluminium") else DECK
+    if name != ISOTROPIC and not name.startswith("hex8"):
+        return deck
+    settings["tools"] = DECK.parent
+    text = deck.read_text(encoding="utf-8").replace("../", f"{DECK.parents[1]}/")
+    if name == ISOTROPIC:
+        line = text[text.index("*INCLUDE"):].split("\n", 1)[0]
+        material = Path(line.split()[1]).read_text(encoding="utf-8")
+        text = text.replace(line, re.sub(r"yield = .*", "yield = von_mises", material))
+    else:
+        text = text.replace("  thickness_points = ${points}\n", "")
+    changed = options.work / f"{name.split(',')[0].replace(' ', '_')}_deck.dat"
+    changed.write_text(text, encoding="utf-8")
+    return changed
+
+
+def runs(options):
+    """Make the runs; return the cups by name."""
+    cups = {}
+    for name, across, layers, element, points in RUNS:
+        settings = {"divisions": f"{across} {across} {layers}", "element": element}
+        if points:
+            settings["points"] = points
+        folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), deck_of(options, name, settings),
+                              settings)
+        if folder:
+            cups[name] = Cup(folder, across, layers)
+    return cups
+
+
+def tables(cups):
+    """Return the tables of the page by name."""
+    end = TRAVELS[-1]
+    found = {
+        "draw-in": studies.table(
+            ["mesh"] + [f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX", "DY", "DD")]
+            + ["increments", "iterations", "seconds"],
+            [[name] + [f"{value:.2f}" for travel in TRAVELS for value in cup.draw_in(travel)]
+             + studies.effort(cup.folder) for name, cup in cups.items()]),
+        "force": studies.table(
+            ["mesh", *(f"{step} mm" for step in STEPS)],
+            [[name, *(f"{force:.2f}" for force in cup.forces())] for name, cup in cups.items()]),
+        "thickness": studies.table(
+            ["mesh", *(f"{place:g}" for place in PLACES), "smallest", "at", "largest", "at"],
+            [[name, *(f"{value:.3f}" for value in np.interp(PLACES, cup.place, cup.thickness(end))), *cup.extremes(end)]
+             for name, cup in cups.items()]),
+        "measured": studies.table(
+            ["", *(f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX, DY", "DD"))],
+            beside_published(cups))}
+    if FINE_ALUMINIUM in cups:
+        found["aluminium"] = studies.table(["travel, mm", "DX, mm", "DD, mm", "smallest thickness, mm",
+                                            "punch force on the quarter, kN"], course(cups[FINE_ALUMINIUM]))
+    return found
+
+
 def main():
     """Make the runs and the tables."""
     options = studies.arguments(__doc__)
-    cups, efforts = {}, {}
-    for name, across, layers, element, points in RUNS:
-        settings = {"divisions": f"{across} {across} {layers}", "element": element}
-        deck = ALUMINIUM if name.startswith("aluminium") else DECK
-        if points:
-            settings["points"] = points
-        else:
-            deck = options.work / "square_cup_hex8.dat"
-            settings["tools"] = DECK.parent
-            text = DECK.read_text(encoding="utf-8").replace("  thickness_points = ${points}\n", "")
-            deck.write_text(text.replace("../", f"{DECK.parents[1]}/"), encoding="utf-8")
-        folder = studies.make(options, name.replace(" ", "_"), deck, settings)
-        if folder:
-            cups[name], efforts[name] = Cup(folder, across, layers), studies.effort(folder)
-    draw_in = studies.table(
-        ["mesh"] + [f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX", "DY", "DD")]
-        + ["increments", "iterations", "seconds"],
-        [[name] + [f"{value:.2f}" for travel in TRAVELS for value in cup.draw_in(travel)] + efforts[name]
-         for name, cup in cups.items()])
-    thickness = studies.table(
-        ["mesh"] + [f"{place:g}" for place in PLACES] + ["smallest", "largest"],
-        [[name] + [f"{value:.3f}" for value in
-                   [*np.interp(PLACES, cup.place, cup.thickness(TRAVELS[-1])), cup.thickness(TRAVELS[-1]).min(),
-                    cup.thickness(TRAVELS[-1]).max()]] for name, cup in cups.items()])
-    tables = {"draw-in": draw_in, "thickness": thickness}
-    if FINE_ALUMINIUM in cups:
-        tables["aluminium"] = studies.table(["travel, mm", "DX, mm", "DD, mm", "smallest thickness, mm",
-                                             "punch force on the quarter, kN"], course(cups[FINE_ALUMINIUM]))
-    print(*tables.values(), sep="\n\n")
+    cups = runs(options)
+    found = tables(cups)
+    print(*found.values(), sep="\n\n")
     if options.write:
-        for name, text in tables.items():
+        for name, text in found.items():
             put_table(REPORT, name, text, [read_job(cup.folder) for cup in cups.values()])
         draw(cups)
     sys.exit(0 if len(cups) == len(RUNS) else 1)

@@ -63,6 +63,37 @@ def hill_ratios():
     return 1 / math.sqrt(f + g), plane, plane * second, 1 / math.sqrt(2 * n)
 
 
+def hill_plane_strain(strain, steps=4000):
+    """Return s11 and s22 over the flow stress by Hill's criterion at a strain along rolling, without transverse strain.
+
+    Plane stress, from the rates with the elastic strains; Runge and Kutta, in the logarithm of the strain.
+    """
+    f, g, h, _ = (HILL[name] for name in "FGHN")
+    modulus = YOUNG / (1 - POISSON**2)
+
+    def size(s1, s2):
+        return math.sqrt(f * s2 * s2 + g * s1 * s1 + h * (s1 - s2) ** 2)
+
+    def rates(state):
+        """Return the derivatives of s11, s22 and plastic strain by the strain."""
+        s1, s2, plastic = state
+        n1, n2 = (g * s1 + h * (s1 - s2)) / size(s1, s2), (f * s2 - h * (s1 - s2)) / size(s1, s2)
+        c1, c2 = modulus * (n1 + POISSON * n2), modulus * (n2 + POISSON * n1)
+        flow = c1 / (n1 * c1 + n2 * c2 + SWIFT[2] * swift(plastic) / (SWIFT[1] + plastic))
+        return modulus - flow * c1, POISSON * modulus - flow * c2, flow
+
+    first = swift(0.0) / (modulus * size(1.0, POISSON))
+    state, step = (modulus * first, POISSON * modulus * first, 0.0), math.log(strain / first) / steps
+    for i in range(steps):
+        stages = []
+        for back in (0.0, 0.5, 0.5, 1.0):
+            here = [value + back * step * stages[-1][j] for j, value in enumerate(state)] if stages else state
+            scale = first * math.exp((i + back) * step)
+            stages.append([scale * rate for rate in rates(here)])
+        state = tuple(value + step / 6 * (a + 2 * b + 2 * c + d) for value, a, b, c, d in zip(state, *stages))
+    return state[0] / swift(state[2]), state[1] / swift(state[2])
+
+
 def stretched_block(stretch, area):
     """Return the axial force of a block of Swift's law that is stretched with its sides held."""
     strain, shear = math.log(stretch), YOUNG / 2 / (1 + POISSON)

@@ -69,10 +69,11 @@ def ratios(bench):
     def ratio(point, stress):
         return float(rows[point][stress]) / float(rows[point]["flow_stress"])
 
-    biaxial, plane, second, shear = exact.hill_ratios()
+    biaxial, _, _, shear = exact.hill_ratios()
+    plane, second = exact.hill_plane_strain(0.3)
     return Outcome([Value("equal biaxial tension", biaxial, ratio("biaxial", "s11"), 1e-6),
                     Value("plane strain along rolling, s11", plane, ratio("plane_strain", "s11"), 1e-5),
-                    Value("plane strain along rolling, s22", second, ratio("plane_strain", "s22"), 1e-3),
+                    Value("plane strain along rolling, s22", second, ratio("plane_strain", "s22"), 1e-4),
                     Value("shear, s12", shear, ratio("shear", "s12"), 1e-6)])
 
 
@@ -80,11 +81,11 @@ def elastic_shear(bench):
     found = run(bench, "point_shear_elastic")
     rows = {(row["point"], int(row["increment"])): row for row in found.history}
     values = []
-    for step in (20, 40, 60, 80):
-        s11, s12 = exact.dienes(step / 20)
-        row = rows["fine", step]
-        values += [Value(f"s11/G at a shear of {step // 20}", s11, float(row["s11"]), 1e-3, absolute=True),
-                   Value(f"s12/G at a shear of {step // 20}", s12, float(row["s12"]), 1e-3, absolute=True)]
+    for shear in (1, 2, 3, 4):
+        s11, s12 = exact.dienes(shear)
+        row = rows["fine", 40 * shear]
+        values += [Value(f"s11/G at a shear of {shear}", s11, float(row["s11"]), 5e-4, absolute=True),
+                   Value(f"s12/G at a shear of {shear}", s12, float(row["s12"]), 5e-4, absolute=True)]
     return Outcome(values)
 
 
@@ -171,19 +172,20 @@ def turning_tools(bench):
     load, radius = 0.2, 10.01
     values = []
     for angle, tension in ((5, load * exact.belt()), (-5, load / exact.belt())):
-        found = run(bench, "driven_cylinder", angle=str(angle))
+        found = run(bench, "driven_cylinder", angle=str(angle), elements="118")
         values += [Value(f"strip on a cylinder turned by {angle} degrees: tension, N", tension, -found.last("left_rx"),
-                         4e-3),
-                   Value(f"its torque, turned by {angle} degrees, N.mm", (load - tension) * radius, found.last("cylinder_torque"),
-                         1.2e-2)]
+                         2e-3),
+                   Value(f"its torque, turned by {angle} degrees, N.mm", (load - tension) * radius,
+                         found.last("cylinder_torque"), 4e-3)]
     radius, path = 20.0, 10.0
     for angle, name in ((-20, "turned back by 20 degrees"), (0, "dragged")):
-        found = run(bench, "rolling_cylinder", angle=str(angle))
+        found = run(bench, "rolling_cylinder", angle=str(angle), r_max="0.25")
         friction = 0.2 * found.last("cylinder_fz")
         slip = path - radius * math.radians(angle)
-        values.append(Value(f"cylinder {name}: friction work, mJ", friction * slip, found.last("friction_work"), 2e-2))
+        values.append(Value(f"cylinder {name}: friction work, mJ", friction * slip, found.last("friction_work"), 1e-2))
         if angle:
-            values.append(Value(f"cylinder {name}: torque, N.mm", friction * radius, found.last("cylinder_torque"), 1e-3))
+            values.append(Value(f"cylinder {name}: torque, N.mm", friction * radius, found.last("cylinder_torque"),
+                                1e-3))
     found = run(bench, "rolling_cylinder", angle=str(math.degrees(path / radius)))
     values.append(Value("it rolls: friction work over that of the dragged one", 0.0,
                         found.last("friction_work") / (friction * path), 1e-3, absolute=True))
@@ -227,14 +229,16 @@ One element, free lateral faces, Swift's law, at 0, 45 and 90 degrees to rolling
 `tests/cases/tension_00`, `tension_45`, `tension_90`; at a point `point_tension`, within 1e-6.
 """, tension),
     Section("V5 Biaxial tension, plane strain and shear by Hill's criterion", """
-Stress over the flow stress at a material point: 1/√(F + G); in plane strain along rolling with s22 = s11 H/(F + H)
-once the elastic strains no longer count (s22 takes longest; here at a strain of 0.3); 1/√(2N). Hill (1948). Deck
+Stress over the flow stress at a material point, Hill (1948): 1/√(F + G) in equal biaxial tension; in plane strain along
+rolling at a strain of 0.3 an integration of the rates with the elastic strains, which s22 = s11 H/(F + H) leaves out
+(0.930716, 0.08 % more: as the flow stress rises, elastic strains go on growing); 1/√(2N) in shear. Deck
 `tests/verification/points.dat`; forces of an element on the whole path in the cases `equibiaxial` and `plane_strain`.
 """, ratios),
     Section("V6 Hypoelastic simple shear", """
-Simple shear to 4 of an elastic material in 80 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ,
-s11 = G (1 - cos γ). The integration by the polar decomposition of each step is of second order: 20 steps give -0.7506,
-10 steps -0.7312 at γ = 4. Case `tests/cases/point_shear_elastic`.
+Simple shear to 4 of an elastic material in 160 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ,
+s11 = G (1 - cos γ). The integration by the polar decomposition of each step is of second order: at γ = 4 the error of
+s11 falls from 0.0155 with 20 steps to 0.0039 with 40, 0.00097 with 80 and 0.00024 with 160. Case
+`tests/cases/point_shear_elastic`.
 """, elastic_shear),
     Section("V7 Simple shear with Prager's back-stress", """
 Almost rigid material without isotropic hardening, back-stress dX = 2/3 c D dt, to a shear of 6. Nagtegaal and de Jong
@@ -274,7 +278,9 @@ radius 20 mm is pressed on an elastic strip and moved by 10 mm: dragged, turned 
 over the radius). Coulomb: torque µ N R, friction work µ N times the slip, none where it rolls. Two such cylinders draw
 an elastic strip in by 30 degrees against a tension F: without slip their torques sum up to F R, and the strip moves by
 R times the angle, less 0.35 %, by which the pressed strip is longer under the rolls, and less the creep in the contact
-layer, which grows with F. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
+layer, which grows with F. The strip on the cylinder has 118 elements; with 59 the tension is off by 0.3 % and the
+torque by 1.0 %. The friction work of a cylinder is that of increments of 0.05 mm; with those of 0.2 mm, a fifth of the
+contact, it is 1.9 % too small. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
 """, turning_tools),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (b), the first 5 mm of the draw. No support holds the sheet

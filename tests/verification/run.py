@@ -41,7 +41,13 @@ input file; expected values are computed by scripts that do not use the program.
 runs all cases and writes this page; without `--slow` the quick ones only, in less than a minute. The tests
 `verification` and `verification_slow` compare the page with the program: each error must be within the tolerance.
 
-Forming tests with measured values are in the reports, such as the [bending test](reports/bending_test.md).
+The numbers are those of a list from which some cases went elsewhere: V3 is in unit tests, V26, V28 and V30 are the
+reports on the [square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the
+[rail](reports/rail.md); V10, V12, V15, V17, V27 and V29 have never been given.
+
+No section compares with an experiment. Measured values stand beside computed ones in the reports on the [split
+ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
+cup](reports/square_cup.md#the-aluminium-sheet).
 
 The times in the studies of refinement are those of one thread of a loaded machine: compare within a table. Unknowns are
 three for each node. The order is that of the error between a mesh and the coarser one above it.

@@ -106,7 +106,8 @@ PAGES = {
         "utils/dev/benchmark.py --program {program} --write docs/reports/speed.md input_files/bending/bending.dat "
         "input_files/bending/fine.dat",
         "tests/benchmark/speed.py --program {program} --increments 2 --write", f"tests/benchmark/peer.py{RUN}")),
-    "square_cup": forming("square_cup", 10),
+    "split_ring": forming("split_ring", 8),
+    "square_cup": forming("square_cup", 15),
 }
 
 

@@ -37,7 +37,8 @@ WIDTHS = (1280, 520)
 TALLEST = 12000  # pixels of a screenshot
 SMALL = (480, 4000)  # size of the copies, at most
 MIRROR = {"bending": "x", "fine": "x", "solid_shell": "x", "square_cup": "x y", "aluminium": "x y", "round_cup": "x y",
-          "round_cup_aa6016": "x y", "draw_bending": "x", "draw_bead": "x", "tray": "x y", "roll_forming": "y"}
+          "round_cup_aa6016": "x y", "split_ring": "x y", "draw_bending": "x", "draw_bead": "x", "tray": "x y",
+          "roll_forming": "y"}
 PROBE = """<script>addEventListener("load", () => {
   const found = {broken: [...document.images].filter(i => !i.naturalWidth).map(i => i.alt),
     images: document.images.length, window: innerWidth,
