@@ -17,6 +17,7 @@ module dd3_element_shell_deform
       cause_inverted, cause_inverted_strain
   use dd3_element_log_strain, only : polar_rotation, rotate_axes, stretch_of_green
   use dd3_element_shell_modes, only : enhance, enhanced_rates, set_modes
+  use dd3_element_shell_plane, only : set_plane_shear
   use dd3_element_shell_strain, only : column_geometry, set_weights, natural_rates, &
       natural_strains
   use dd3_element_shell_work, only : columns_t, n_column, n_general, n_natural, shell_work_t
@@ -45,6 +46,7 @@ contains
     associate (shell => work%shell, n => element%n_point/n_column)
       call column_geometry(work%x_committed, work%x_trial, shell)
       call set_modes(shell, element%stacked)
+      call set_plane_shear(shell)
       call set_weights(work%x_initial, work%x_committed, shell)
       call natural_strains(work%x_committed, work%x_trial, shell)
       call enhance(shell, work%enhanced)
@@ -203,7 +205,8 @@ contains
     do k = 1, 3
       strain(k) = coefficient(3*k - 2) + zeta*(coefficient(3*k - 1) + zeta*coefficient(3*k))
     end do
-    strain(4:6) = coefficient(10:12)
+    strain(4) = coefficient(10)
+    strain(5:6) = coefficient(11:12) + zeta*coefficient(13:14)
   end function natural_at
 
   !> Return the tensor of natural strains, plain components 11 22 33 23 31 12.

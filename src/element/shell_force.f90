@@ -8,7 +8,8 @@ module dd3_element_shell_force
   use dd3_base_kinds, only : inverse_sqrt2, wp
   use dd3_element_shell_modes, only : mode_forces, tilt_operators
   use dd3_element_shell_strain, only : strain_operators
-  use dd3_element_shell_work, only : n_column, n_natural, shell_work_t
+  use dd3_element_shell_work, only : n_column, n_natural, natural_strain, &
+      powers_of, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   implicit none
@@ -38,11 +39,8 @@ contains
           do c = 1, 7
             stress(c) = shell%volume(p)*dot_product(operator(:, c), work%stress(:, p))
           end do
-          do c = 1, 3
-            shell%resultant(3*c - 2:3*c, q) = shell%resultant(3*c - 2:3*c, q) &
-                + [1.0_wp, zeta, zeta*zeta]*stress(c)
-          end do
-          shell%resultant(10:13, q) = shell%resultant(10:13, q) + stress(4:7)
+          shell%resultant(:, q) = shell%resultant(:, q) &
+              + powers_of(zeta)*stress(natural_strain)
         end do
       end do
     end associate

@@ -44,8 +44,8 @@ module dd3_element_shell_modes
   use dd3_linalg_tensor, only : cross
   implicit none
   private
-  public :: set_modes, enhance, enhanced_rates, tilt_operators, natural_resultants, mode_forces, &
-      second_derivatives
+  public :: contravariant_metric, set_modes, enhance, enhanced_rates, tilt_operators, &
+      natural_resultants, mode_forces, second_derivatives
 
   !> Modes of the mid-surface and of the directors along xi, and along eta; and the coefficients of
   !> 1, zeta, zeta^2 in e_11 and in e_22.

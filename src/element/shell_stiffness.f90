@@ -16,7 +16,7 @@ module dd3_element_shell_stiffness
   use dd3_element_shell_modes, only : second_derivatives
   use dd3_element_shell_strain, only : initial_stress
   use dd3_element_shell_work, only : mode_of, mode_shape, n_column, n_general, n_mode, n_natural, &
-      n_parameter, shell_work_t
+      n_parameter, natural_strain, powers_of, shell_work_t
   use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_tensor, only : solve_small
@@ -59,14 +59,15 @@ contains
     !> N mm.
     real(wp), intent(out) :: moduli(n_general, n_general)
 
-    real(wp) :: operator(6, 7), c(6, 6), co(6, 7), point(7, 7), power(3)
-    integer :: i, j, k, l, m, p
+    real(wp) :: operator(6, 7), c(6, 6), co(6, 7), point(7, 7), zeta, factor(n_general), &
+        row(n_general, 7)
+    integer :: i, j, k, m, p
 
     moduli = 0.0_wp
     do k = 1, n
       p = (q - 1)*n + k
-      power = [1.0_wp, element%point(3, p), element%point(3, p)**2]
-      operator = point_operator(work%shell%base(:, :, p), work%shell%normal(:, p), power(2))
+      zeta = element%point(3, p)
+      operator = point_operator(work%shell%base(:, :, p), work%shell%normal(:, p), zeta)
       call material_moduli(work%strain(:, p), work%stress(:, p), work%tangent(:, :, p), c)
       call add_stress_terms(work%stress(:, p), c)
       do j = 1, 7
@@ -80,20 +81,12 @@ contains
               + operator(6, i)*co(6, j)
         end do
       end do
-      do j = 1, 3
-        do l = 1, 3
-          m = 3*(j - 1) + l
-          do i = 1, 3
-            moduli(3*i - 2:3*i, m) = moduli(3*i - 2:3*i, m) + (point(i, j)*power(l))*power
-          end do
-          moduli(10:13, m) = moduli(10:13, m) + power(l)*point(4:7, j)
-        end do
+      factor = powers_of(zeta)
+      do j = 1, 7
+        row(:, j) = factor*point(natural_strain, j)
       end do
-      do j = 4, 7
-        do i = 1, 3
-          moduli(3*i - 2:3*i, 6 + j) = moduli(3*i - 2:3*i, 6 + j) + point(i, j)*power
-        end do
-        moduli(10:13, 6 + j) = moduli(10:13, 6 + j) + point(4:7, j)
+      do m = 1, n_general
+        moduli(:, m) = moduli(:, m) + factor(m)*row(:, natural_strain(m))
       end do
     end do
   end subroutine column_moduli

@@ -14,6 +14,14 @@
 !> the mean director, which does not tilt, if the element is flat in the initial mesh;
 !> `centre_weight` is its weight.
 !>
+!> Directors of different length at the ends of an edge, |d_j| and |d_i|, have a shear besides that
+!> is linear in zeta: 2 e_13 += zeta ((|d_j|^2 - |d_i|^2) - (|D_j|^2 - |D_i|^2))/4, D the committed
+!> ones. In a sheet most of it is relieved, as its sections warp; but without any of it a sheet in
+!> tension would neck within an element at the strain of its largest force, since the mid-surface
+!> is quadratic. With the strain multiplied by a/(4 t), a the length of the element, the difference
+!> of thickness is resisted by G/48 beside E_t - sigma at any length, and by less and less in a mesh
+!> that is refined.
+!>
 !> An element bent to the angle theta then keeps the thickness t in its middle: its directors have
 !> the length t/cos(theta/2), and the strain linear in zeta is 2 tan(theta/2) over the length in
 !> place of theta. In the increment it is multiplied by cos(theta/2)^2, the derivative of one in the
@@ -24,8 +32,9 @@
 module dd3_element_shell_strain
   use dd3_base_kinds, only : wp
   use dd3_element_shell_modes, only : natural_resultants
+  use dd3_element_shell_plane, only : reduce_operators, reduce_resultants, reduce_strains
   use dd3_element_shell_work, only : bending_strain, columns_t, corner, n_column, n_corner, &
-      n_natural, plane_point, shear_of, shell_work_t, thickness_strain
+      n_natural, plane_point, shear_of, shear_slope_of, shell_work_t, thickness_strain
   implicit none
   private
   public :: column_geometry, set_weights, natural_strains, strain_operators, natural_rates, &
@@ -37,6 +46,8 @@ module dd3_element_shell_strain
   integer, parameter :: along(4) = [1, 1, 2, 2], across(4) = [2, 2, 1, 1]
   !> Position of the edges across, -1 or 1.
   real(wp), parameter :: side(4) = [-1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp]
+  !> Length of an edge over the thickness with the whole shear of directors of different length.
+  real(wp), parameter :: whole_shear = 4.0_wp
 
 contains
 
@@ -55,8 +66,8 @@ contains
     call set_columns(shell, mid, director, shell%trial)
   end subroutine column_geometry
 
-  !> Set the weight of the mean director in the mean thickness strain, and the factors of the
-  !> bending strains that belong to it.
+  !> Set the weight of the mean director in the mean thickness strain, the factors of the bending
+  !> strains that belong to it, and those of the shears that are linear in zeta.
   pure subroutine set_weights(x_initial, x_committed, shell)
     !> Positions of the nodes, mm.
     real(wp), intent(in) :: x_initial(3, 8), x_committed(3, 8)
@@ -74,6 +85,10 @@ contains
     end do
     shell%strain_factor(bending_strain) = 1.0_wp - shell%centre_weight &
         *(1.0_wp - [factor, sqrt(factor(1)*factor(2))])
+    do j = 1, 2
+      shell%strain_factor(shear_slope_of(j)) = &
+          sqrt(sum(matmul(mid, corner(j, :))**2)/middle)/whole_shear
+    end do
   end subroutine set_weights
 
   !> Return the weight of the mean director in the mean thickness strain: 1 for an element that is
@@ -117,6 +132,7 @@ contains
       call in_plane_squares(motion, q, strain(:, q))
     end do
     call assumed_strains(mid + 0.5_wp*u, director + 0.5_wp*ud, u, ud, shell, strain)
+    call reduce_strains(shell, strain)
     do q = 1, n_column
       shell%strain(:, q) = [shell%strain_factor*strain(:, q), 0.0_wp]
     end do
@@ -141,6 +157,7 @@ contains
       call in_plane_strains(shell%trial, motion, q, strain(:, q))
     end do
     call assumed_strains(mid, director, u, ud, shell, strain)
+    call reduce_strains(shell, strain)
     do q = 1, n_column
       strain(:, q) = shell%strain_factor*strain(:, q)
     end do
@@ -237,7 +254,7 @@ contains
     type(shell_work_t), intent(in) :: shell
     real(wp), intent(inout) :: strain(n_natural, n_column)
 
-    real(wp) :: sampled(4), excess
+    real(wp) :: sampled(4), sampled_slope(4), excess
     integer :: a, q
 
     do a = 1, n_corner
@@ -249,12 +266,13 @@ contains
       strain(thickness_strain, q) = dot_product(shell%shape(:, q), sampled) &
           + shell%centre_weight*excess
     end do
+    sampled_slope = 0.5_wp*(sampled(edge(2, :)) - sampled(edge(1, :)))
     do a = 1, 4
       sampled(a) = edge_shear(edge(1, a), edge(2, a))
     end do
     do q = 1, n_column
-      strain(shear_of(1), q) = shear_weight(1, q)*sampled(1) + shear_weight(2, q)*sampled(2)
-      strain(shear_of(2), q) = shear_weight(3, q)*sampled(3) + shear_weight(4, q)*sampled(4)
+      strain(shear_of, q) = of_edges(sampled, q)
+      strain(shear_slope_of, q) = of_edges(sampled_slope, q)
     end do
 
   contains
@@ -268,6 +286,17 @@ contains
     end function edge_shear
 
   end subroutine assumed_strains
+
+  !> Return the shears 2 e_13 and 2 e_23 at a column from those in the middle of the edges.
+  pure function of_edges(sampled, q) result(shear)
+    real(wp), intent(in) :: sampled(4)
+    !> Column.
+    integer, intent(in) :: q
+    real(wp) :: shear(2)
+
+    shear = [shear_weight(1, q)*sampled(1) + shear_weight(2, q)*sampled(2), &
+        shear_weight(3, q)*sampled(3) + shear_weight(4, q)*sampled(4)]
+  end function of_edges
 
   !> Return the weight of an edge's shear at a column.
   pure real(wp) function shear_weight(a, q)
@@ -309,6 +338,7 @@ contains
         call to_nodes(row)
       end associate
     end do
+    call reduce_operators(shell)
   end subroutine strain_operators
 
   !> Add the derivatives of a scalar product of a vector with interpolated corner vectors.
@@ -354,6 +384,10 @@ contains
         shear(j - 2:j) = shear(j - 2:j) + normal
         shear(i - 2:i) = shear(i - 2:i) - normal
       end associate
+      associate (slope => row(12 + 1:, shear_slope_of(along(a))))
+        slope(j - 2:j) = slope(j - 2:j) + 0.5_wp*shear_weight(a, q)*director(:, edge(2, a))
+        slope(i - 2:i) = slope(i - 2:i) - 0.5_wp*shear_weight(a, q)*director(:, edge(1, a))
+      end associate
     end do
   end subroutine assumed_operators
 
@@ -385,6 +419,7 @@ contains
 
     weight = 0.25_wp*shell%centre_weight
     force = natural_resultants(shell)
+    call reduce_resultants(shell, force)
     mm = 0.0_wp
     md = 0.0_wp
     dd = 0.0_wp
@@ -410,6 +445,9 @@ contains
             md(j, k) = md(j, k) + t
             md(i, k) = md(i, k) - t
           end do
+          t = 0.5_wp*shear_weight(a, q)*n(shear_slope_of(along(a)))
+          dd(j, j) = dd(j, j) + t
+          dd(i, i) = dd(i, i) - t
         end do
       end associate
     end do

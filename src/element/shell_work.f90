@@ -3,26 +3,31 @@
 !> strains and of the points.
 !>
 !> The element has four columns of integration points, at the 2 x 2 Gauss points of the plane. The
-!> covariant strains of a column are polynomials in zeta, with 12 coefficients that are the same for
+!> covariant strains of a column are polynomials in zeta, with 14 coefficients that are the same for
 !> all its points (Green-Lagrange, shear strains doubled):
 !>   e_11, e_22, 2 e_12 : three coefficients each, of 1, zeta, zeta^2;
-!>   e_33, 2 e_23, 2 e_13 : constant, from the assumed strains.
-!> The 13th is the enhanced thickness strain, times zeta.
+!>   e_33, 2 e_23, 2 e_13 : constant, from the assumed strains;
+!>   2 e_23, 2 e_13 : a second coefficient each, of zeta.
+!> The 15th is the enhanced thickness strain, times zeta.
 module dd3_element_shell_work
   use dd3_base_kinds, only : wp
   implicit none
   private
   public :: columns_t, shell_work_t, new_shell_work
   public :: n_column, n_corner, n_natural, n_general, n_mode, n_parameter, corner, plane_point
-  public :: membrane_strain, bending_strain, thickness_strain, shear_of, mode_of, mode_shape
+  public :: membrane_strain, bending_strain, thickness_strain, shear_of, shear_slope_of, mode_of, &
+      mode_shape, natural_strain, powers_of
 
   !> Number of columns of points, of corners in the plane, and of generalised strains without and
   !> with the enhanced one.
-  integer, parameter :: n_column = 4, n_corner = 4, n_natural = 12, n_general = 13
-  !> Positions of the coefficients of 1 and of zeta in e_11, e_22 and 2 e_12; of e_33; and of the
-  !> shears 2 e_13, 2 e_23 of the edges along xi and eta.
+  integer, parameter :: n_column = 4, n_corner = 4, n_natural = 14, n_general = 15
+  !> Positions of the coefficients of 1 and of zeta in e_11, e_22 and 2 e_12; of e_33; and of those
+  !> of 1 and of zeta in the shears 2 e_13, 2 e_23 of the edges along xi and eta.
   integer, parameter :: membrane_strain(3) = [1, 4, 7], bending_strain(3) = [2, 5, 8], &
-      thickness_strain = 10, shear_of(2) = [12, 11]
+      thickness_strain = 10, shear_of(2) = [12, 11], shear_slope_of(2) = [14, 13]
+  !> Strain to which a coefficient belongs, in the order e_11, e_22, 2 e_12, e_33, 2 e_23, 2 e_13,
+  !> enhanced.
+  integer, parameter :: natural_strain(n_general) = [1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 5, 6, 5, 6, 7]
   !> Number of modes of enhanced strain (thickness, directors along xi and along eta, mid-surface
   !> along xi and along eta), and of their parameters.
   integer, parameter :: n_mode = 5, n_parameter = 11
@@ -59,8 +64,12 @@ module dd3_element_shell_work
     type(columns_t) :: committed, trial
     !> Weight of the mean director in the mean thickness strain, 0 to 1.
     real(wp) :: centre_weight = 0.0_wp
-    !> Factors of the natural strains: below 1 for those linear in zeta where directors differ.
+    !> Factors of the natural strains: below 1 for those linear in zeta where directors differ, and
+    !> a/(4 t) for the shears linear in zeta.
     real(wp) :: strain_factor(n_natural) = 1.0_wp
+    !> Factors of the membrane strains in the parts of their shear that are linear in xi and in eta,
+    !> and the strains to be removed for parts of 1: `(3,2,n_column)`.
+    real(wp) :: shear_part(3, 2, n_column), shear_removed(3, 2, n_column)
     !> Generalised strains: `strain(n_general,n_column)`.
     real(wp) :: strain(n_general, n_column)
     !> Their derivatives in the amounts of the modes of enhanced strain, 1/mm2:
@@ -91,6 +100,15 @@ module dd3_element_shell_work
   end type shell_work_t
 
 contains
+
+  !> Return the powers of zeta of the coefficients; the enhanced strain has its own.
+  pure function powers_of(zeta) result(power)
+    real(wp), intent(in) :: zeta
+    real(wp) :: power(n_general)
+
+    power = [1.0_wp, zeta, zeta*zeta, 1.0_wp, zeta, zeta*zeta, 1.0_wp, zeta, zeta*zeta, 1.0_wp, &
+        1.0_wp, 1.0_wp, zeta, zeta, 1.0_wp]
+  end function powers_of
 
   !> Allocate the workspace and evaluate the shape functions.
   subroutine new_shell_work(self, n_point)
