@@ -15,8 +15,8 @@
 !> d(sigma_t)/du = p_t T - (n.v) N - n (N v)^T.
 !>
 !> Arguments of all procedures: `normal` n; `distance` d, mm; `dnormal` N, symmetric, 1/mm;
-!> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` mu. Results: `force` F, N; `d` D,
-!> N/mm; `e` E.
+!> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` mu. Results: `force` F, N;
+!> `d` D, N/mm; `e` E.
 !> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and
 !> Curnier, Comput. Methods Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer.
 !> Methods Eng. 39 (1996) 165-184.

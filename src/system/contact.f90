@@ -244,7 +244,8 @@ contains
       end if
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           committed%lambda(:, c), no_slip, &
-          candidate_penalty(model, phase, c, hit%normal, no_slip), friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+          candidate_penalty(model, phase, c, hit%normal, no_slip), friction, self%force(:, c), &
+          self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
 
