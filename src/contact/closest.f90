@@ -8,6 +8,7 @@
 !> band beyond smooth edges, so that a node near such an edge does not change patch in every
 !> iteration. A node deeper inside the tool than a given depth, and one where the sheet turns its
 !> face away from the tool, has not come through this part of the surface and is not in contact.
+!> With contact beside the border, kinks of the surface are rounded too.
 !> Source: Wang and Makinouchi, inside-outside contact search, in: Nakamachi, Makinouchi
 !> (eds.), Proc. NUMISHEET (1996); Oliveira, Alves and Menezes, Arch. Comput. Methods Eng. 15
 !> (2008) 113-162.
@@ -16,6 +17,7 @@ module dd3_contact_closest
   use dd3_contact_hit, only : border_t, hit_t, new_hit, projection_location, on_border
   use dd3_contact_global_search, only : apply_limits, edge_margin, query_t, search_all, &
       search_radius, search_tree
+  use dd3_contact_kink, only : round_kink
   use dd3_contact_project, only : project
   use dd3_contact_projection, only : projection_t
   use dd3_contact_surface, only : surface_t, edge_number, edge_parameters
@@ -61,13 +63,26 @@ contains
     type(border_t), intent(in), optional :: border
 
     type(query_t) :: query
-    real(wp) :: moved
 
     query = query_t(x, search_distance, depth, border_t())
     if (present(border)) query%border = border
     if (present(outward)) query%outward = outward
+    call search(surface, query, hint, hit)
+    if (hit%found .and. .not. hit%border .and. query%border%reach > 0.0_wp) &
+        call round_kink(hit, surface, x, query%border)
+  end subroutine find_contact
+
+  !> Search from the last closest point, or the whole surface.
+  pure subroutine search(surface, query, hint, hit)
+    type(surface_t), intent(in) :: surface
+    type(query_t), intent(in) :: query
+    type(hint_t), intent(inout) :: hint
+    type(hit_t), intent(out) :: hit
+
+    real(wp) :: moved
+
     if (.not. hint%due) then
-      moved = sum((x - hint%anchor)**2)
+      moved = sum((query%x - hint%anchor)**2)
       if (hint%patch == 0) then
         if (sqrt(moved) + search_radius(query) < hint%clearance) return
       else if (moved <= (0.5_wp*surface%patch(hint%patch)%shorter_side)**2) then
@@ -76,7 +91,7 @@ contains
       end if
     end if
     call search_globally(surface, query, hint, hit)
-  end subroutine find_contact
+  end subroutine search
 
   !> Search from the last closest point.
   pure subroutine search_locally(surface, query, hint, hit)

@@ -5,17 +5,18 @@
 !>
 !> With the contact force lambda (of the sheet on the tool), the outward unit normal n of the tool,
 !> the gap d, the slip vector w, T = I - n n^T and the penalty p, the augmented forces are
-!> sigma_n = lambda.n + p d and sigma_t = T (lambda + p w). The three states are
+!> sigma_n = lambda.n + p d and sigma_t = T (lambda + p_t w) with p_t = p, or a larger penalty of
+!> its own where a support prescribes the slip. The three states are
 !>     gap    sigma_n > 0                                F = 0
 !>     stick  sigma_n <= 0, |sigma_t| <= -mu sigma_n     F = sigma_n n + sigma_t
 !>     slip   sigma_n <= 0, |sigma_t| >  -mu sigma_n     F = sigma_n (n - mu t)
 !> with t = sigma_t / |sigma_t|. Without friction every node in contact slips. The linearisation is
-!> dF = D du + E dlambda; with N = dn/dx and v = lambda + p w, d(sigma_n)/du = N lambda + p n and
-!> d(sigma_t)/du = p T - (n.v) N - n (N v)^T.
+!> dF = D du + E dlambda; with N = dn/dx and v = lambda + p_t w, d(sigma_n)/du = N lambda + p n and
+!> d(sigma_t)/du = p_t T - (n.v) N - n (N v)^T.
 !>
 !> Arguments of all procedures: `normal` n; `distance` d, mm; `dnormal` N, symmetric, 1/mm;
-!> `lambda`, N; `slip` w, mm; `penalty` p, N/mm; `friction` mu. Results: `force` F, N; `d` D, N/mm;
-!> `e` E.
+!> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` mu. Results: `force` F, N;
+!> `d` D, N/mm; `e` E.
 !> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and
 !> Curnier, Comput. Methods Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer.
 !> Methods Eng. 39 (1996) 165-184.
@@ -57,20 +58,20 @@ contains
   !> Return the status of a node. At zero gap and force it sticks, so that a load can build up.
   pure integer function contact_status(normal, distance, lambda, slip, penalty, friction) &
       result(status)
-    real(wp), intent(in) :: normal(3), distance, lambda(3), slip(3), penalty, friction
+    real(wp), intent(in) :: normal(3), distance, lambda(3), slip(3), penalty(2), friction
 
     real(wp) :: sigma_n, tangential(3), v(3)
 
-    sigma_n = dot_product(lambda, normal) + penalty*distance
-    if (sigma_n > penalty*round_off) then
+    sigma_n = dot_product(lambda, normal) + penalty(1)*distance
+    if (sigma_n > penalty(1)*round_off) then
       status = status_gap
     else if (friction <= 0.0_wp) then
       status = status_slip
     else
-      v = lambda + penalty*slip
+      v = lambda + penalty(2)*slip
       tangential = v - dot_product(normal, v)*normal
       status = status_stick
-      if (norm(tangential) > max(-friction*sigma_n, penalty*round_off)) status = status_slip
+      if (norm(tangential) > max(-friction*sigma_n, penalty(2)*round_off)) status = status_slip
     end if
   end function contact_status
 
@@ -79,7 +80,7 @@ contains
       penalty, friction, force, d, e)
     integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), distance, dnormal(3, 3), lambda(3), slip(3)
-    real(wp), intent(in) :: penalty, friction
+    real(wp), intent(in) :: penalty(2), friction
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
     type(normal_force_t) :: sigma_n
@@ -89,11 +90,11 @@ contains
     d = 0.0_wp
     e = 0.0_wp
     if (status == status_gap) return
-    sigma_n%value = dot_product(lambda, normal) + penalty*distance
-    sigma_n%by_u = matmul(dnormal, lambda) + penalty*normal
+    sigma_n%value = dot_product(lambda, normal) + penalty(1)*distance
+    sigma_n%by_u = matmul(dnormal, lambda) + penalty(1)*normal
     sigma_n%by_lambda = 1.0_wp
-    traction = traction_t(lambda + penalty*slip, penalty, 1.0_wp, &
-        no_direction*(norm(lambda) + penalty*norm(slip)))
+    traction = traction_t(lambda + penalty(2)*slip, penalty(2), 1.0_wp, &
+        no_direction*(norm(lambda) + penalty(2)*norm(slip)))
     call coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
   end subroutine contact_operator_of_status
 

@@ -29,7 +29,8 @@ contains
   !> Evaluate the condensed stiffness; call `shell_stress` and set `work%tangent` first.
   subroutine shell_stiffness(element, work)
     type(element_t), intent(in) :: element
-    !> Sets `stiffness`, `enhanced_gain`, `enhanced_offset`, `condensed_force`, and the forces.
+    !> Sets `stiffness`, `enhanced_gain`, `enhanced_offset`, `condensed_force`, `unfollowed`, and
+    !> the forces.
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: moduli(n_general, n_general), uu(24, 24), aa(n_parameter, n_parameter)
@@ -183,10 +184,11 @@ contains
     !> `au` is transposed.
     real(wp), intent(in) :: ua(24, n_parameter), au(24, n_parameter), aa(n_parameter, n_parameter)
     real(wp), intent(inout) :: uu(24, 24)
-    !> Holds the forces of the parameters; sets gain, offset and condensed force.
+    !> Holds the forces of the parameters; sets gain, offset, condensed and unfollowed forces.
     type(element_work_t), intent(inout) :: work
 
     real(wp) :: matrix(n_parameter, n_parameter), solution(n_parameter, 25), force(24)
+    real(wp) :: square(24)
     logical :: regular
     integer :: b, i
 
@@ -199,7 +201,10 @@ contains
       do i = 1, n_parameter
         uu(:, b) = uu(:, b) - ua(:, i)*solution(i, b)
       end do
+      square(b) = sum(matmul(ua, solution(:, b))**2)
     end do
+    work%unfollowed(:, :, 1) = reshape(square, [3, 8])
+    work%unfollowed(:, :, 2) = reshape(sum(au**2, dim=2), [3, 8])
     force = 0.0_wp
     do i = 1, n_parameter
       force = force + ua(:, i)*solution(i, 25)

@@ -49,6 +49,10 @@ module dd3_element_work
     real(wp), allocatable :: stiffness(:, :, :, :)
     !> Set with the stiffness: `(n_enhanced)`, mm2, and `(n_enhanced,3,n_node)`, mm.
     real(wp), allocatable :: enhanced_offset(:), enhanced_gain(:, :, :)
+    !> Squares of the forces on all nodes, (N/mm)2, and on the enhanced parameters, (N/mm2)2, that a
+    !> unit displacement causes which the parameters do not follow, beside the condensed stiffness,
+    !> `(3,n_node,2)`.
+    real(wp), allocatable :: unfollowed(:, :, :)
     !> Nodal forces, N, that vanish with the enhanced parameters' own: to be subtracted from the
     !> internal forces beside the condensed stiffness, `(3,n_node)`.
     real(wp), allocatable :: condensed_force(:, :)
@@ -97,6 +101,7 @@ contains
       allocate (self%mean_stress_integral(g), self%bulk_integral(g))
       allocate (self%enhanced(m), self%enhanced_force(m), self%enhanced_offset(m), source=0.0_wp)
       allocate (self%enhanced_gain(m, 3, n), self%condensed_force(3, n), source=0.0_wp)
+      allocate (self%unfollowed(3, n, 2), source=0.0_wp)
       if (m > 0) call new_shell_work(self%shell, p)
     end associate
   end subroutine new_element_work

@@ -9,7 +9,7 @@ module dd3_model_phase
   use dd3_model_turn, only : turn_t
   implicit none
   private
-  public :: phase_t, is_normal_held
+  public :: phase_t, is_normal_held, is_slip_prescribed
 
   !> Progress by which two places in a phase differ.
   real(wp), parameter :: step = 1.0e-9_wp
@@ -123,6 +123,21 @@ contains
 
     is_normal_held = norm2(merge(0.0_wp, normal, phase%prescribed(:, node))) <= tangential
   end function is_normal_held
+
+  !> Whether the prescribed displacements of a node make it slip over a tool. A smaller slip is
+  !> round-off of positions and turns.
+  pure logical function is_slip_prescribed(phase, node, normal, slip)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: node
+    !> Of the tool, and displacement of the node relative to it, mm.
+    real(wp), intent(in) :: normal(3), slip(3)
+
+    real(wp), parameter :: least_slip = 1.0e-9_wp
+    real(wp) :: prescribed(3)
+
+    prescribed = merge(slip, 0.0_wp, phase%prescribed(:, node))
+    is_slip_prescribed = norm2(prescribed - dot_product(normal, prescribed)*normal) > least_slip
+  end function is_slip_prescribed
 
   !> Return the factor on displacements and loads at a progress.
   pure real(wp) function factor(self, progress)

@@ -13,7 +13,7 @@ module dd3_system_contact
   use dd3_contact_tool, only : find_on_tool
   use dd3_model_contact_layer, only : border_at, contact_penalty, layer_at
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : is_normal_held, phase_t
+  use dd3_model_phase, only : is_normal_held, is_slip_prescribed, phase_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
@@ -72,7 +72,7 @@ contains
 
     type(hint_t) :: hint(model%n_tool)
     type(hit_t) :: hit
-    real(wp) :: x(3), slip(3), penalty
+    real(wp) :: x(3), slip(3), penalty(2)
     integer :: tool
 
     hint = trial%hint(:, c)
@@ -92,7 +92,7 @@ contains
           call evaluate_layer(self, trial, c, layer_at(model, phase, c), hit, slip, &
               model%tool(tool)%friction)
         else
-          penalty = candidate_penalty(model, phase, c, hit%normal)
+          penalty = candidate_penalty(model, phase, c, hit%normal, slip)
           self%onset(c) = 0.0_wp
           self%distance(c) = hit%distance
           self%status(c) = contact_status(hit%normal, self%distance(c), trial%lambda(:, c), slip, &
@@ -106,16 +106,25 @@ contains
     trial%status(c) = self%status(c)
   end subroutine find_and_evaluate
 
-  !> Return the penalty of a candidate at a point of a tool, N/mm.
-  pure real(wp) function candidate_penalty(model, phase, c, normal) result(penalty)
+  !> Return the penalties of a candidate on gap and slip at a point of a tool, N/mm. The tangential
+  !> force of a candidate whose supports prescribe a slip does not follow from equilibrium, but from
+  !> sigma_t: in every iteration it takes the direction of its last value and the penalty times the
+  !> slip. With the stiffness of the sheet under the candidate the slip outweighs a friction force,
+  !> and the force has the direction of the slip at once.
+  pure function candidate_penalty(model, phase, c, normal, slip) result(penalty)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: c
-    !> Of the tool.
-    real(wp), intent(in) :: normal(3)
+    !> Of the tool, and relative to it, mm.
+    real(wp), intent(in) :: normal(3), slip(3)
+    real(wp) :: penalty(2)
 
     penalty = contact_penalty(model, phase, c)
-    if (is_normal_held(phase, model%contact_node(c), normal)) penalty = held_factor*penalty
+    associate (node => model%contact_node(c))
+      if (is_normal_held(phase, node, normal)) penalty = held_factor*penalty
+      if (is_slip_prescribed(phase, node, normal, slip)) penalty(2) = &
+          max(penalty(2), model%contact_stiffness(c))
+    end associate
   end function candidate_penalty
 
   !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
@@ -233,8 +242,9 @@ contains
         friction = 0.0_wp
       end if
       call contact_operator_of_status(self%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          committed%lambda(:, c), no_slip, candidate_penalty(model, phase, c, hit%normal), &
-          friction, self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+          committed%lambda(:, c), no_slip, &
+          candidate_penalty(model, phase, c, hit%normal, no_slip), friction, self%force(:, c), &
+          self%d(:, :, c), self%e(:, :, c))
     end associate
   end subroutine find_and_predict
 

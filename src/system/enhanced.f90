@@ -22,6 +22,10 @@ module dd3_system_enhanced
     !> Forces to be subtracted from the residual beside the condensed stiffness, `(3, n_node)`, N;
     !> of several ranks each has those on its nodes.
     real(wp), allocatable :: force(:, :)
+    !> Squares of the forces from a displacement that the parameters do not follow, beside the
+    !> condensed stiffness; a force on a parameter counts as in the norm of the residual. `(3,
+    !> n_node)`, (N/mm)2; of several ranks each has those of its elements.
+    real(wp), allocatable :: unfollowed_square(:, :)
   end type enhanced_t
 
 contains
@@ -35,6 +39,7 @@ contains
       allocate (self%residual(m, n), self%offset(m, n), source=0.0_wp)
       allocate (self%gain(m, 3, model%element%n_node, n), source=0.0_wp)
       allocate (self%force(3, model%n_node), source=0.0_wp)
+      allocate (self%unfollowed_square(3, model%n_node), source=0.0_wp)
     end associate
   end subroutine new_enhanced
 
@@ -53,6 +58,8 @@ contains
     do a = 1, model%element%n_node
       associate (node => model%connectivity(a, model%part%element(e)))
         self%force(:, node) = self%force(:, node) + work%condensed_force(:, a)
+        self%unfollowed_square(:, node) = self%unfollowed_square(:, node) &
+            + work%unfollowed(:, a, 1) + (0.5_wp*model%thickness)**2*work%unfollowed(:, a, 2)
       end associate
     end do
   end subroutine store_condensation

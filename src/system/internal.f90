@@ -76,6 +76,7 @@ contains
     if (with_stiffness) then
       call clear(system%matrix)
       system%enhanced%force = 0.0_wp
+      system%enhanced%unfollowed_square = 0.0_wp
     end if
     !$omp parallel num_threads(model%element_threads()) default(shared) &
     !$omp& private(mine, colour, k, e, batch, thread)

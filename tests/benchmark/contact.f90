@@ -92,6 +92,7 @@ contains
   subroutine time_operator()
     type(hint_t) :: hint
     type(hit_t) :: hit
+    real(wp), parameter :: penalty(2) = 1.0e3_wp
     real(wp) :: start, total, force(3), d(3, 3), e(3, 3), lambda(3), slip(3)
     integer :: i, status
 
@@ -101,9 +102,9 @@ contains
     start = wall_time()
     do i = 1, n_query
       lambda = -100.0_wp*hit%normal + [0.0_wp, 1.0_wp, 1.0e-5_wp*i]
-      status = contact_status(hit%normal, hit%distance, lambda, slip, 1.0e3_wp, 0.144_wp)
+      status = contact_status(hit%normal, hit%distance, lambda, slip, penalty, 0.144_wp)
       call contact_operator_of_status(status, hit%normal, hit%distance, hit%dnormal, lambda, &
-          slip, 1.0e3_wp, 0.144_wp, force, d, e)
+          slip, penalty, 0.144_wp, force, d, e)
       total = total + force(1) + d(1, 2) + e(2, 3)
     end do
     call report("operator", wall_time() - start, n_query, total)
