@@ -57,8 +57,7 @@ is_checkout() {
   [ -e .git ] && git rev-parse --git-dir >/dev/null 2>&1
 }
 
-# Runs the part of the slow tests whose turn it is, by the hash of the commit, part_0 without git; case_file.py makes the
-# parts.
+# Runs the part of the slow tests that the hash of the commit chooses, part_0 without git; case_file.py makes the parts.
 run_slow_part() {
   local parts part commit
   parts=$(ctest --preset slow --print-labels | grep -c '^  part_')
