@@ -30,7 +30,7 @@ A case is a deck that says in comment lines what is expected (case_file.py), or 
                 none after an exit code of 1 or 2
     variants    lists of further arguments: the case is run once for each, and each must pass; or objects with
                 `arguments` and keys that replace those of the case, such as a reference of their own
-    labels      CTest labels, a list; `slow` excludes the case from the daily run, `debug` adds it to the debug build
+    labels      CTest labels, a list; with `slow` the case runs for some commits only, `debug` adds it to the debug build
     timeout     seconds of one run, default 300
     cost        seconds of all runs on one processor, of a slow case
 """

@@ -4,8 +4,10 @@
 #
 #   utils/run_tests.sh          the optimised build, the debug build (bounds checks, floating-point traps) and, where
 #                               PETSc is installed, the build for several processes; of the slow tests a part that takes
-#                               ten minutes at most: the parts follow each other from day to day
+#                               ten minutes at most, chosen by the hash of the commit
 #   utils/run_tests.sh --slow   all slow tests
+#
+# A run that leaves files which git shows, or files fort.* anywhere, has a failed test `files_left`.
 #
 # JOBS=<n> sets the number of parallel tests and compilers (default: the number of cores).
 set -uo pipefail
@@ -50,16 +52,44 @@ build() {
   fi
 }
 
-# Runs the part of the slow tests whose turn it is, by the number of the day (UTC); case_file.py makes the parts.
+# Whether the folder is the top of a git checkout, not one inside another.
+is_checkout() {
+  [ -e .git ] && git rev-parse --git-dir >/dev/null 2>&1
+}
+
+# Runs the part of the slow tests that the hash of the commit chooses, part_0 without git; case_file.py makes the parts.
 run_slow_part() {
-  local parts part
+  local parts part commit
   parts=$(ctest --preset slow --print-labels | grep -c '^  part_')
-  part=part_$(($(date +%s) / 86400 % (parts > 0 ? parts : 1)))
-  echo "== slow tests that run today ($part of $parts), and those that do not"
+  commit=$(is_checkout && git rev-parse HEAD) || commit=0
+  part=part_$((16#${commit:0:8} % (parts > 0 ? parts : 1)))
+  echo "== slow tests of the commit ${commit:0:8} ($part of $parts), and those that do not run"
   ctest --preset slow -N -L "^$part\$" | grep ' Test '
   echo "--"
   ctest --preset slow -N -LE "^$part\$" | grep ' Test '
   run_tests slow -L "^$part\$"
+}
+
+# Prints what git shows as changed or new, and the files fort.*, to which Fortran writes a unit without a name and which
+# git ignores.
+list_files() {
+  if is_checkout; then
+    git status --porcelain --untracked-files=all
+  fi
+  find . \( -path ./build -o -path ./.git -o -path ./.venv \) -prune -o -name 'fort.*' -exec cksum {} +
+}
+
+# Counts one test: the list of files has no line that it had not before.
+check_files() {
+  local left
+  left=$(comm -13 <(sort <<<"$files_before") <(list_files | sort))
+  if [ -z "$left" ]; then
+    passed=$((passed + 1))
+    return
+  fi
+  failed=$((failed + 1))
+  echo "== failed: files_left, the run left or changed these files"
+  echo "$left"
 }
 
 finish() {
@@ -68,6 +98,7 @@ finish() {
   exit
 }
 
+files_before=$(list_files)
 utils/install_needed.sh || { failed=1; finish; }
 build release && run_tests release
 build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
@@ -79,4 +110,5 @@ if [ "${1:-}" = --slow ]; then
 else
   run_slow_part
 fi
+check_files
 finish

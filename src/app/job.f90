@@ -23,6 +23,7 @@ module dd3_app_job
   use dd3_linalg_solver_registry, only : solver_names
   use dd3_model_build, only : new_model
   use dd3_model_settings_report, only : contact_report, drawbead_report, limits_report
+  use dd3_model_sheet_element, only : default_report
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
   use dd3_model_tool_report, only : tool_report
@@ -168,8 +169,8 @@ contains
 
     settings = contact_report(model)
     if (this_rank() > 0) return
-    write (output_unit, '(a)', advance="no") echo_case(case)//tool_report(model)//settings// &
-        limits_report(model)//drawbead_report(model)
+    write (output_unit, '(a)', advance="no") echo_case(case)//default_report(case, model)// &
+        tool_report(model)//settings//limits_report(model)//drawbead_report(model)
     if (allocated(start%sheet_report)) &
         write (output_unit, '(a)', advance="no") start%sheet_report
     if (size(case%point) == 0) then

@@ -52,7 +52,8 @@ module dd3_input_case
     real(wp), allocatable :: grading_x(:), grading_y(:), grading_z(:)
     !> Shift of the interior node lines, in mean element lengths.
     real(wp) :: skew = 0.0_wp
-    !> Name of the element type, not yet checked against the element registry.
+    !> Name of the element type, not yet checked against the element registry; empty for the
+    !> default.
     character(len=:), allocatable :: element
     !> Integration points through the thickness of an element with a choice of them.
     integer :: thickness_points = 0
@@ -75,7 +76,8 @@ module dd3_input_case
     character(len=:), allocatable :: name
     !> Path relative to the working directory.
     character(len=:), allocatable :: file
-    !> Name of the element type, not yet checked against the element registry.
+    !> Name of the element type, not yet checked against the element registry; empty for the
+    !> default.
     character(len=:), allocatable :: element
     !> Integration points through the thickness of an element with a choice of them.
     integer :: thickness_points = 0

@@ -42,7 +42,8 @@ contains
           upper=1.0_wp), &
       row("skew", kind_real, "", "0", &
           "interior node lines across y are shifted along x by skew*(lx/nx)*(y/ly - 1/2)"), &
-      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("element", kind_name, "", "-", "element type; dd3imp --help element lists them; "// &
+          "default: solid_shell for one layer, hex8 for more"), &
       row("thickness_points", kind_integer, "", "7", &
           "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
           upper=15.0_wp), &
@@ -55,7 +56,8 @@ contains
     key = [ &
       row("file", kind_text, "", "", "mesh of hexahedra as an Abaqus or CalculiX .inp file; "// &
           "dd3 mesh makes one of other formats"), &
-      row("element", kind_name, "", "hex8", "element type; dd3imp --help element lists them"), &
+      row("element", kind_name, "", "-", "element type; dd3imp --help element lists them; "// &
+          "default: solid_shell for one layer, hex8 for more"), &
       row("thickness_points", kind_integer, "", "7", &
           "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
           upper=15.0_wp), &

@@ -40,7 +40,7 @@ contains
     if (inp%errors%count == 0 .and. inp%n_element_node /= size(natural, 2)) then
       call errors%push_input(spec%source%at("element"), "the elements of '"//spec%file// &
           "' are of type "//trim(inp%element_type)//" and have "//to_text(inp%n_element_node)// &
-          " nodes; element = "//spec%element//" has "//to_text(size(natural, 2)), &
+          " nodes; "//element_of(spec)//" has "//to_text(size(natural, 2)), &
           "an element with "//to_text(inp%n_element_node)//" nodes", code="E147")
       return
     end if
@@ -53,6 +53,15 @@ contains
     call add_faces(mesh, spec, natural, errors)
     if (spec%source%valid) call set_materials(mesh, inp, spec, errors)
   end subroutine new_inp_mesh
+
+  !> Return the element of a mesh in words.
+  function element_of(spec) result(text)
+    type(mesh_spec_t), intent(in) :: spec
+    character(len=:), allocatable :: text
+
+    text = "the default of `element`"
+    if (spec%element /= "") text = "element = "//spec%element
+  end function element_of
 
   !> Replace the labels by numbers in the order of the file, in elements and sets.
   subroutine resolve(mesh, inp, node)

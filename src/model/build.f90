@@ -4,15 +4,13 @@
 module dd3_model_build
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : n_ranks
-  use dd3_base_error, only : error_list_t, error_t, location_t
+  use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : same_name, text_buffer_t, to_text
   use dd3_contact_closest, only : hit_t
   use dd3_contact_placement, only : placement_t
   use dd3_element_kinematics, only : element_gradients
-  use dd3_element_registry, only : element_names, new_element
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
-  use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t
   use dd3_input_known_name, only : check_known_name
   use dd3_linalg_solver_registry, only : missing_package, solver_names
@@ -32,6 +30,7 @@ module dd3_model_build
   use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
       rigid_motion_t
   use dd3_model_rim, only : set_rim
+  use dd3_model_sheet_element, only : set_element, set_element_of_mesh
   use dd3_model_sheet_faces, only : new_sheet_faces
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
@@ -127,8 +126,8 @@ contains
   subroutine new_sheet(sheet, model, case, errors)
     !> The sheet of another run on entry, if the case starts from one.
     type(sheet_t), intent(inout) :: sheet
-    !> With its element and its materials.
-    type(model_t), intent(in) :: model
+    !> With its materials and, but for the default of a mesh from a file, its element.
+    type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
@@ -140,6 +139,7 @@ contains
       call match_materials(sheet, model, case, errors)
     else
       call new_mesh(mesh, case, model%element%node, errors)
+      if (errors%count == 0) call set_element_of_mesh(model, case, mesh, errors)
       if (errors%count == 0) call new_flat_sheet(sheet, mesh)
     end if
     do i = 1, size(case%trim)
@@ -181,55 +181,6 @@ contains
     end do
     if (errors%count == 0) sheet%mesh%material = position(sheet%mesh%material)
   end subroutine match_materials
-
-  !> Set the element's table, or report a name that is not in the registry.
-  subroutine set_element(model, case, sheet, errors)
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    !> The sheet of another run, if the case starts from one.
-    type(sheet_t), intent(in) :: sheet
-    type(error_list_t), intent(inout) :: errors
-
-    type(error_t), allocatable :: error
-    integer :: i
-
-    if (size(case%start) > 0 .and. allocated(sheet%element)) &
-        call new_element(model%element, sheet%element, error, sheet%thickness_points)
-    do i = 1, size(case%blank)
-      associate (blank => case%blank(i))
-        call set_from(blank%source, blank%element, blank%thickness_points)
-      end associate
-    end do
-    do i = 1, size(case%mesh)
-      associate (mesh => case%mesh(i))
-        call set_from(mesh%source, mesh%element, mesh%thickness_points)
-      end associate
-    end do
-
-  contains
-
-    subroutine set_from(block, element, thickness_points)
-      type(block_t), intent(in) :: block
-      character(len=*), intent(in) :: element
-      integer, intent(in) :: thickness_points
-
-      type(error_t), allocatable :: error
-      character(len=16), allocatable :: name(:)
-      integer :: position
-
-      if (.not. block%has("element")) return
-      name = element_names()
-      call check_known_name(element, block%at("element"), "element type", name, position, errors)
-      if (position == 0 .or. .not. block%has("thickness_points")) return
-      call new_element(model%element, name(position), error, thickness_points)
-      if (.not. block%given("thickness_points")) return
-      if (model%element%n_thickness_point == 0) call errors%push_input( &
-          block%at("thickness_points"), "element type '"//trim(name(position))// &
-          "' has a fixed number of points through the thickness", &
-          "this key only with an element that has a choice: solid_shell", code="E148")
-    end subroutine set_from
-
-  end subroutine set_element
 
   !> Report a linear solver that is not in the registry or not in this build, and one that cannot
   !> keep its factors on the disk.

@@ -39,6 +39,7 @@ TOLERANCE = 0.008
 DECK = """*BLANK strip
   size = {length} 1 {thickness}
   divisions = {elements} 1 {layers}
+  element = hex8
   material = steel
 *MATERIAL steel
   young = {young}

@@ -5,6 +5,7 @@
 
   tutorial.py --program build/release/dd3imp --work build/tutorial [--write]
 
+Words are the same; a number differs by two of its last digit at most, which other processors and libraries may change.
 --write copies the pictures into docs/images.
 """
 import pathlib
@@ -18,6 +19,8 @@ from dd3.programs import parser_of_runs
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "tutorial.md"
 IMAGES = ROOT / "docs" / "images"
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+LAST_DIGITS = 2.1  # with the round-off of the comparison
 
 
 def commands():
@@ -29,6 +32,18 @@ def commands():
         elif not line.startswith("source "):
             found.append((line, []))
     return found
+
+
+def shows(printed, text):
+    """Whether an output contains the words of a text and, within the last digits, its numbers."""
+    numbers = NUMBER.findall(text)
+    pattern = "(" + NUMBER.pattern + ")"
+    for found in re.findall(pattern.join(map(re.escape, NUMBER.split(text))), printed):
+        values = [found] if isinstance(found, str) else found
+        if all(abs(float(value) - float(number)) < LAST_DIGITS * 10.0**-len(number.partition(".")[2])
+               for value, number in zip(values, numbers)):
+            return True
+    return False
 
 
 def main():
@@ -49,7 +64,7 @@ def main():
         if words[0].endswith(".py"):
             words.insert(0, sys.executable)
         done = subprocess.run(words, cwd=work, capture_output=True, text=True, check=False)
-        missing = [text for text in texts if text not in done.stdout]
+        missing = [text for text in texts if not shows(done.stdout, text)]
         if done.returncode or missing:
             failed += 1
             print(f"{command}\nexit code {done.returncode}; not printed: {missing}\n{done.stdout[-2000:]}{done.stderr}")

@@ -93,7 +93,8 @@ def with_mesh(deck, file, sets):
     start = text.index("*BLANK")
     end = text.index("*", start + 1)
     material = re.search(r"material = (\w+)", text[start:end])[1]
-    block = f'*MESH sheet\n  file = "{file}"\n  material = {material}\n'
+    element = re.search(r"element = (\w+)", text[start:end])
+    block = f'*MESH sheet\n  file = "{file}"\n  material = {material}\n' + (f"  {element[0]}\n" if element else "")
     block += "".join(f"*SET {name}\n  {where}\n" for name, where in sets.items())
     return text[:start] + block + text[end:]
 
