@@ -286,14 +286,15 @@ contains
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &
       row("release", kind_other, "", "-", &
-          "tool whose contact is switched off until a later phase names it again", &
+          "tool that is withdrawn from the sheet over the phase, with its contact, and has "// &
+          "none afterwards until a later phase names it again", &
           repeatable=.true., &
           form="tool"), &
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
       row("free", kind_other, "", "-", &
-          "directions that displace has led until now; their reactions fade over the phase, "// &
-          "with springs", &
+          "directions that displace has led until now; their reactions turn with the sheet "// &
+          "and fall linearly over the phase", &
           repeatable=.true., form="set axis..."), &
       row("load", kind_other, "N", "-", "total force on nodes at the end of the phase", &
           repeatable=.true., form="set number number number"), &
@@ -316,8 +317,8 @@ contains
           "pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
           "pairs to 1; default: 1 1", count=0), &
-      row("unload", kind_logical, "", "-", "on: springback. All tools are released; supports "// &
-          "are chosen that stop the rigid motions left free"), &
+      row("unload", kind_logical, "", "-", "on: springback. All tools are withdrawn at the "// &
+          "same time, with contact; supports are chosen that stop the rigid motions left free"), &
       row("until", kind_other, "mm or N", "-", &
           "ends the phase early: displacement or force of a tool in its direction", &
           form="displacement|force tool number"), &

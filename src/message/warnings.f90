@@ -83,9 +83,11 @@ contains
       row("W105", "early end not met", &
           "The phase went to its whole end without meeting its `until`, or beyond its value.", &
           "A larger motion or force in the phase, or another value of `until`."), &
-      row("W106", "yielding while forces of released tools fade", &
-          "The free shape depends on how the forces fade.", &
-          "Withdraw the tools by `move` and compare."), &
+      row("W106", "yielding while forces of lost constraints fade", &
+          "The plastic strain increased in a phase in which nothing acts but fading forces of "// &
+          "lost constraints: the free shape depends on how they fade.", &
+          "Let the run that forms the sheet end with `unload = on`, before the sheet is taken "// &
+          "over; lead nodes back by `displace` before they are freed, and compare."), &
       row("W107", "reactions of chosen supports", &
           "The supports that the program chose carry forces at the end of the unloading: the "// &
           "forces on the sheet are not in equilibrium.", &

@@ -38,6 +38,9 @@ module dd3_model_state
     !> Forces of the nodes on constraints that are lost, supports, draw-beads and those of an earlier
     !> run, which fade over the phase, and those that lay a free sheet down, `(3, n_node)`, N.
     real(wp), allocatable :: fading(:, :), laying(:, :)
+    !> Whether the former turn with the sheet. Those of a sheet that is taken over keep their
+    !> directions, as the tools did from which most of them come.
+    logical :: fading_turns = .true.
     !> Equivalent plastic strain, `(n_point, n_element)`.
     real(wp), allocatable :: plastic_strain(:, :)
     !> Elastic energy, and work of viscous forces until then, mJ.

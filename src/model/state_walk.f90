@@ -146,6 +146,7 @@ contains
         size(start%plastic_strain, 1), size(start%plastic_strain, 2), start%plastic_strain)
     call visitor%one_real("start_elastic_energy", start%elastic_energy)
     call visitor%one_real("start_damping_work", start%damping_work)
+    call visitor%one_logical("start_fading_turns", start%fading_turns)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
 

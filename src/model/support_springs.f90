@@ -11,7 +11,7 @@ module dd3_model_support_springs
   use dd3_model_state, only : state_t
   implicit none
   private
-  public :: add_support_springs, support_stiffness
+  public :: add_support_springs, bending_stiffness, support_stiffness
 
   !> Stiffness over that of the sheet in bending, G V t**2/L**4 with the volume V, the thickness t and
   !> the size L, at the start, and the decades by which it rises until the tools have opened by so

@@ -8,12 +8,15 @@ module dd3_process_damping
   use dd3_element_kinematics, only : point_volumes
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_support_springs, only : bending_stiffness
   implicit none
   private
   public :: damping_coefficients, is_release
 
-  !> Factor on the coefficients from a damped attempt to the next one.
-  real(wp), parameter :: growth = 8.0_wp
+  !> Sum of the coefficients in the first damped attempt over the stiffness of the sheet in bending, and
+  !> the factor from one to the next. A sheet moves in an increment by what the least coefficients
+  !> that converge let it.
+  real(wp), parameter :: first = 1.0e-3_wp, growth = 8.0_wp
 
 contains
 
@@ -26,28 +29,26 @@ contains
     is_release = any(model%phase(state%phase)%withdrawn) .or. any(abs(state%start%fading) > 0.0_wp)
   end function is_release
 
-  !> Return the viscous force of each node over its displacement in the increment, N/mm. In the first
-  !> damped attempt they sum up to E V t**2/L**4, V the volume, t the thickness and L the size of the
-  !> sheet: about the stiffness in bending of the whole sheet.
+  !> Return the viscous force of each node over its displacement in the increment, N/mm, by its
+  !> volume.
   function damping_coefficients(model, attempt) result(coefficient)
     type(model_t), intent(in) :: model
     !> Number of the damped attempt, from 1.
     integer, intent(in) :: attempt
     real(wp) :: coefficient(model%n_node)
 
-    real(wp) :: x(3, model%n_node), volume(model%element%n_point), modulus
+    real(wp) :: x(3, model%n_node), volume(model%element%n_point)
     integer :: e
 
     x = model%start_positions()
-    modulus = growth**(attempt - 1)*model%least_shear()*model%thickness**2 &
-        /maxval(maxval(x, dim=2) - minval(x, dim=2))**4
     coefficient = 0.0_wp
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e))
         call point_volumes(model%element, x(:, nodes), volume)
-        coefficient(nodes) = coefficient(nodes) + modulus*sum(volume)/real(size(nodes), wp)
+        coefficient(nodes) = coefficient(nodes) + sum(volume)/real(size(nodes), wp)
       end associate
     end do
+    coefficient = coefficient/sum(coefficient)*first*growth**(attempt - 1)*bending_stiffness(model)
   end function damping_coefficients
 
 end module dd3_process_damping

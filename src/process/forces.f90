@@ -80,7 +80,9 @@ contains
     type(state_t), intent(in) :: state
     real(wp) :: force(3, model%n_node)
 
-    force = carried_forces(model%fibre_end, state%start%x, state%x, state%start%fading)
+    force = state%start%fading
+    if (state%start%fading_turns) &
+        force = carried_forces(model%fibre_end, state%start%x, state%x, state%start%fading)
   end function carried
 
   !> Return the negative derivative of the fading forces in the progress, behind it, N.

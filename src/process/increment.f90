@@ -35,7 +35,7 @@ contains
     type(state_t), intent(in) :: committed
     type(stepper_t), intent(inout) :: stepper
 
-    stepper%attempt = attempt_t()
+    stepper%attempt = attempt_t(releases=is_release(model, committed))
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt%solver, &
         stepper%attempt%verdict)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
@@ -61,7 +61,7 @@ contains
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
       equilibrium%system%problem%damping = 0.0_wp
-      if (attempt%number > 1 .and. attempt%after_failure .and. is_release(model, committed)) &
+      if (attempt%after_failure .and. attempt%releases) &
           equilibrium%system%problem%damping = damping_coefficients(model, attempt%number - 1)
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress

@@ -71,6 +71,7 @@ contains
       start%pressure_end = phase%pressure_end
       where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
+      start%fading_turns = number > 1
       start%laying = 0.0_wp
       call lay_down(model, state)
       call begin_turns(phase, state)

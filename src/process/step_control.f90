@@ -30,6 +30,8 @@ module dd3_process_step_control
     !> Number of the attempt at this increment, from 1, and whether the one before failed.
     integer :: number = 1
     logical :: after_failure = .false.
+    !> Whether the phase releases the sheet, with steps from a contact layer to a size of the sheet.
+    logical :: releases = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit = limit_t()
     !> Bound by the limiter of contact forces alone; its r is huge if it sets none.
@@ -54,8 +56,12 @@ module dd3_process_step_control
 
   !> Factor on r after a failed attempt, and the smallest r of another one.
   real(wp), parameter :: cutback_factor = 0.5_wp, cutback_min = 1.0e-5_wp
+  !> The latter in a release.
+  real(wp), parameter :: release_min = 1.0e-8_wp
   !> Factor on the bound after an accepted increment, and the value above which it is removed.
   real(wp), parameter :: growth = 1.5_wp, largest_r_cap = 1.0e3_wp
+  !> The former in a release, whose increments fail at a snap, not for their size.
+  real(wp), parameter :: release_growth = 4.0_wp
   !> Largest number of attempts up to which one beyond the early end of the phase is repeated.
   integer, parameter :: most_returns = 10
   !> Smallest increment of the progress of a phase.
@@ -69,7 +75,7 @@ contains
     !> False if r would fall below its minimum.
     logical, intent(out) :: again
 
-    again = attempt%limit%r*cutback_factor >= cutback_min
+    again = attempt%limit%r*cutback_factor >= merge(release_min, cutback_min, attempt%releases)
     if (.not. again) return
     call try_again(attempt, cutback_factor, "cutback")
     attempt%after_failure = .true.
@@ -110,7 +116,8 @@ contains
     type(attempt_t), intent(in) :: attempt
 
     if (attempt%after_failure) state%r_cap = attempt%limit%r
-    if (state%r_cap < huge(1.0_wp)/growth) state%r_cap = growth*state%r_cap
+    if (state%r_cap < huge(1.0_wp)/release_growth) &
+        state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
     if (state%r_cap > largest_r_cap) state%r_cap = huge(1.0_wp)
   end subroutine set_next_r_cap
 

@@ -37,11 +37,12 @@ contains
 
     integer :: a, b
 
-    associate (active => model%phase(state%phase)%active)
+    associate (phase => model%phase(state%phase), active => model%phase(state%phase)%active)
       do a = 1, model%n_tool
         if (.not. active(a)) cycle
-        if (ended) call add("W108", contact_warning(model, state, a))
-        call add("W109", depth_warning(model, state, a))
+        if (ended .and. .not. phase%withdrawn(a)) &
+            call add("W108", contact_warning(model, state, a))
+        if (.not. phase%withdrawn(a)) call add("W109", depth_warning(model, state, a))
         call add("W110", edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (.not. active(b)) cycle

@@ -70,6 +70,7 @@ contains
     real(wp) :: factor, stiffness(3, 3)
     integer :: node, k
 
+    if (.not. state%start%fading_turns) return
     factor = model%phase(state%phase)%fading(state%progress)
     do node = 1, model%n_node
       associate (other => model%fibre_end(node), force => state%start%fading(:, node), &

@@ -5,8 +5,9 @@
 
     run.py --program build/release/dd3imp --work build/operations [--only NAME]
 
-- released: a strip drawn in one run and released in another has the shape of the strip that one run draws and releases,
-  also where it is moved and turned between the two.
+- released: a strip drawn in one run and released in another has the shape of the strip that one run draws and releases
+  but for the friction of the tools that are withdrawn there, within 1 % of the springback; the same where it is moved and
+  turned between the two.
 - cut_wall: the wall of a drawn strip, cut free, curls as it does on the whole strip; its stresses carry no moment.
 - cut_bend: a strip bent to an arc, cut obliquely and released, springs back by M/(E' I).
 - cut_on_sheet: a circle on the middle of the bent strip is cut out normal to it: it is a circle in the blank.
@@ -126,19 +127,23 @@ def released(bench):
     """Compare the release by another run with that of one run."""
     drawn(bench)
     whole = bench.run("whole", forming() + UNLOAD, SETTINGS)
+    expected, first = np.asarray(dd3.open(whole.folder).fields[-1].points), None
+    springback = distance(np.asarray(dd3.open(bench.work / "draw.out").fields[-1].points), expected)
     for name, place in (("released", ""), ("moved", "  turn = 3 0 5  0 1 0  180\n  move = 1 0 3\n")):
         run = bench.run(name, f"*START\n  from = draw.out\n{place}{MATERIAL}{SUPPORTS}{UNLOAD}")
         check("N106" in {message["code"] for message in run.job["notes"]}, f"{name}: no N106")
         found = np.asarray(dd3.open(run.folder).fields[-1].points)
-        expected = np.asarray(dd3.open(whole.folder).fields[-1].points)
-        check_values(Value(f"{name}: distance from the release by one run, mm", 0, distance(found, expected), 1e-4,
+        first = found if first is None else first
+        check_values(Value(f"{name}: distance from the release by one run, mm", 0, distance(found, expected),
+                           0.01 * springback, absolute=True),
+                     Value(f"{name}: distance from the sheet where it was, mm", 0, distance(found, first), 1e-4,
                            absolute=True))
 
 
 def cut_wall(bench):
     """Cut the wall of the drawn strip free, by a plane across its height."""
     drawn(bench)
-    whole = bench.run("whole_wall", forming() + UNLOAD, SETTINGS)
+    whole = bench.run("whole_wall", f"*START\n  from = draw.out\n{MATERIAL}{SUPPORTS}{UNLOAD}")
     deck = ("*START\n  from = draw.out\n" + MATERIAL + SUPPORTS + "*TRIM cut\n"
             "  points = 0 -5 -20.3   0 5 -20.3   0 5 50   0 -5 50\n  along = 1 0 0\n" + UNLOAD)
     cut = bench.run("wall", deck)

@@ -95,7 +95,7 @@ contains
     do step = 1, 3
       if (step > 1) committed = trial
       call random_values(seed, noise)
-      trial%x = committed%x + 0.004_wp*noise
+      trial%x = committed%x + 0.004_wp*min(1.0_wp, model%thickness)*noise
       trial%x(1, :) = trial%x(1, :)*(1.0_wp + 0.004_wp*step)
       trial%x(3, :) = trial%x(3, :) - 0.0005_wp*model%x0(1, :)**2
       call update_material(system, model, committed, trial, .false., verdict)
