@@ -120,7 +120,11 @@ contains
       row("W115", "energy balance that is not closed", &
           "At the end of a forming run `energy_error` is more than 5 % of the work: forces or "// &
           "stresses change too much within the increments.", &
-          "`accuracy = fine` in `*LIMITS`, a smaller `trial`; compare the results.")]
+          "`accuracy = fine` in `*LIMITS`, a smaller `trial`; compare the results."), &
+      row("W116", "sheet that snaps in a release", &
+          "Increments failed without viscous forces, which took more than 0.1 % of the elastic "// &
+          "energy released: the sheet jumped from one equilibrium to another.", &
+          "Compare with tools withdrawn in another order by `move`; a smaller `trial`.")]
   end function run_warnings
 
   !> Return the notes.

@@ -28,10 +28,14 @@ module dd3_process_phase_warnings
   implicit none
   private
   public :: start_notes, end_notes
-  public :: energy_warning, gap_note, press_warning, release_warning, support_warning, until_warning
+  public :: energy_warning, gap_note, press_warning, release_warning, snap_warning
+  public :: support_warning, until_warning
 
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
+
+  !> Work of viscous forces over the elastic energy released that is reported.
+  real(wp), parameter :: notable_damping = 1.0e-3_wp
 
   !> Error of the energy balance over the work of a run that is reported, where the plastic work is
   !> that multiple of the elastic energy: before, the closing of the contact outweighs the forming.
@@ -69,6 +73,7 @@ contains
     if (ended) then
       call notes%add_new("W105", until_warning(model%phase(state%phase), state))
       call notes%add_new("W106", release_warning(model, state))
+      call notes%add_new("W116", snap_warning(model, state, elastic_energy(model, state)))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
       if (state%phase == size(model%phase)) &
@@ -234,6 +239,26 @@ contains
         " increased by "//to_text(increase(e), 3)// &
         " while the forces of lost constraints faded: the free shape depends on how they fade"
   end function release_warning
+
+  !> Return a warning if viscous forces took more than a small fraction of the energy that a release
+  !> sets free: then the sheet has snapped; empty otherwise.
+  function snap_warning(model, state, elastic) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    !> Elastic energy, mJ.
+    real(wp), intent(in) :: elastic
+    character(len=:), allocatable :: text
+
+    real(wp) :: work, released
+
+    text = ""
+    work = state%damping_work - state%start%damping_work
+    released = max(state%start%elastic_energy - elastic, tiny(1.0_wp))
+    if (work > notable_damping*released) text = "in phase '"//model%phase(state%phase)%name// &
+        "' the sheet snapped: viscous forces took "//to_text(work, 3)//" mJ, "// &
+        to_text(100.0_wp*work/released, 2)//" % of the elastic energy released"
+  end function snap_warning
 
   !> Return a warning if the energy balance at the end of a run is far from closed; empty otherwise.
   function energy_warning(state, elastic, error) result(text)
