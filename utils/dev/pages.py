@@ -107,6 +107,7 @@ PAGES = {
         "input_files/bending/fine.dat",
         "tests/benchmark/speed.py --program {program} --increments 2 --write", f"tests/benchmark/peer.py{RUN}")),
     "split_ring": forming("split_ring", 8),
+    "release": Page(10, f"{MECHANICS} input_files", (f"tests/forming/release.py{RUN}",)),
     "square_cup": forming("square_cup", 15),
 }
 
