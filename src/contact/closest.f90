@@ -14,6 +14,7 @@
 !> (2008) 113-162.
 module dd3_contact_closest
   use dd3_base_kinds, only : wp
+  use dd3_contact_border_turn, only : limit_turn
   use dd3_contact_hit, only : border_t, hit_t, new_hit, projection_location, on_border
   use dd3_contact_global_search, only : apply_limits, edge_margin, query_t, search_all, &
       search_radius, search_tree
@@ -68,8 +69,11 @@ contains
     if (present(border)) query%border = border
     if (present(outward)) query%outward = outward
     call search(surface, query, hint, hit)
-    if (hit%found .and. .not. hit%border .and. query%border%reach > 0.0_wp) &
+    if (.not. hit%found) return
+    if (.not. hit%border .and. query%border%reach > 0.0_wp) &
         call round_kink(hit, surface, x, query%border)
+    hit%gap_gradient = hit%normal
+    if (hit%border) call limit_turn(hit, surface%patch(hit%patch), x, query%border%turn)
   end subroutine find_contact
 
   !> Search from the last closest point, or the whole surface.

@@ -110,7 +110,7 @@ contains
   !> Kernel: evaluate status, force of the sheet on the tool, N, and its linearisation
   !> dF = D du + E dlambda.
   pure subroutine compliant_operator(layer, normal, gap, dnormal, lambda, committed, slip, &
-      friction, status, force, d, e)
+      friction, status, force, d, e, gap_gradient)
     type(layer_t), intent(in) :: layer
     !> Outward unit normal of the tool, gap, mm, and gradient of the normal, 1/mm.
     real(wp), intent(in) :: normal(3), gap, dnormal(3, 3)
@@ -120,9 +120,12 @@ contains
     !> On entry a status that is kept if there is contact, or `status_gap` for the law's.
     integer, intent(inout) :: status
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
+    !> Gradient of the gap; the normal by default.
+    real(wp), intent(in), optional :: gap_gradient(3)
 
     type(normal_force_t) :: sigma_n
     type(traction_t) :: traction
+    real(wp) :: gradient(3)
     real(wp) :: line, left, slope, weight, committed_normal, stick, scale, memory
     real(wp) :: tangential(3)
 
@@ -141,8 +144,10 @@ contains
       sigma_n%value = -f*(1.0_wp - left)**2/left
       slope = f/layer%height*(1.0_wp/left**2 - 1.0_wp)
     end associate
+    gradient = normal
+    if (present(gap_gradient)) gradient = gap_gradient
     weight = slope/(slope + layer%scale)
-    sigma_n%by_u = weight*(layer%scale*normal + matmul(dnormal, lambda))
+    sigma_n%by_u = weight*(layer%scale*gradient + matmul(dnormal, lambda))
     sigma_n%by_lambda = weight
     committed_normal = dot_product(committed, normal)
     stick = (layer%reference_force - min(0.0_wp, committed_normal))/layer%height

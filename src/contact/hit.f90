@@ -41,6 +41,8 @@ module dd3_contact_hit
     real(wp) :: radius = 0.0_wp
     !> Gap below which there is contact, mm; none by default.
     real(wp) :: reach = 0.0_wp
+    !> Largest angle by which the normal turns from that of the surface; no limit by default.
+    real(wp) :: turn = huge(1.0_wp)
   end type border_t
 
   !> Closest point of a surface to a node.
@@ -57,8 +59,13 @@ module dd3_contact_hit
     real(wp) :: distance = huge(1.0_wp)
     !> Closest point, mm.
     real(wp) :: point(3) = 0.0_wp
-    !> Outward unit normal.
+    !> Outward unit normal: the direction of the force without friction.
     real(wp) :: normal(3) = 0.0_wp
+    !> Gradient of the gap: the normal, but where the turn of the normal beside the border is
+    !> limited.
+    real(wp) :: gap_gradient(3) = 0.0_wp
+    !> Angle between the normals of the rounded border and of the surface.
+    real(wp) :: turn = 0.0_wp
     !> Gradient of the normal, dn/dx, symmetric, 1/mm.
     real(wp) :: dnormal(3, 3) = 0.0_wp
   end type hit_t

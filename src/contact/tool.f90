@@ -48,6 +48,7 @@ contains
     call find_contact(tool%surface, placement%to_tool(x), hint, search_distance, depth, hit, &
         facing, border)
     hit%normal = placement%vector_to_global(hit%normal)
+    hit%gap_gradient = placement%vector_to_global(hit%gap_gradient)
     hit%dnormal = placement%tensor_to_global(hit%dnormal)
   end subroutine find_on_tool
 

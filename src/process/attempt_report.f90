@@ -135,7 +135,8 @@ contains
 
     text = cause_text(attempt%verdict, tool_name(model, attempt%verdict%tool))
     associate (passage => attempt%passage)
-      if (passage%tool > 0) text = text//"; node "//to_text(passage%node)//" leaves tool "// &
+      if (passage%tool > 0) text = text//"; in the prediction node "// &
+          to_text(passage%node)//" leaves tool "// &
           tool_name(model, passage%tool)//" over the open "//edge_name(passage%patch, passage%edge)
     end associate
   end function reason

@@ -63,6 +63,7 @@ contains
       equilibrium%system%problem%damping = 0.0_wp
       if (attempt%after_failure .and. attempt%releases) &
           equilibrium%system%problem%damping = damping_coefficients(model, attempt%number - 1)
+      equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp

@@ -5,7 +5,7 @@ module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank
   use dd3_base_threads, only : least_nodes, threads_for
-  use dd3_contact_closest, only : hint_t, hit_t
+  use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : compliant_operator, layer_t, rotated
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       round_off, status_gap, status_slip, status_stick
@@ -157,7 +157,8 @@ contains
     self%distance(c) = gap - layer%height
     self%status(c) = status_gap
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%lambda(:, c), committed, &
-        slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+        slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c), &
+        hit%gap_gradient)
   end subroutine evaluate_layer
 
   !> Evaluate the contact of the predictor: the committed state with its stored status (a slipping
@@ -173,6 +174,7 @@ contains
     integer :: c, tool
 
     self%outward = outward_normals(model, committed%x)
+    self%turn_limited = .false.
     self%search_distance = model%tolerance%tool_search
     associate (phase => model%phase(committed%phase))
       touching = .false.
@@ -210,6 +212,7 @@ contains
     hint = committed%hint(:, c)
     self%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     call find_nearest_tool(self, model, committed, committed, c, self%committed_x(:, c), hint, hit)
+    self%committed_turn(c) = hit%turn
     tool = self%tool(c)
     self%status(c) = committed%status(c)
     self%committed_tool(c) = 0
@@ -274,7 +277,7 @@ contains
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%lambda(:, c), &
         committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
-        self%force(:, c), self%d(:, :, c), self%e(:, :, c))
+        self%force(:, c), self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
   end subroutine predict_layer
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
@@ -297,10 +300,13 @@ contains
 
     type(hit_t) :: hit
     type(placement_t) :: placement
+    type(border_t) :: border
     real(wp) :: best, distance, moved(3)
     integer :: t
 
     self%tool(c) = 0
+    border = border_at(model, model%phase(trial%phase), c)
+    if (self%turn_limited) border%turn = self%committed_turn(c)
     best = huge(1.0_wp)
     associate (phase => model%phase(trial%phase))
       do t = 1, model%n_tool
@@ -310,7 +316,7 @@ contains
             self%committed_x(:, c), position)
         call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
             model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
-            self%outward(:, c), border_at(model, phase, c))
+            self%outward(:, c), border)
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis

@@ -28,6 +28,10 @@ module dd3_system_contact_work
     !> `(3, n_contact)`.
     integer, allocatable :: committed_tool(:)
     real(wp), allocatable :: committed_normal(:, :), committed_force(:, :)
+    !> Turn of that normal beside the border of the tool, `(n_contact)`.
+    real(wp), allocatable :: committed_turn(:)
+    !> Whether the normals beside borders turn no farther than that.
+    logical :: turn_limited = .false.
     !> Positions of the points in the committed state, and the part of its turn in the displacement
     !> of the tool's point there per progress of the phase, `(3, n_contact)`, mm.
     real(wp), allocatable :: committed_x(:, :), turning(:, :)
@@ -48,7 +52,8 @@ contains
     allocate (self%committed_tool(n_contact), source=0)
     allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
-    allocate (self%distance(n_contact), self%onset(n_contact), source=0.0_wp)
+    allocate (self%distance(n_contact), self%onset(n_contact), self%committed_turn(n_contact), &
+        source=0.0_wp)
     allocate (self%normal(3, n_contact), self%force(3, n_contact), source=0.0_wp)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
     allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), &
