@@ -48,7 +48,7 @@ contains
     real(wp) :: side(3)
 
     side = sum(outward_normals(model, x), dim=2, mask=spread(model%candidate(tool, :), 1, 3)) &
-        /max(1, count(model%candidate(tool, :)))
+        /real(max(1, count(model%candidate(tool, :))), wp)
     associate (surface => model%tool(tool)%surface)
       if (norm2(side) < no_side) side = model%tool(tool)%position &
           + 0.5_wp*(surface%lower + surface%upper - minval(x, dim=2) - maxval(x, dim=2))

@@ -36,6 +36,8 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     stepper%attempt = attempt_t(releases=is_release(model, committed))
+    stepper%system%problem%damping = 0.0_wp
+    stepper%system%contact%turn_limited = .false.
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt%solver, &
         stepper%attempt%verdict)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
@@ -60,7 +62,6 @@ contains
     associate (prediction => stepper%prediction, attempt => stepper%attempt, &
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
-      equilibrium%system%problem%damping = 0.0_wp
       if (attempt%after_failure .and. attempt%releases) &
           equilibrium%system%problem%damping = damping_coefficients(model, attempt%number - 1)
       equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure

@@ -54,8 +54,8 @@ ACCEPTED = (
      (), ""),
     ("added load set", (("*PHASE back", "*PHASE more\n  control = load\n  trial = 0.5\n  load = other_corner 0 1 0\n\n"
                          "*PHASE back"),), (), ""),
-    ("added phase", (("displace = other_corner z 0", "displace = other_corner z 0\n\n*PHASE last\n  control = load\n"
-                      "  trial = 0.5\n  load = x_max 0 0 1"),), (), ""),
+    ("added phase", (("unload = on", "unload = on\n\n*PHASE last\n  control = load\n  trial = 0.5\n"
+                      "  load = x_max 0 0 1"),), (), ""),
     ("dropped phases", (), (), ""),
 )
 

@@ -34,6 +34,7 @@ from dd3.programs import parser_of_runs
 MOTIONS = """*PHASE turn
   control = load
   trial = 0.2
+  iterations = 30
   release = punch
   release = die
   release = blank_holder
