@@ -4,7 +4,7 @@
 """The release of drawn parts by `unload`, beside tools withdrawn one after another by `move`, with contact and friction.
 
     release.py --program build/release/dd3imp --work build/release_orders            print the table
-    release.py --program build/release/dd3imp --work build/release_orders --write    and put it into docs/reports
+    release.py --program build/release/dd3imp --work build/release_orders
 """
 import pathlib
 import sys
@@ -44,7 +44,7 @@ def deck(name, distance, keys, order):
     text = text.replace('patches = "punch', f'patches = "{path.parent}/punch')
     text = text.replace('patches = "die', f'patches = "{path.parent}/die')
     text = text.replace('patches = "holder', f'patches = "{path.parent}/holder')
-    start, end = text.index("*PHASE springback"), text.index("*OUTPUT")
+    start, end = text.index("*PHASE springback"), text.index("*OUTPUT") if "*OUTPUT" in text else len(text)
     if order is None:
         return text[:start] + text[end:]
     phases = ORDERS[order].format(distance) + LAST

@@ -54,7 +54,7 @@ ACCEPTED = (
      (), ""),
     ("added load set", (("*PHASE back", "*PHASE more\n  control = load\n  trial = 0.5\n  load = other_corner 0 1 0\n\n"
                          "*PHASE back"),), (), ""),
-    ("added phase", (("unload = on", "unload = on\n\n*PHASE last\n  control = load\n  trial = 0.5\n"
+    ("added phase", (("iterations = 30", "iterations = 30\n\n*PHASE last\n  control = load\n  trial = 0.5\n"
                       "  load = x_max 0 0 1"),), (), ""),
     ("dropped phases", (), (), ""),
 )
