@@ -374,7 +374,7 @@ contains
         if (.not. state%touches(tool)) cycle
         bound = min(opening_step*model%thickness, &
             made*norm2(phase%move(:, tool)) + first*max(phase%layer, least_layer)*model%thickness)
-        if (bound < limit%r*motion) limit = limit_t(r=bound/motion, tool=tool)
+        if (bound/motion < limit%r) limit = limit_t(r=bound/motion, tool=tool)
       end do
     end associate
   end function opening_limit
