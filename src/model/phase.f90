@@ -73,8 +73,9 @@ module dd3_model_phase
     !> phase leaves unchanged, `(n_pressure)`.
     real(wp), allocatable :: pressure_end(:)
     logical, allocatable :: keeps_pressure(:)
-    !> Draw-beads that act, and those that did not in the phase before, `(n_bead)`.
-    logical, allocatable :: bead_active(:), bead_new(:)
+    !> Draw-beads that act, those that did not in the phase before, and those that leave with the
+    !> withdrawn tools, `(n_bead)`.
+    logical, allocatable :: bead_active(:), bead_new(:), bead_leaves(:)
     !> Progress and the factor on displacements, motions, loads and pressures there, `(2, n)`; not
     !> allocated if the factor is the progress.
     real(wp), allocatable :: table(:, :)
@@ -108,6 +109,7 @@ module dd3_model_phase
     procedure :: held
     procedure :: fading
     procedure :: fading_rate
+    procedure :: opened
     procedure :: tool_load
     procedure :: tool_load_rate
     procedure :: next_kink
@@ -175,6 +177,15 @@ contains
     if (self%opening > 0.0_wp) &
         fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
   end function fading_rate
+
+  !> Return the largest distance by which the withdrawn tools have moved at a progress, mm.
+  pure real(wp) function opened(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    opened = max(0.0_wp, progress - self%opening)/(1.0_wp - self%opening) &
+        *maxval(norm2(self%move, dim=1), mask=self%withdrawn)
+  end function opened
 
   !> Return the directions that prescribed displacements and chosen supports hold, `(3, n_node)`.
   pure function held(self)

@@ -91,6 +91,7 @@ contains
     allocate (phase%keeps_pressure(size(model%pressure_set)), source=.true.)
     allocate (phase%bead_active(size(model%drawbead)), source=.false.)
     phase%bead_new = phase%bead_active
+    phase%bead_leaves = phase%bead_active
     phase%prescribed = model%fixed
   end subroutine new_idle_phase
 
@@ -266,7 +267,7 @@ contains
   end subroutine set_supports
 
   !> Set which draw-beads act: those of an active tool, and those without a tool as long as the
-  !> sheet is not unloaded.
+  !> sheet is not unloaded. They leave with their tool, those without one with all tools.
   pure subroutine set_drawbeads(model, unloaded, before, phase)
     type(model_t), intent(in) :: model
     logical, intent(in) :: unloaded
@@ -277,11 +278,16 @@ contains
     integer :: b
 
     phase%bead_active = .not. unloaded
+    phase%bead_leaves = spread(unloaded .and. any(phase%withdrawn), 1, size(model%drawbead))
     do b = 1, size(model%drawbead)
       associate (tool => model%drawbead(b)%tool)
-        if (tool > 0) phase%bead_active(b) = phase%acts(tool)
+        if (tool == 0) cycle
+        phase%bead_active(b) = phase%acts(tool)
+        phase%bead_leaves(b) = phase%withdrawn(tool)
       end associate
     end do
+    phase%bead_leaves = phase%bead_leaves .and. before
+    phase%bead_active = phase%bead_active .or. phase%bead_leaves
     phase%bead_new = phase%bead_active .and. .not. before
   end subroutine set_drawbeads
 

@@ -27,10 +27,7 @@ contains
 
     real(wp) :: distance
 
-    associate (phase => model%phase(state%phase))
-      distance = max(0.0_wp, state%progress - phase%opening)/(1.0_wp - phase%opening) &
-          *maxval(norm2(phase%move, dim=1), mask=phase%withdrawn)
-    end associate
+    distance = model%phase(state%phase)%opened(state%progress)
     support_stiffness = soft*10.0_wp**(decades*min(1.0_wp, distance/(opened*model%thickness))) &
         *bending_stiffness(model)
   end function support_stiffness

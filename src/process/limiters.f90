@@ -14,6 +14,7 @@ module dd3_process_limiters
   use dd3_model_state, only : state_t
   use dd3_process_phase_end, only : next_output_progress, until_value
   use dd3_process_step_control, only : limit_t, stepper_t
+  use dd3_system_drawbead, only : presses_by_bead
   implicit none
   private
   public :: limit_increment
@@ -354,8 +355,9 @@ contains
     end associate
   end function gap_limit
 
-  !> Limit the motion of the tools that are withdrawn while they are in contact: the forces of the
-  !> forming end within the height of the contact layers, and the sheet slides over radii later.
+  !> Limit the motion of the tools that are withdrawn while they, or their draw-beads, press: the
+  !> forces of the forming end within the height of the contact layers, and the sheet slides over
+  !> radii later.
   function opening_limit(model, state, stepper) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -371,7 +373,7 @@ contains
         if (.not. phase%withdrawn(tool)) cycle
         motion = norm2(stepper%prediction%step%tool(:, tool))
         if (.not. motion > 0.0_wp) cycle
-        if (.not. state%touches(tool)) cycle
+        if (.not. (state%touches(tool) .or. presses_by_bead(model, state, tool))) cycle
         bound = min(opening_step*model%thickness, &
             made*norm2(phase%move(:, tool)) + first*max(phase%layer, least_layer)*model%thickness)
         if (bound/motion < limit%r) limit = limit_t(r=bound/motion, tool=tool)

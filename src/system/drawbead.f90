@@ -14,9 +14,54 @@ module dd3_system_drawbead
   implicit none
   private
   public :: place_beads, evaluate_beads, add_bead_stiffness, remaining_bead_load, &
-      normal_fraction
+      normal_fraction, presses_by_bead
+
+  !> Openings of the tools, in thicknesses of the sheet, at which a draw-bead has left it, and at
+  !> which its normal force, elastic between the tools, has ended.
+  real(wp), parameter :: height = 5.0_wp, elastic = 0.1_wp
 
 contains
+
+  !> Return the fraction of the restraint with which a draw-bead acts: that of a withdrawn tool has
+  !> left the sheet when the tools have opened by `height` thicknesses.
+  pure real(wp) function grip(model, state, bead)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: bead
+
+    grip = closed(model, state, bead, height)
+  end function grip
+
+  !> Return the fraction that is left of what acts in a bead until the tools have opened by so many
+  !> thicknesses.
+  pure real(wp) function closed(model, state, bead, opening)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: bead
+    real(wp), intent(in) :: opening
+
+    closed = 1.0_wp
+    associate (phase => model%phase(state%phase))
+      if (phase%bead_leaves(bead)) &
+          closed = max(0.0_wp, 1.0_wp - phase%opened(state%progress)/(opening*model%thickness))
+    end associate
+  end function closed
+
+  !> Whether the normal force of a draw-bead of a withdrawn tool still acts.
+  pure logical function presses_by_bead(model, state, tool)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+
+    integer :: b
+
+    presses_by_bead = .false.
+    do b = 1, size(model%drawbead)
+      if (model%drawbead(b)%tool /= tool .or. .not. abs(model%drawbead(b)%normal) > 0.0_wp) cycle
+      if (model%phase(state%phase)%bead_leaves(b)) presses_by_bead = presses_by_bead &
+          .or. closed(model, state, b, elastic) > 0.0_wp
+    end do
+  end function presses_by_bead
 
   !> Find the points of the active beads for the next increment, with the stiffness of slips that
   !> continue.
@@ -33,9 +78,10 @@ contains
     end if
     call find_bead_points(model, model%phase(committed%phase)%bead_active, committed%x, point)
     do p = 1, size(point)
-      associate (i => point(p)%interval)
-        point(p)%stiffness = model%drawbead(point(p)%bead)%sliding_stiffness( &
-            committed%bead_force(i), committed%bead_path(i))
+      associate (i => point(p)%interval, share => grip(model, committed, point(p)%bead))
+        point(p)%stiffness = 0.0_wp
+        if (share > 0.0_wp) point(p)%stiffness = share*model%drawbead(point(p)%bead) &
+            %sliding_stiffness(committed%bead_force(i)/share, committed%bead_path(i))
       end associate
     end do
   end subroutine place_beads
@@ -53,16 +99,22 @@ contains
     integer :: p, b
 
     weight = 0.0_wp
-    fraction = normal_fraction(trial)
+    fraction = normal_fraction(trial)*[(closed(model, trial, b, elastic), b=1, size(fraction))]
     trial%bead_force = 0.0_wp
     trial%bead_path = 0.0_wp
     trial%bead_load = 0.0_wp
     trial%bead_total = 0.0_wp
     trial%bead_restraint = 0.0_wp
     do p = 1, size(point)
-      associate (i => point(p)%interval, bead => model%drawbead(point(p)%bead))
-        call bead%restrain(committed%bead_force(i), committed%bead_path(i), &
-            slip(point(p), bead%tool, committed, trial), force, path, point(p)%stiffness)
+      associate (i => point(p)%interval, bead => model%drawbead(point(p)%bead), &
+          share => grip(model, trial, point(p)%bead))
+        force = 0.0_wp
+        path = committed%bead_path(i)
+        if (share > 0.0_wp) call bead%restrain(committed%bead_force(i)/share, &
+            committed%bead_path(i), slip(point(p), bead%tool, committed, trial), force, path, &
+            point(p)%stiffness)
+        force = share*force
+        point(p)%stiffness = share*point(p)%stiffness
         call add_load(point(p), force, fraction(point(p)%bead)*bead%normal, trial)
         weight(i) = weight(i) + point(p)%weight
         trial%bead_force(i) = trial%bead_force(i) + point(p)%weight*force
@@ -76,7 +128,8 @@ contains
       trial%bead_path = trial%bead_path/weight
     end where
     do b = 1, size(trial%bead_length)
-      trial%bead_length(b) = covered_length(point, b)
+      trial%bead_length(b) = 0.0_wp
+      if (grip(model, trial, b) > 0.0_wp) trial%bead_length(b) = covered_length(point, b)
       if (.not. model%phase(trial%phase)%bead_active(b)) cycle
       associate (bead => model%drawbead(b))
         do p = bead%offset + 1, bead%offset + size(bead%line, 3)

@@ -31,7 +31,7 @@ PARTS = {"draw bending, holder 2.45 kN": ("draw_bending/draw_bending.dat", {}, 9
          "rail, DP600": ("rail/rail.dat", {}, 50, ""),
          "rail, DC06": ("rail/rail.dat", {"material": "dc06"}, 50, "")}
 PUNCH = "*PHASE up\n  control = punch\n  trial = 3\n  move = punch 0 0 {0}\n"
-HOLDER = "*PHASE off\n  control = holder\n  trial = 3\n  move = holder 0 0 {0}\n  hold = punch\n"
+HOLDER = "*PHASE off\n  control = holder\n  trial = 3\n  move = holder 0 0 {0}\n  release = holder\n  hold = punch\n"
 LAST = "*PHASE springback\n  unload = on\n"
 ORDERS = {"`unload`": "", "punch, then holder, die": PUNCH + HOLDER, "holder, then punch, die": HOLDER + PUNCH}
 
