@@ -396,7 +396,7 @@ module dd3_input_case
     real(wp) :: trial = 0.0_wp
     !> Whether all tools are released and supports are chosen where they are missing.
     logical :: unload = .false.
-    !> Tools held, and tools whose contact is switched off.
+    !> Tools held, and tools that are withdrawn.
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.
     type(tool_vector_t), allocatable :: move(:), press(:)

@@ -80,19 +80,10 @@ contains
     end do
     do i = 1, size(phase%release)
       call name_tool(case, phase%release(i)%tool, phase%release(i)%at, released, errors)
-      if (any(phase%press%tool == phase%release(i)%tool)) then
-        call errors%push_input(phase%release(i)%at, &
-            "a tool cannot be pressed and released in the same phase", code="E124")
-      end if
-      if (motion(phase%release(i)%tool) == pressed) motion(phase%release(i)%tool) = held
     end do
-    if (phase%unload) then
-      do i = 1, size(phase%press)
-        call errors%push_input(phase%press(i)%at, "a tool cannot be pressed in a phase with "// &
-            "unload = on, which releases all tools", code="E124")
-      end do
-      where (motion == pressed) motion = held
-    end if
+    released = released .or. phase%unload
+    call check_withdrawn(phase, released, errors)
+    where (released .and. motion == pressed) motion = held
     do i = 1, size(phase%gap)
       call check_other_tool(case, phase%gap(i), motion, phase%gap%tool, errors)
     end do
@@ -101,6 +92,35 @@ contains
       if (motion(i) == moved .and. .not. named(i)) motion(i) = held
     end do
   end subroutine check_actions
+
+  !> Report what a tool that the phase withdraws cannot do: it goes at a constant rate, by `move` if
+  !> that is given.
+  subroutine check_withdrawn(phase, withdrawn, errors)
+    type(phase_spec_t), intent(in) :: phase
+    !> `(n_tool)`.
+    logical, intent(in) :: withdrawn(:)
+    type(error_list_t), intent(inout) :: errors
+
+    character(len=:), allocatable :: released
+    integer :: i
+
+    released = "released"
+    if (phase%unload) released = "released, by unload = on,"
+    do i = 1, size(phase%press)
+      if (withdrawn(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, &
+          "a tool cannot be pressed and "//released//" in the same phase", code="E124")
+    end do
+    do i = 1, size(phase%gap)
+      if (withdrawn(phase%gap(i)%tool)) call errors%push_input(phase%gap(i)%at, &
+          "a tool cannot keep a gap and be "//released//" in the same phase", &
+          "move for the path of a released tool", code="E124")
+    end do
+    do i = 1, size(phase%move)
+      if (withdrawn(phase%move(i)%tool) .and. size(phase%move_table) > 0) &
+          call errors%push_input(phase%move(i)%at, "move_table does not act on a tool that is "// &
+          released//" in the same phase: it is withdrawn at a constant rate", code="E124")
+    end do
+  end subroutine check_withdrawn
 
   !> Mark a tool as named; report it if it was named before.
   subroutine name_tool(case, tool, at, named, errors)

@@ -43,7 +43,7 @@ contains
           "What the message expects."), &
       row("E206", "tool that would return inside the sheet", &
           "A tool that was released is named again while it lies inside the sheet.", &
-          "Withdraw it by `move` before it is released, or name it later.")]
+          "Give its path by `move` in the phase that releases it, or name it later.")]
   end function surroundings
 
   !> Return the failures of elements and of the stress update.

@@ -78,7 +78,7 @@ contains
           "of "// &
           "the phase.", "Supports, or a tool that is in contact from the start."), &
       row("W104", "forces out of equilibrium in an unloading", &
-          "The supports that the program chose carry forces of loads, or of released tools.", &
+          "The supports that the program chose carry forces of loads.", &
           "Remove the loads with the tools, or support the sheet by `*BOUNDARY`."), &
       row("W105", "early end not met", &
           "The phase went to its whole end without meeting its `until`, or beyond its value.", &

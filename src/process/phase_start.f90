@@ -234,7 +234,8 @@ contains
     state%plastic = .false.
   end subroutine release_beads
 
-  !> Turn the contact forces of released tools into fading forces.
+  !> Turn the contact forces of tools that still touched at the end of their withdrawal into fading
+  !> forces.
   subroutine release_contacts(model, phase, state)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
