@@ -5,6 +5,7 @@
 !> the first attempt at each increment has none, so that the snap ends in equilibrium.
 module dd3_process_damping
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_element_kinematics, only : point_volumes
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -13,10 +14,14 @@ module dd3_process_damping
   private
   public :: damping_coefficients, is_release
 
-  !> Sum of the coefficients in the first damped attempt over the stiffness of the sheet in bending, and
-  !> the factor from one to the next. A sheet moves in an increment by what the least coefficients
-  !> that converge let it.
-  real(wp), parameter :: first = 1.0e-3_wp, growth = 8.0_wp
+  !> Least sum of the coefficients, over the stiffness of the sheet in bending: that of the first
+  !> damped attempt.
+  real(wp), parameter :: least = 1.0e-3_wp
+  !> Thicknesses by which the contact forces that are left would move the sheet against the
+  !> coefficients of damped attempt `reached`, and the factor from one attempt to the next behind
+  !> it. A sheet moves in an increment by what the least coefficients that converge let it.
+  real(wp), parameter :: snap = 10.0_wp, growth = 8.0_wp
+  integer, parameter :: reached = 3
 
 contains
 
@@ -31,13 +36,15 @@ contains
 
   !> Return the viscous force of each node over its displacement in the increment, N/mm, by its
   !> volume.
-  function damping_coefficients(model, attempt) result(coefficient)
+  function damping_coefficients(model, state, attempt) result(coefficient)
     type(model_t), intent(in) :: model
+    !> Committed.
+    type(state_t), intent(in) :: state
     !> Number of the damped attempt, from 1.
     integer, intent(in) :: attempt
     real(wp) :: coefficient(model%n_node)
 
-    real(wp) :: x(3, model%n_node), volume(model%element%n_point)
+    real(wp) :: x(3, model%n_node), volume(model%element%n_point), force(1), low, high
     integer :: e
 
     x = model%start_positions()
@@ -48,7 +55,12 @@ contains
         coefficient(nodes) = coefficient(nodes) + sum(volume)/real(size(nodes), wp)
       end associate
     end do
-    coefficient = coefficient/sum(coefficient)*first*growth**(attempt - 1)*bending_stiffness(model)
+    force = sum(norm2(state%lambda, dim=1))
+    call sum_over_ranks(1, force)
+    low = least*bending_stiffness(model)
+    high = max(force(1)/(snap*model%thickness), low*growth**(reached - 1))
+    coefficient = coefficient/sum(coefficient)*growth**max(0, attempt - reached) &
+        *low*(high/low)**(real(min(attempt, reached) - 1, wp)/real(reached - 1, wp))
   end function damping_coefficients
 
 end module dd3_process_damping

@@ -63,7 +63,8 @@ contains
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
       if (attempt%after_failure .and. attempt%releases) &
-          equilibrium%system%problem%damping = damping_coefficients(model, attempt%number - 1)
+          equilibrium%system%problem%damping = damping_coefficients(model, committed, &
+          attempt%number - 1)
       equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
@@ -76,7 +77,7 @@ contains
       call set_loads(model, trial)
       call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)
-      call solve(equilibrium, convergence_tolerance(phase), phase%newton%iterations, &
+      call solve(equilibrium, convergence_tolerance(phase, trial), phase%newton%iterations, &
           phase%newton%line_search, attempt%course)
       call conclude(equilibrium, attempt)
       if (attempt%verdict%outcome /= verdict_converged) attempt%passage = &

@@ -45,6 +45,9 @@ module dd3_process_norm
   !> 0.06 mm elsewhere with 1e-2, 0.01 mm with 1e-3. It bounds the tolerance and does not weigh
   !> the norm, whose value tells the corrector how far from the solution a state is.
   real(wp), parameter :: free_tolerance = 1.0e-5_wp
+  !> The same while the tools are withdrawn and touch the sheet: its shape is not final, and stick and
+  !> slip at the last nodes do not settle to the last digit.
+  real(wp), parameter :: opening_tolerance = 1.0e-3_wp
   !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
   !> sheet at rest all forces are round-off. Larger: smaller forces count as zero.
   real(wp), parameter :: negligible_strain = 1.0e-6_wp
@@ -66,13 +69,18 @@ module dd3_process_norm
 contains
 
   !> Return the value that the scaled norm has to fall below.
-  pure real(wp) function convergence_tolerance(phase) result(tolerance)
+  pure real(wp) function convergence_tolerance(phase, state) result(tolerance)
     type(phase_t), intent(in) :: phase
+    !> Trial state, with whether the tools had opened before.
+    type(state_t), intent(in) :: state
 
     tolerance = phase%newton%tolerance
-    if (phase%unloaded .or. phase%has_gravity .or. &
-        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) &
-        tolerance = min(tolerance, free_tolerance)
+    if (any(phase%withdrawn) .and. .not. state%open .and. state%progress < 1.0_wp) then
+      tolerance = min(tolerance, opening_tolerance)
+    else if (phase%unloaded .or. phase%has_gravity .or. &
+        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) then
+      tolerance = min(tolerance, free_tolerance)
+    end if
   end function convergence_tolerance
 
   !> Evaluate the norm: eq. (19), or the imbalance of a pressed tool if that is larger and the
@@ -94,7 +102,7 @@ contains
     call evaluate_residual(model, trial, system, residual)
     call scale_norm(model, trial, system, step, residual)
     associate (phase => model%phase(trial%phase))
-      if (residual%scaled >= convergence_tolerance(phase)) return
+      if (residual%scaled >= convergence_tolerance(phase, trial)) return
       moved = .false.
       if (balance .and. phase%mixed) call balance_tools(model, committed, trial, system, moved)
     end associate
@@ -157,7 +165,7 @@ contains
       force = agreed(norm_over_ranks(norm2(step%lambda)) + residual%norm)
       scale = agreed(max(norm_over_ranks(norm2(trial%lambda)), norm2(trial%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2))
-      if (force >= convergence_tolerance(phase)*scale) then
+      if (force >= convergence_tolerance(phase, trial)*scale) then
         if (allocated(system%stiffness%value) .and. phase%mixed) then
           square = column_squares(system%stiffness, model%n_node)
         else if (allocated(system%matrix%value)) then
@@ -166,7 +174,7 @@ contains
           square = system%column_square
         end if
         round_off = attainable_residual(square + system%enhanced%unfollowed_square, trial%x)
-        scale = max(scale, round_off/convergence_tolerance(phase))
+        scale = max(scale, round_off/convergence_tolerance(phase, trial))
       end if
     end associate
     residual%scaled = force/scale
