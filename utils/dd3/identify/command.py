@@ -27,12 +27,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from dd3.columns import every
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.identify.criterion import CRITERIA, criterion
 from dd3.identify.hardening import BACKSTRESSES, LAWS, hardening
 from dd3.identify.least_squares import UNIT, NoStart, Points
-from dd3.identify.measurements import KEYS, TENSION, Datum, every, from_argument, read_data
+from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
 from dd3.plot.figures import save
 
 
