@@ -84,7 +84,7 @@ def test_stl_files(tmp_path):
             (text[:text.index("endsolid")].encode(), 2, "cut off: it ends inside solid"),
             (text.replace("endsolid", "end solid").encode(), 0, "2, turned"),
             (text.replace("endsolid", "colour 3\nENDSOLID").encode(), 0, "colour: not a keyword of STL"),
-            ((text + text).encode(), 0, "2 parts"), (text.replace("endloop", "", 1).encode(), 2, "endfacet inside outer"),
+            ((text + text.replace(" 0\n", " 9\n")).encode(), 0, "2 parts"), (text.replace("endloop", "", 1).encode(), 2, "endfacet inside outer"),
             (b"solid of facets".ljust(80) + raw[80:], 0, "448"), (text[:150].encode(), 2, "expected vertex"),
             (text[:text.index("endloop")].encode(), 2, "cut off"),
             (text.replace("20 0 0", "20 zero 0", 1).encode(), 2, "expected vertex x y z"),

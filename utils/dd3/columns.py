@@ -127,7 +127,8 @@ def read_columns(path: str | Path, columns: Sequence[Column], account: Account) 
     the only ones."""
     lines = lines_of(path)
     separator = separator_of(lines)
-    both = [(line, row) for line in lines for row in [line.cells(separator)] if any(text for text, _ in row)]
+    both = [(line, row) for line in lines for row in [line.cells(separator if separator in line.text else " ")]
+            if any(text for text, _ in row)]
     lines, cells = [line for line, _ in both], [row for _, row in both]
     names, places = named(lines, cells, columns)
     first = next((i for i in range(names + 1, len(lines)) if is_data(cells[i], places)), len(lines))
@@ -146,8 +147,10 @@ def read_columns(path: str | Path, columns: Sequence[Column], account: Account) 
 
 def separator_of(lines: Sequence[Line]) -> str:
     """Return the separator of the rows of numbers."""
-    bare = [re.sub(r"\"[^\"]*\"|'[^']*'", "q", text.strip()) for line in lines
-            if re.match(r"[\s;,]*[\"']?[-+.,]?\d", text := line.text.partition("#")[0])]
+    texts = [line.text.partition("#")[0] for line in lines]
+    rows = [text for text in texts if re.match(r"[\s;,]*[\"']?[-+.,]?\d", text)] or [
+        text for text in texts if re.search(r"[\s;,\"'][-+.,]?\d", text)]
+    bare = [re.sub(r"\"[^\"]*\"|'[^']*'", "q", text.strip()) for text in rows]
     if 2 * sum(";" in text for text in bare) > len(bare):
         return ";"
     if bare and all("\t" in text for text in bare) and not any(re.search(r",\s*\t|\t\s*,", text) for text in bare):
