@@ -19,6 +19,7 @@ from dd3.command import new_parser
 from dd3.dxf import pieces_of_dxf
 from dd3.errors import Problem
 from dd3.gmsh_session import session
+from dd3.tools.cad import refuse_cut
 from dd3.tools.cad_account import enter_cad
 
 MOST = 4096  # pieces of an edge
@@ -27,6 +28,7 @@ JOIN = 1e-4  # largest gap between ends that are joined, over the size of all cu
 
 def pieces_of_cad(path: Path, chord: float, account: Account) -> list[np.ndarray]:
     """Return the free edges of the faces of a CAD file as points, or all its edges if it has no faces."""
+    refuse_cut(path)
     with session(path) as gmsh:
         gmsh.model.occ.synchronize()
         enter_cad(path, account, len(gmsh.model.getEntities(2)))

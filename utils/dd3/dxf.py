@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reader of the curves of DXF files: lines, arcs, polylines and splines, of inserted blocks too."""
+import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +15,7 @@ from dd3.errors import Problem
 CURVES = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE", "HELIX")
 SEGMENTS = 16  # cubic pieces of a quarter of a circle at least: 1e-7 of its radius from it
 DEEPEST, MOST = 32, 100_000  # blocks inside blocks; pieces of a file
+LARGEST, FINEST = 1e9, 1e-8  # coordinate; chord over the size of a curve
 CLOSED = 1  # flag of a spline
 SAME = 1e-9  # distance of equal points over the size of their curve
 NOT_A_CURVE = "not a curve that is read: " + ", ".join(CURVES)
@@ -51,7 +53,7 @@ class Drawing:
 def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled, account: Account) -> list[np.ndarray]:
     """Return the curves of a DXF file, in mm, as points; `sampled` makes points of a function of a parameter."""
     from ezdxf import units
-    document = opened(path)
+    document = opened(path, account)
     try:
         unit = units.InsertUnits(document.units)
         scale = units.conversion_factor(unit, units.InsertUnits.Millimeters) if document.units else 1.0
@@ -73,15 +75,32 @@ def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled,
     return [scale * piece for piece in drawing.pieces]
 
 
-def opened(path: Path) -> Any:
+class Remarks(logging.Handler):
+    """What ezdxf remarks on a file, such as content that it ignores, as entries that are left out."""
+
+    def __init__(self, path: Path, account: Account) -> None:
+        super().__init__(logging.WARNING)
+        self.path, self.account = path, account
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Enter a remark."""
+        self.account.enter(str(self.path), "structure").leave(record.getMessage().strip())
+
+
+def opened(path: Path, account: Account) -> Any:
     """Return the document of a file."""
     import ezdxf
+    remarks, log = Remarks(path, account), logging.getLogger("ezdxf")
+    log.addHandler(remarks)
+    log.propagate = False
     try:
         return ezdxf.readfile(path)
     except OSError as error:
         raise Problem(f"{path}: {error.strerror or error}") from None
     except Exception as error:  # many kinds
         raise Problem(f"{path}: not a DXF file, or a damaged one: {error}") from None
+    finally:
+        log.removeHandler(remarks)
 
 
 def lines_of(path: Path) -> dict[str, int]:
@@ -93,7 +112,7 @@ def lines_of(path: Path) -> dict[str, int]:
     found, start = {}, 0
     for i in range(0, len(lines) - 1, 2):
         if lines[i] == "0":
-            start = i + 1
+            start = i + 2
         elif lines[i] == "5":
             found.setdefault(lines[i + 1], start)
     return found
@@ -177,13 +196,15 @@ def points_of(drawing: Drawing, entity: Any, matrix: Any, entry: Entry) -> Itera
     except TypeError:  # a POLYLINE that is a mesh
         return
     for part in (line if matrix is None else line.transform(matrix)).sub_paths():
-        yield finite(entry, np.array([tuple(point) for point in part.flattening(drawing.chord)]))
+        control = finite(entry, np.array([tuple(point) for point in part.control_vertices()]))
+        fine = FINEST * float(np.ptp(control, axis=0).max())
+        yield np.array([tuple(point) for point in part.flattening(max(drawing.chord, fine))])
 
 
 def finite(entry: Entry, points: np.ndarray) -> np.ndarray:
-    """Return points if their coordinates are numbers."""
-    if not np.isfinite(points).all():
-        raise Problem(f"{entry.place}: error: {entry.name} has coordinates that are no numbers")
+    """Return points if their coordinates are numbers in a usable range."""
+    if not (abs(points) <= LARGEST).all():
+        raise Problem(f"{entry.place}: error: {entry.name} has coordinates that are no numbers, or above {LARGEST:g}")
     return points
 
 

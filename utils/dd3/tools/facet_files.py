@@ -350,8 +350,9 @@ def read_msh(path: Path) -> Facets:
             if len(groups):
                 name = gmsh.model.getPhysicalName(dimension, groups[0]) or str(groups[0])
             for group in groups[1:]:
-                account.enter(str(path), f"group {gmsh.model.getPhysicalName(dimension, group) or group} of face {entity}"
-                              ).leave(f"the part of the face is its first group, {name}")
+                title = gmsh.model.getPhysicalName(dimension, group) or group
+                account.enter(str(path), f"group {title} of face {entity}").leave(
+                    f"the part of the face is its first group, {name}")
             for kind, _, members in zip(*gmsh.model.mesh.getElements(dimension, entity)):
                 title, _, _, count, _, corners = gmsh.model.mesh.getElementProperties(kind)
                 if corners not in ((3, 4) if dimension == 2 else SOLIDS):
@@ -366,8 +367,8 @@ def read_msh(path: Path) -> Facets:
 
 
 # Sections of a Gmsh mesh that are read.
-MSH_SECTIONS = {b"MeshFormat", b"PhysicalNames", b"Entities", b"PartitionedEntities", b"Nodes", b"Elements", b"NOD", b"ELM",
-                b"Comments"}
+MSH_SECTIONS = {b"MeshFormat", b"PhysicalNames", b"Entities", b"PartitionedEntities", b"Nodes", b"Elements", b"NOD",
+                b"ELM", b"Comments"}
 
 
 def enter_sections(path: Path, account: Account) -> None:
@@ -434,22 +435,36 @@ def enter_data(path: Path, data: Any, account: Account, fields: bool) -> None:
             account.enter(str(path), f"{count} {name}").leave("no facets")
 
 
+PLY_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2,
+             "double": 8, "float64": 8}
+
+
 def enter_ply(path: Path, account: Account) -> int | None:
-    """Enter the elements and properties that the head of a PLY file lists; return the number of its faces."""
-    element, faces = "", None
-    head = path.read_bytes()[:65536].partition(b"end_header")[0].decode("latin-1").splitlines()
-    for number, line in enumerate(head, 1):
+    """Enter the elements and properties that the head of a PLY file lists; return the number of its faces. A file whose
+    body is too short for its head is refused."""
+    head, _, body = path.read_bytes().partition(b"end_header")
+    element, faces, count, rows, least, text = "", None, 0, 0, 0, True
+    for number, line in enumerate(head.decode("latin-1").splitlines(), 1):
         words = line.split()
-        if words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
+        if words[:1] == ["format"]:
+            text = words[1:2] == ["ascii"]
+        elif words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
             element, count = words[1], int(words[2])
+            rows += count
             entry = account.enter(f"{path}:{number}", f"element {element}, {count}")
             faces = count if element == "face" else faces
             if element in ("vertex", "face"):
                 entry.use()
-        elif words[:1] == ["property"] and element in ("vertex", "face"):
-            entry = account.enter(f"{path}:{number}", f"property {words[-1]} of element {element}")
-            if words[-1] in (("x", "y", "z") if element == "vertex" else ("vertex_indices", "vertex_index")):
-                entry.use()
+        elif words[:1] == ["property"] and len(words) > 2:
+            least += count * PLY_SIZES.get(words[1], 1 if words[1] == "list" else 4)
+            if element in ("vertex", "face"):
+                entry = account.enter(f"{path}:{number}", f"property {words[-1]} of element {element}")
+                if words[-1] in (("x", "y", "z") if element == "vertex" else ("vertex_indices", "vertex_index")):
+                    entry.use()
+    there = sum(bool(line.strip()) for line in body.splitlines()) if text else len(body)
+    if there < (rows if text else least):
+        raise Problem(f"{path}: the file is cut off: {there} of {rows} lines behind its head" if text else
+                      f"{path}: the file is cut off: {there} bytes behind its head, which needs {least} or more")
     return faces
 
 
