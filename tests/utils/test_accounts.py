@@ -86,18 +86,20 @@ $EndElements
 # Kind of file, what is added to it, and how that is named.
 UNKNOWN = [
     ("a.stl", STL.replace("facet normal", "colour 3\nfacet normal", 1), "a.stl:2: colour: not a keyword of STL"),
-    ("a.obj", OBJ + "vt 0 0\nl 1 2\nfoo 3\n", "a.obj:9: vt"), ("a.obj", OBJ + "l 1 2\n", "a.obj:9: l"),
+    ("a.obj", OBJ + "vt 0 0\nl 1 2\n", "a.obj:9: vt"), ("a.obj", OBJ + "l 1 2\n", "a.obj:9: l"),
     ("a.obj", OBJ + "foo 3\n", "a.obj:9: foo"), ("a.obj", OBJ, "a.obj:2: o"),
-    ("a.ply", PLY.replace("element face", "element foo 1\nproperty int a\nelement face").replace("\n3 0 1 2", "\n7\n3 0 1 2"),
-     "a.ply:7: element foo, 1"),
-    ("a.ply", PLY.replace("float z\n", "float z\nproperty uchar red\n").replace("0\n", "0 5\n"), "a.ply:7: property red"),
+    ("a.ply", PLY.replace("end_header", "element foo 1\nproperty int a\nend_header") + "7\n", "a.ply:9: element foo, 1"),
+    ("a.ply", PLY.replace("float z\n", "float z\nproperty uchar red\n").replace("0 0\n", "0 0 5\n").replace(
+        "10 0\n", "10 0 5\n"), "a.ply:7: property red"),
     ("a.vtk", VTK + "POINT_DATA 4\nSCALARS heat float 1\nLOOKUP_TABLE default\n1 2 3 4\n", "a.vtk: field heat of nodes"),
     ("a.vtk", VTK.replace("POLYGONS", "LINES 1 3\n2 0 1\nPOLYGONS"), "a.vtk: 1 lines"),
     ("a.msh", MSH, "a.msh: 1 elements of dimension 1"),
-    ("a.msh", MSH + "$Foo\n1\n$EndFoo\n", "a.msh:16: $Foo"),
-    ("a.msh", MSH + '$NodeData\n1\n"heat"\n1\n0\n3\n0\n1\n1\n1 5\n$EndNodeData\n', "a.msh:16: $NodeData")]
+    ("a.msh", MSH + "$Foo\n1\n$EndFoo\n", "a.msh:17: $Foo"),
+    ("a.msh", MSH + '$NodeData\n1\n"heat"\n1\n0\n3\n0\n1\n1\n1 5\n$EndNodeData\n', "a.msh:17: $NodeData")]
 CUT = [("a.stl", STL[:STL.index("endsolid")], "cut off"), ("a.stl", STL[:170], "inside outer of facet of solid"),
-       ("a.ply", PLY[:-8], "cut off"), ("a.msh", MSH[:-16], "without its end: the file is cut off")]
+       ("a.ply", PLY[:-8], "cut off"),
+       ("a.ply", PLY.replace("element face", "element foo 1\nproperty int a\nelement face").replace("\n3 0 1 2", "\n7\n3 0 1 2"),
+        "a.ply:7: element foo, 1: not read"), ("a.msh", MSH[:-16], "without its end: the file is cut off")]
 
 
 @pytest.mark.parametrize(("name", "text", "said"), UNKNOWN)
@@ -156,8 +158,8 @@ def test_cut(tmp_path, name, text, said):
 
 
 def ends_well(read, path):
-    """Tell whether a reader in a child process returns or raises a Problem; a fault in a library, which `dd3 tool` turns
-    into a message, counts as well."""
+    """Tell whether a reader in a child process returns or raises a Problem; a fault in a library, of which `dd3 tool`
+    makes a message, counts as well."""
     child = os.fork()
     if not child:
         code = 1

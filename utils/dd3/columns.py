@@ -200,7 +200,7 @@ def filled(lines: Sequence[Line], cells: Sequence[list[Word]], columns: Sequence
         count = {2: "two"}.get(len(columns), str(len(columns)))
         names = " and ".join(column.name for column in columns)
         line, row = next((line, row) for line, row in zip(lines, cells) if len(row) > places[len(columns)])
-        comma = ", with a decimal point, or the decimal comma in quotes or between semicolons" if separator == "," else ""
+        comma = ", with a decimal point, or decimal commas in quotes or between semicolons" if separator == "," else ""
         raise line.problem(row[places[len(columns)]], f"more than {count} numbers",
                            f"{count} columns, {names}, or a heading that names them{comma}")
     return [*places, *range(places[-1] + 1, places[-1] + 1 + len(columns) - len(places))]

@@ -5,9 +5,10 @@
     dd3 fld cup.out --low-carbon-steel --thinning 0.2 --margin 0.08 --surface upper --output fld.png
 
 Nodes and elements are judged by the forming limit curve of the material: that of --curve, a table with minor and major
-logarithmic strain (see `dd3 identify --help` for its form), or that of forming_limit in *MATERIAL. For low-carbon steel,
-by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the exponent
-n of the hardening law or of --n (Keeler and Brazier 1977). Without a curve for the material there is no verdict.
+logarithmic strain (its form is that of `dd3 identify --help`), or that of forming_limit in *MATERIAL. For low-carbon
+steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the
+exponent n of the hardening law or of --n (Keeler and Brazier 1977). Without a curve for the material there is no
+verdict.
 
 The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention.
 
@@ -102,7 +103,7 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
     rows.sort(key=lambda row: row.values[0])
     for before, row in zip(rows, rows[1:]):
         if row.values[0] == before.values[0]:
-            raise row.line.problem(row.words[0], f"the minor strain {row.words[0][0]} is that of {before.line.where}, too",
+            raise row.line.problem(row.words[0], f"the minor strain {row.words[0][0]} is that of {before.line.where} too",
                                    "one major strain for each minor strain")
     minor, major = np.array([row.values for row in rows]).T
     if engineering:
@@ -141,6 +142,8 @@ def find_limits(fields: Fields, job: dict[str, Any], options: argparse.Namespace
     if len(found) == 1 or all(entries == said[0] and found[0] for entries in said[1:]):
         curve = found[0] if found else None
         why = f"no forming limit curve for the material {names}"
+        if said and said[0].get("grade"):
+            why += ", whose hardening law has no exponent n for the estimate"
     else:
         curve, why = None, f"no one forming limit curve for the materials {names}"
     return Limits(curve, "" if curve else why, thinning, given_by)

@@ -308,15 +308,15 @@ def add_limit_diagram(report: Report) -> None:
     figure, axes = new_figure((8, 5.2))
     account = Account()
     limits = forming_limit.find_limits(report.sheet, report.job, report.options, account)
-    zone, report.limits = forming_limit.draw(axes, forming_limit.strains_of(report.sheet, report.last, "middle"), limits,
-                                             report.options.margin)
+    strains = forming_limit.strains_of(report.sheet, report.last, "middle")
+    zone, report.limits = forming_limit.draw(axes, strains, limits, report.options.margin)
     content = report.figure("limit", figure, "forming limit diagram")
     content += "" if zone is None else zone_map(report, zone)
     said = [*report.limits, *(f"left out: {item}" for item in account.left_out())]
     content += "".join(f"<p>{html.escape(line[:1].upper() + line[1:])}.</p>" for line in said)
     if zone is not None:
-        content += f"<p>Dots: nodes; crosses: elements. Marginal: less than {report.options.margin:g} below the curve; " \
-            "thickening: thicker than before, the major strain is smaller than minus the minor one.</p>"
+        content += f"<p>Dots: nodes; crosses: elements. Marginal: less than {report.options.margin:g} below the " \
+            "curve; thickening: thicker than before, the major strain is smaller than minus the minor one.</p>"
     report.add("Forming limit", content)
 
 

@@ -88,8 +88,8 @@ def stl_binary(path: Path, data: bytes, account: Account) -> np.ndarray:
     if count > there:
         if not any(data[:80]) or not re.search(rb"[^\x09-\x0d\x20-\x7e]", data[:80].rstrip(b"\0")):
             raise Problem(f"{path}: the binary STL file is cut off: {there} of {count} facets")
-        raise Problem(f"{path}: neither a text nor a complete binary STL file; read as one it would be cut off: {there} "
-                      f"of {count} facets")
+        raise Problem(f"{path}: neither a text nor a complete binary STL file; as one it would be cut off: {there} of "
+                      f"{count} facets")
     record = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
     facets = np.frombuffer(data, record, count, 84)
     for number in np.flatnonzero(facets["attribute"])[:1]:
@@ -403,7 +403,8 @@ def read_vtk(path: Path) -> Facets:
     except Exception as error:  # readers raise many kinds
         raise Problem(f"{path}: cannot be read: {error}") from None
     if not data.n_cells or not data.n_faces:
-        raise Problem(f"{path}: no facets; a damaged file or one of another kind")
+        known = "".join(f"; {item}" for item in account.left_out()[:5])
+        raise Problem(f"{path}: no facets; a damaged file or one of another kind{known}")
     if wanted is not None and data.n_faces != wanted:
         raise Problem(f"{path}: {data.n_faces} of {wanted} faces are read: the file is cut off or damaged")
     cells, i = [], 0
