@@ -83,6 +83,7 @@ $Elements
 3 2 2 1 1 1 3 4
 $EndElements
 """
+MUTANTS = int(os.environ.get("DD3_MUTANTS", "100"))  # of each kind that a library reads, in child processes
 # Kind of file, what is added to it, and how that is named.
 UNKNOWN = [
     ("a.stl", STL.replace("facet normal", "colour 3\nfacet normal", 1), "a.stl:2: colour: not a keyword of STL"),
@@ -178,7 +179,7 @@ def ends_well(read, path):
 def test_mutants(tmp_path, capfd, name, text):
     """Check that no damaged mesh ends in anything but facets or a Problem."""
     path = tmp_path / name
-    for mutant in mutants(text.encode(), 1000 if name == "a.stl" else 100, 3):
+    for mutant in mutants(text.encode(), 1000 if name == "a.stl" else MUTANTS, 3):
         path.write_bytes(mutant)
         if name == "a.stl":
             try:
@@ -194,7 +195,7 @@ def test_mutants_of_cad(tmp_path):
     step_and_iges(tmp_path)
     for name in ("box.step", "box.igs"):
         path = tmp_path / f"mutant_{name}"
-        for mutant in mutants((tmp_path / name).read_bytes(), 200, 4):
+        for mutant in mutants((tmp_path / name).read_bytes(), MUTANTS, 4):
             path.write_bytes(mutant)
             account = Account()
             try:
