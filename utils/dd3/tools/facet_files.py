@@ -410,6 +410,8 @@ def read_vtk(path: Path) -> Facets:
     cells, i = [], 0
     while i < len(faces):
         count = int(faces[i])
+        if not 0 < count < len(faces) - i:
+            raise Problem(f"{path}: a polygon of {count} nodes: the file is damaged")
         ring = faces[i + 1:i + 1 + count].tolist()
         if count in (3, 4):
             cells.append(("vtk", 2, tuple(ring)))
