@@ -85,7 +85,7 @@ $Elements
 3 2 2 1 1 1 3 4
 $EndElements
 """
-MUTANTS = int(os.environ.get("DD3_MUTANTS", "100"))  # of each kind that a library reads, in child processes
+MUTANTS = 1000  # of each kind that a library reads, in child processes
 # Kind of file, what is added to it, and how that is named.
 UNKNOWN = [
     ("a.stl", STL.replace("facet normal", "colour 3\nfacet normal", 1), "a.stl:2: colour: not a keyword of STL"),
