@@ -7,6 +7,7 @@ module dd3_input_cross_check
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
       contact_spec_t, limits_spec_t, start_spec_t, fields_every, fields_at
+  use dd3_input_forming_limit_check, only : check_forming_limit
   use dd3_input_sheet_sets, only : n_quarters
   implicit none
   private
@@ -211,6 +212,7 @@ contains
     type(material_spec_t), intent(in) :: material
     type(error_list_t), intent(inout) :: errors
 
+    call check_forming_limit(material%source, errors)
     if (any(abs(material%frame) > 0.0_wp)) return
     call errors%push_input(material%source%at("rolling_direction"), &
         "rolling and normal direction are zero or parallel", &

@@ -125,7 +125,15 @@ contains
           lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
           count=3), &
-      row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3)]
+      row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3), &
+      row("grade", kind_name, "", "-", "kind of sheet metal, for the estimate of its forming "// &
+          "limit curve by dd3 fld and dd3 report", choices="low_carbon_steel"), &
+      row("forming_limit", kind_reals, "", "-", "forming limit curve for dd3 fld and dd3 "// &
+          "report: minor and major logarithmic strain in pairs, the minor one increasing", &
+          count=0), &
+      row("thinning_limit", kind_real, "", "-", "largest thinning allowed by dd3 fld and dd3 "// &
+          "report; default there: 0.25", lower=zero, upper=1.0_wp, lower_open=.true., &
+          upper_open=.true.)]
   end function material_keys
 
   function tool_keys() result(key)

@@ -77,8 +77,14 @@ def test_stl_files(tmp_path):
     raw = stl.read_bytes()
     text = MESHES["die.stl"]
     for data, code, words in (
-            (raw[:5000], 2, "neither a text nor a complete binary STL"), (raw[:-1], 2, "complete binary"),
-            (raw[:83], 2, "complete binary"), (b"\0" * 500, 2, "complete binary"),
+            (raw[:5000], 2, "cut off: 98 of 448 facets"), (raw[:-1], 2, "cut off: 447 of 448 facets"),
+            (raw[:83], 2, "nor a binary STL file: 83 bytes"), (b"\0" * 500, 2, "without facets"),
+            (b"solid of facets".ljust(80) + raw[80:-9], 2, "cut off: 447 of 448 facets"),
+            (raw + b"tail", 0, "4 bytes: behind the 448 facets"),
+            (text[:text.index("endsolid")].encode(), 2, "cut off: it ends inside solid"),
+            (text.replace("endsolid", "end solid").encode(), 0, "2, turned"),
+            (text.replace("endsolid", "colour 3\nENDSOLID").encode(), 0, "colour: not a keyword of STL"),
+            ((text + text.replace(" 0\n", " 9\n")).encode(), 0, "2 parts"), (text.replace("endloop", "", 1).encode(), 2, "endfacet inside outer"),
             (b"solid of facets".ljust(80) + raw[80:], 0, "448"), (text[:150].encode(), 2, "expected vertex"),
             (text[:text.index("endloop")].encode(), 2, "cut off"),
             (text.replace("20 0 0", "20 zero 0", 1).encode(), 2, "expected vertex x y z"),

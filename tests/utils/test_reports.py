@@ -2,6 +2,7 @@
 """Sections, forming limits and reports of a made-up run of a U profile, and wrong input."""
 
 import csv
+import json
 import math
 import re
 
@@ -9,10 +10,12 @@ import numpy as np
 import pytest
 from helpers import call, write_run
 
-from dd3.forming_limit import ZONES, keeler_brazier, read_curve
+from dd3.errors import Problem
+from dd3.forming_limit import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report import action
 from dd3.sheet import Sheet
 from dd3.springback import find, opening, rotation, twist
+from dd3.surface_strain import cell_strains
 
 # Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
 PARTS = [(20.0, 0.0), (5 * math.radians(80), math.radians(80)), (40.0, 0.4), (5 * math.radians(75), -math.radians(75)),
@@ -27,7 +30,8 @@ punch_pressure,tool_work,external_work,friction_work,energy_error,rib_restraint,
 STATUS = "phase,travel,outcome,iterations,solver_iterations,limiter\ndraw,2,accepted,5,0,rotation\n"
 MATERIALS = [{"name": "steel", "hardening": {"name": "swift", "parameters": [{"name": "n", "value": 0.2}]}}]
 BLOCKS = [{"keyword": "material", "name": "steel", "entries": [
-    {"key": "young", "text": "2.1e5", "unit": "MPa", "default": False}]}]
+    {"key": "young", "text": "2.1e5", "unit": "MPa", "default": False},
+    {"key": "grade", "text": "low_carbon_steel", "unit": "", "default": False}]}]
 PUNCH = {"name": "punch", "motion": "moved", "active": True, "displacement": [0, 0, -2], "turn": None, "gap": None,
          "force": None}
 DRAW = {"number": 1, "name": "draw", "control": "punch", "tools": [PUNCH]}
@@ -107,20 +111,99 @@ def test_limit(tmp_path):
     assert abs(keeler_brazier(0.8, 0.105).limit(0.0) - math.log1p(0.5 * 0.34604)) < 1e-12
     major, minor = np.array([0.4, 0.25, 0.15, 0.2, 0.001]), np.array([0.0, 0.0, 0.0, -0.3, 0.0])
     names = [ZONES[zone] for zone in curve.zones(major, minor, 0.1)]
-    assert names == ["critical", "marginal", "safe", "wrinkling", "no strain"], names
+    assert names == ["critical", "marginal", "safe", "thickening", "no strain"], names
     file = tmp_path / "curve.csv"
     file.write_text("# minor, major\n0.3, 0.45\n-0.2 0.5\n0, 0.3\n")
     assert abs(read_curve(file).limit(-0.1) - 0.4) < 1e-12
     assert abs(read_curve(file, engineering=True).limit(0.0) - math.log(1.3)) < 1e-12
 
 
-def test_diagram(run):
-    """Check the forming limit diagram of a run, and requests that cannot be met."""
+def test_curve_files(tmp_path):
+    """Check tables of measured curves: headings, order, per cent, and rows that cannot be ones of a curve."""
+    file = tmp_path / "curve.csv"
+    for text in ('"minor","major"\n"-0.2","0.5"\n"0","0.3"\n"0.3","0.45"\n', "major;minor\n0,5;-0,2\n0,3;0\n0,45;0,3\n",
+                 "phi2\tphi1\n-20\t50\n0\t30\n30\t45\n".replace("phi2\tphi1", "phi2 [%]\tphi1 [%]"),
+                 "point,e2,e1\nA,-0.2,0.5\nB,0,0.3\nC,0.3,0.45\n"):
+        file.write_text(text)
+        curve = read_curve(file)
+        assert abs(curve.minor - [-0.2, 0, 0.3]).max() < 1e-12 and abs(curve.major - [0.5, 0.3, 0.45]).max() < 1e-12, text
+    for text, said in (("-0.2 0.5\n0.45 0.3\n", ":2: error: the minor strain, 0.45, is above the major strain, 0.3"),
+                       ("0.5,-0.2\n0.3,0\n", ":1: error: the minor strain, 0.5, is above"),
+                       ("-20 50\n0 30\n", "fractions, not per cent"), ("-0.2 0.5\n0 0.3\n-0.2 0.4\n", ":3: error: the minor"),
+                       ("-0.4 -0.1\n0 0.3\n", "is not positive"), ("0 0.3\n", "at least 2 points"), ("", "got 0"),
+                       ("0 0.3\n0.1 nan\n", ":2: error: 'nan' is not a number"), ("0 0.3 1\n", "more than two"),
+                       ("engineering minor,engineering major\n0,0.3\n", "engineering")):
+        file.write_text(text)
+        with pytest.raises(Problem) as problem:
+            read_curve(file)
+        assert said in str(problem.value), text
+
+
+def materials_of(folder, grade=None, **entries):
+    """Write the material of a run anew: what *MATERIAL says of its limits."""
+    job = json.loads((folder / "run.json").read_text())
+    said = {**entries, **({"grade": grade} if grade else {})}
+    job["input"]["blocks"] = [{"keyword": "material", "name": "Steel", "entries": [
+        {"key": key, "text": text, "unit": "", "default": False} for key, text in said.items()]}]
+    (folder / "run.json").write_text(json.dumps(job))
+
+
+def test_diagram(run, tmp_path):
+    """Check the forming limit diagram of a run: the verdict of its curve or none, and that of its thinning."""
+    count, cells = 6 * len(profile()[0]), 2 * (len(profile()[0]) - 1)
     said = call("fld", run)
-    assert "fld.png" in said and "nodes critical" in said
-    assert "No forming limit curve" not in said
+    assert "fld.png" in said and f" of {count} nodes critical, " in said and f" of {cells} elements critical" in said
+    assert "Keeler-Brazier, t = 1 mm, n = 0.2" in said and "0.25" not in said
+    assert f"thinning above 25 % (default; --thinning): 0 of {count} nodes, 0 of {cells} elements" in said
+    materials_of(run)
+    said = call("fld", run)
+    assert "no verdict: no forming limit curve for the material steel" in said and "critical" not in said
+    assert "Keeler-Brazier, t = 1 mm, n = 0.2" in call("fld", run, "--low-carbon-steel")
+    assert "n = 0.15" in call("fld", run, "--n", 0.15)
+    materials_of(run, forming_limit="-0.2 0.5 0 0.3 0.2 0.4", thinning_limit="0.05")
+    limit = Curve([-0.2, 0, 0.2], [0.5, 0.3, 0.4], "").limit(-0.02)
+    assert f"{6 * int((profile()[0] / 200 > limit).sum())} of {count} nodes critical" in call("fld", run)
+    thin = 6 * int((profile()[0] / 1000 > 0.05).sum())
+    assert f"thinning above 5 % (*MATERIAL): {thin} of {count} nodes" in call("fld", run)
+    assert f"thinning above 2 % (--thinning): " in call("fld", run, "--thinning", 0.02)
+    (tmp_path / "swapped.csv").write_text("0.5,-0.2\n0.3,0\n0.4,0.2\n")
+    assert "swapped.csv:1: error: the minor strain" in call("fld", run, "--curve", tmp_path / "swapped.csv", expect=2)
+    (tmp_path / "curve.csv").write_text("test 7\nminor,major,width\n-0.2,0.5,20\n0,0.3,60\n0.2,0.4,200\n")
+    said = call("fld", run, "--curve", tmp_path / "curve.csv")
+    assert "by the curve curve" in said and "curve.csv:1: row 'test 7'" in said and "column 3 'width'" in said
     assert "no field 'major_strain_upper'" in call("fld", run, "--surface", "upper", expect=2)
-    assert "--n takes a positive number" in call("fld", run, "--n", -1, expect=2)
+    for words, text in ((("--n", -1), "--n takes a positive number"), (("--n", "nan"), "--n takes"),
+                        (("--thinning", 20), "--thinning takes a fraction"), (("--engineering",), "goes with --curve"),
+                        (("--curve", "x", "--n", 0.2), "--curve goes without")):
+        assert text in call("fld", run, *words, expect=2), words
+
+
+def test_cells(tmp_path):
+    """Check strains of elements: pure stretching and shear of two layers, and bending of one layer by 90 degrees."""
+    x, y, z = (values.ravel() for values in np.meshgrid([0.0, 1, 2], [0.0, 1], [0.0, 0.5, 1], indexing="ij"))
+    start = np.column_stack([x, y, z])
+    number = np.arange(18).reshape(3, 2, 3)
+    cells = [[number[i + a, b, k + c] for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in (0, 1) for k in (0, 1)]
+    matrix = np.array([[1.3, 0.2, 0.0], [0.0, 0.9, 0.0], [0.0, 0.3, 0.8]])
+    zero = (np.zeros(18), np.zeros(18))
+    fields = {name: zero for name in ("thickness", "thinning", "major_strain_middle", "minor_strain_middle")}
+    fields["displacement"] = (0 * start, start @ matrix.T - start)
+    sheet = Sheet(write_run(tmp_path / "a.out", start, start @ matrix.T, cells, HISTORY, STATUS, fields))
+    stretch = np.log(np.linalg.svd(matrix[:, :2])[1])
+    for surface in ("lower", "middle", "upper"):
+        major, minor = cell_strains(sheet, 1, surface)
+        assert abs(major - stretch[0]).max() < 1e-12 and abs(minor - stretch[1]).max() < 1e-12
+    turn, radius, height = 0.5, 4.0, 1.0  # an arc of 0.5 at the middle, of a length of 2
+    flat = np.array([(a, b, c) for c in (0.0, height) for a, b in ((0, 0), (2, 0), (2, 1), (0, 1))], float)
+    bent = np.array([((radius - c + height / 2) * math.sin(a / 2 * turn), b, radius - (radius - c + height / 2)
+                      * math.cos(a / 2 * turn)) for a, b, c in flat])
+    zero = (np.zeros(8), np.zeros(8))
+    fields = {"displacement": (0 * flat, bent - flat), "thickness": zero}
+    sheet = Sheet(write_run(tmp_path / "b.out", flat, bent, [list(range(8))], HISTORY, STATUS, fields))
+    for surface, middle in (("lower", radius + height / 2), ("middle", radius), ("upper", radius - height / 2)):
+        found = cell_strains(sheet, 1, surface)
+        assert abs(np.array(found).ravel() - sorted((math.log(middle * turn / 2), 0.0), reverse=True)).max() < 1e-12
 
 
 def rows_of(page):
@@ -142,7 +225,7 @@ def test_report(run, tmp_path):
                   "Outline and draw-in", "Phase 1: draw", "Draw-beads", "Warnings", "Run", "Set-up"):
         assert f"<h2>{title}</h2>" in text, title
     assert "A profile &amp; its &lt;report&gt;" in text and "job.dat:3: the mesh is coarse" in text
-    assert "Keeler-Brazier" not in text and "State: draw, travel 2.00 mm; completed at the planes x, y = 0." in text
+    assert "State: draw, travel 2.00 mm; completed at the planes x, y = 0." in text
     assert "dd3imp 0.1.0: job.dat<br>started 2026-01-01T00:00:00+00:00" in text
     assert all(source.startswith("data:image/png") for source in re.findall(r'src="([^"]{20})', text))
     assert not re.search(r"(href|url)\b", text)
@@ -150,7 +233,7 @@ def test_report(run, tmp_path):
     for name in ("thinning", "sheet", "limit", "zones", "sections", "outline", "force_draw", "beads"):
         assert (tmp_path / "report" / f"{name}.png").read_bytes()[:4] == b"\x89PNG", name
     (tmp_path / "bad.csv").write_text("0 0.3\n0.1 a\n")
-    assert "bad.csv:2: error: expected minor" in call("report", run, "--curve", tmp_path / "bad.csv", "--output",
+    assert "bad.csv:2: error: " in call("report", run, "--curve", tmp_path / "bad.csv", "--output",
                                                       tmp_path / "report", expect=2)
     assert "No such file" in call("report", tmp_path / "none.out", "--output", tmp_path / "other", expect=2)
     (tmp_path / "points.out").mkdir()
@@ -168,11 +251,17 @@ def test_numbers_of_the_report(run, tmp_path):
     end = points[-1] + [math.sin(angles[-1]), -math.cos(angles[-1])]  # at the lower face, the first in the order of nodes
     limit = keeler_brazier(1.0, 0.2).limit(-0.02)
     critical = 6 * int((profile()[0] / 200 > limit).sum())
+    sheet = Sheet(run)
+    major, minor = cell_strains(sheet, 1, "middle")
+    critical_cells = int((major > keeler_brazier(1.0, 0.2).limit(minor)).sum())
     assert sections["Result"] == {
         "thickness": f"{1 - ENDS[-1] / 1000:.4g} to 1 mm",
         "largest thinning": f"{ENDS[-1] / 10:.3g} % at ({end[0]:.1f}, 0.0, {end[1]:.1f}) mm",
         "largest thickening": "0 %", "equivalent plastic strain": "0.1",
-        "forming limit": f"{critical} of {6 * len(points)} nodes critical",
+        "forming limit": f"{critical} of {6 * len(points)} nodes critical, {critical_cells} of {2 * (len(points) - 1)} "
+                         "elements critical by the curve Keeler-Brazier, t = 1 mm, n = 0.2",
+        "thinning limit": f"thinning above 25 % (default; --thinning): 0 of {6 * len(points)} nodes, 0 of "
+                          f"{2 * (len(points) - 1)} elements; largest {ENDS[-1] / 10:.3g} %",
         "punch: largest force along z, largest pressure": "10 kN, 250 MPa",  # four times the model's force
         "error of the energy balance": "0.1 %"}  # 5 of 5000 mJ
     assert sections["Phase 1: draw"] == {

@@ -4,8 +4,9 @@
     dd3 curve part.step trim.txt             the rims and holes of the faces of a part, or the wires of the file
     dd3 curve outline.dxf trim.txt --layer TRIM
 
-STEP, IGES and BREP files are read by Gmsh, DXF files by ezdxf. Curves of a file that are joined at their ends are one;
-each must be closed. The distance between the curve and the straight lines between its points is at most --chord.
+STEP, IGES and BREP files are read by Gmsh, DXF files by ezdxf: lines, arcs, polylines and splines, of inserted blocks
+too. What of the file is not used is listed. Curves that are joined at their ends are one; each must be closed. The
+distance between the curve and the straight lines between its points is at most --chord.
 """
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,21 +14,30 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.account import Account
 from dd3.command import new_parser
+from dd3.dxf import pieces_of_dxf
 from dd3.errors import Problem
 from dd3.gmsh_session import session
+from dd3.tools.cad import refuse_cut
+from dd3.tools.cad_account import enter_cad
 
 MOST = 4096  # pieces of an edge
 JOIN = 1e-4  # largest gap between ends that are joined, over the size of all curves
 
 
-def pieces_of_cad(path: Path, chord: float, _: str | None) -> list[np.ndarray]:
+def pieces_of_cad(path: Path, chord: float, account: Account) -> list[np.ndarray]:
     """Return the free edges of the faces of a CAD file as points, or all its edges if it has no faces."""
+    refuse_cut(path)
     with session(path) as gmsh:
         gmsh.model.occ.synchronize()
+        enter_cad(path, account, len(gmsh.model.getEntities(2)))
         edges = [tag for _, tag in gmsh.model.getEntities(1)]
         if gmsh.model.getEntities(2):
-            edges = [tag for tag in edges if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
+            faces = {tag: len(gmsh.model.getAdjacencies(1, tag)[0]) for tag in edges}
+            for tag in (tag for tag in edges if not faces[tag]):
+                account.enter(str(path), f"{gmsh.model.getType(1, tag)} {tag}").leave("no border of a face")
+            edges = [tag for tag in edges if faces[tag] == 1]
         found = []
         for tag in edges:
             (low,), (high,) = gmsh.model.getParametrizationBounds(1, tag)
@@ -66,39 +76,11 @@ def arc_middle(points: np.ndarray) -> np.ndarray:
     return np.array([np.interp(0.5 * length[-1], length, points[:, axis]) for axis in range(3)])
 
 
-def pieces_of_dxf(path: Path, chord: float, layer: str | None) -> list[np.ndarray]:
-    """Return the lines of a DXF file, in mm, as points."""
-    import ezdxf
-    from ezdxf import path as paths
-    from ezdxf import units
-    try:
-        document = ezdxf.readfile(path)
-    except (OSError, ezdxf.DXFError) as error:
-        raise Problem(f"{path}: {error}") from None
-    unit = units.InsertUnits(document.units)
-    scale = units.conversion_factor(unit, units.InsertUnits.Millimeters) if document.units else 1.0
-    found, layers = [], set()
-    for entity in document.modelspace():
-        layers.add(entity.dxf.layer)
-        if layer is not None and entity.dxf.layer != layer:
-            continue
-        try:
-            line = paths.make_path(entity)
-        except TypeError:  # a text, a dimension
-            continue
-        for part in line.sub_paths():
-            points = scale * np.array([tuple(point) for point in part.flattening(chord / scale)])
-            if len(points) > 1:
-                found.append(points)
-    if layer is not None and layer not in layers:
-        raise Problem(f"{path}: no layer '{layer}'; there are: {' '.join(sorted(layers))}")
-    return found
-
-
 def joined(path: Path, pieces: list[np.ndarray]) -> list[np.ndarray]:
     """Return closed curves of pieces that are joined at their ends; the first point is not repeated."""
     if not pieces:
-        raise Problem(f"{path}: no curve: a solid has no free edges; give its faces, or a wire")
+        raise Problem(f"{path}: no curve" + ("" if path.suffix.lower() == ".dxf" else
+                                             ": a solid has no free edges; give its faces, or a wire"))
     size = np.ptp(np.vstack(pieces), axis=0).max()
     near = JOIN * size
     ends = np.array([piece[[0, -1]] for piece in pieces]).reshape(-1, 3)
@@ -152,14 +134,26 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     if not options.file.is_file():
         raise Problem(f"{options.file}: No such file")
-    if options.chord <= 0:
+    if not 0 < options.chord < np.inf:
         parser.error("--chord: takes a length above 0")
     dxf = options.file.suffix.lower() == ".dxf"
     if options.layer and not dxf:
         parser.error("--layer: only of a DXF file")
-    curves = joined(options.file, (pieces_of_dxf if dxf else pieces_of_cad)(options.file, options.chord, options.layer))
+    account = Account()
+    pieces = pieces_of_dxf(options.file, options.chord, options.layer, sampled, account) if dxf else pieces_of_cad(
+        options.file, options.chord, account)
+    if not pieces:
+        say_left_out(account)
+    curves = joined(options.file, pieces)
     write_curves(options.output, curves, options.file.name)
     for number, points in enumerate(curves, 1):
         low, high = points.min(0), points.max(0)
         box = ", ".join(f"{axis} {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high))
         print(f"curve {number}: {len(points)} points, {box} mm")
+    say_left_out(account)
+
+
+def say_left_out(account: Account) -> None:
+    """Print what was not used."""
+    for item in account.left_out():
+        print(f"left out: {item}")

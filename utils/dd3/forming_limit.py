@@ -1,37 +1,51 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the forming limit diagram of a run.
 
-    dd3 fld cup.out
-    dd3 fld cup.out --curve dc06.csv --margin 0.08 --surface upper --output fld.png
+    dd3 fld cup.out --curve dc06.csv
+    dd3 fld cup.out --low-carbon-steel --thinning 0.2 --margin 0.08 --surface upper --output fld.png
 
-The forming limit is the curve of Keeler and Brazier (1977), an estimate for low-carbon steel from the thickness and the
-exponent n of the hardening law or --n, or a measured one: --curve with minor and major logarithmic strain in each line.
-Strains are logarithmic. At plane strain the curve is the engineering strain (23.3 + 14.13 t) n/0.21 %, t in mm, n at
-most 0.21. Its left branch is the line of constant thickness, major + minor = const; the slope of its right branch, 0.6,
-is a convention.
+Nodes and elements are judged by the forming limit curve of the material: that of --curve, a table with minor and major
+logarithmic strain (its form is that of `dd3 identify --help`), or that of forming_limit in *MATERIAL. For low-carbon
+steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the
+exponent n of the hardening law or of --n (Keeler and Brazier 1977). Without a curve for the material there is no
+verdict.
+
+The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention.
+
+The estimate is the engineering strain (23.3 + 14.13 t) n/0.21 % at plane strain, t in mm, n at most 0.21. Its left
+branch is the line of constant thickness, major + minor = const; the slope of its right branch, 0.6, is a convention.
 """
 
 import argparse
 import math
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from dd3.account import Account
+from dd3.columns import STRAIN, Column, read_columns
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields
 from dd3.plot.figures import new_figure, save
 from dd3.run import read_job
-from dd3.tables import read_text
+from dd3.sheet import Sheet
+from dd3.surface_strain import cell_strains
 
-ZONES = ("no strain", "wrinkling", "safe", "marginal", "critical")
+ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
 COLOURS = ("#d0d4d8", "#5b8fd6", "#55a868", "#f0c040", "#d64541")
 LEAST_STRAIN = 0.01  # major strain below which a point is not judged
 RIGHT_SLOPE = 0.6
 LARGEST_N = 0.21  # of the correlation
+THINNING = 0.25  # limit where none is given
+LARGEST = 2.0  # logarithmic strain; larger ones are in per cent
+LOW_CARBON = "low_carbon_steel"  # grade in *MATERIAL
+EXPECTED = "strains as fractions, not per cent, or with the unit % in the heading"
 
 
 class Curve:
@@ -52,11 +66,11 @@ class Curve:
         """Return the zone of each point, an index of ZONES.
 
         Critical points are above the curve, marginal ones less than `margin` below it. Points with a major strain below
-        that of pure shear, -minor, thicken: wrinkling.
+        that of pure shear, -minor, thicken.
         """
         limit = self.limit(minor)
         zone = np.full(np.shape(major), ZONES.index("safe"))
-        zone[major < -minor] = ZONES.index("wrinkling")
+        zone[major < -minor] = ZONES.index("thickening")
         zone[np.maximum(np.abs(major), np.abs(minor)) < LEAST_STRAIN] = ZONES.index("no strain")
         zone[major > limit - margin] = ZONES.index("marginal")
         zone[major > limit] = ZONES.index("critical")
@@ -70,89 +84,199 @@ def keeler_brazier(thickness: float, exponent: float) -> Curve:
                  f"Keeler-Brazier, t = {thickness:.3g} mm, n = {exponent:.3g}")
 
 
-def read_curve(path: str | Path, engineering: bool = False) -> Curve:
-    """Read a measured curve: minor and major strain in each line, with blanks or a comma; # begins a comment."""
-    points = []
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        words = line.partition("#")[0].replace(",", " ").split()
-        if not words:
-            continue
-        try:
-            minor, major = map(float, words)
-        except ValueError:
-            raise Problem(f"{path}:{number}: error: expected minor and major strain, got '{line.strip()}'") from None
-        points.append((minor, major))
-    if len(points) < 2:
-        raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(points)}")
-    minor, major = np.array(sorted(points)).T
-    if (np.diff(minor) <= 0).any():
-        raise Problem(f"{path}: a minor strain occurs twice")
-    if max(np.abs(minor).max(), major.max()) > 2:
-        raise Problem(f"{path}: strains above 2: give fractions, not per cent")
+def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
+    """Read a measured curve, a table with minor and major strain."""
+    highest = math.expm1(LARGEST) if engineering else LARGEST
+    columns = [Column(f"{name} strain", re.compile(pattern, re.IGNORECASE), STRAIN, low, highest, EXPECTED, engineering)
+               for name, pattern, low in (
+                   ("minor", r"minor|\bmin\b|nebenform|(?:eps|ε|phi|φ|e)_?2", -0.99 if engineering else -LARGEST),
+                   ("major", r"major|\bmax\b|hauptform|(?:eps|ε|phi|φ|e)_?1", -LARGEST))]
+    rows = read_columns(path, columns, Account() if account is None else account)
+    for line, words, (minor, major) in rows:
+        if minor > major:
+            raise line.problem(words[0], f"the minor strain, {words[0][0]}, is above the major strain, {words[1][0]}",
+                               "the minor strain first, then the major strain, or a heading that names the columns")
+        if major <= 0:
+            raise line.problem(words[1], f"the major strain, {words[1][0]}, is not positive", "a limit of tension")
+    if len(rows) < 2:
+        raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(rows)}")
+    rows.sort(key=lambda row: row.values[0])
+    for before, row in zip(rows, rows[1:]):
+        if row.values[0] == before.values[0]:
+            raise row.line.problem(row.words[0], f"the minor strain {row.words[0][0]} is that of {before.line.where} too",
+                                   "one major strain for each minor strain")
+    minor, major = np.array([row.values for row in rows]).T
     if engineering:
         minor, major = np.log1p(minor), np.log1p(major)
     return Curve(minor, major, Path(path).stem)
 
 
-def exponent_of(job: dict[str, Any]) -> float | None:
-    """Return the exponent n of the first hardening law swift, swift_voce or ludwik of a job; None if there is none."""
-    laws = (material["hardening"] for material in job["materials"])
-    found = (parameter["value"] for law in laws if law["name"] in ("swift", "swift_voce", "ludwik")
-             for parameter in law["parameters"] if parameter["name"] == "n")
-    return next(found, None)
+@dataclass
+class Limits:
+    """What a sheet is judged by: the curve, or why there is none; the largest thinning, and who gives it."""
+
+    curve: Curve | None
+    why: str
+    thinning: float
+    given_by: str
 
 
-def find_curve(fields: Fields, job: dict[str, Any], options: argparse.Namespace) -> Curve | None:
-    """Return the curve of the options of a command, or None without an exponent."""
+def find_limits(fields: Fields, job: dict[str, Any], options: argparse.Namespace, account: Account | None = None
+                ) -> Limits:
+    """Return the limits of the options of a command and of the materials of a run."""
+    materials = [material for material in job["materials"] if material.get("elements", 1)]
+    said = [entries_of(job, material["name"]) for material in materials]
+    thinning, given_by = options.thinning, "--thinning"
+    if thinning is None:
+        given = [float(entries["thinning_limit"]) for entries in said if "thinning_limit" in entries]
+        thinning, given_by = (min(given), "*MATERIAL") if given else (THINNING, "default; --thinning")
     if options.curve:
-        return read_curve(options.curve, options.engineering)
-    exponent = options.n or exponent_of(job)
-    if exponent is None:
-        return None
-    thickness = fields.values(0, "thickness")[0]
-    return keeler_brazier(float(np.median(thickness[thickness > 0])), exponent)
-
-
-def draw(axes: Axes, major: np.ndarray, minor: np.ndarray, curve: Curve | None, margin: float
-         ) -> tuple[np.ndarray | None, str]:
-    """Draw the diagram; return the zone of each node and what the diagram says, None and why not without a curve."""
-    zone, said = None, "No forming limit curve: the hardening law has no exponent n. Give --n or --curve."
-    if curve is None:
-        axes.plot(minor, major, ".", color="0.4")
+        return Limits(read_curve(options.curve, options.engineering, account), "", thinning, given_by)
+    if options.n or options.low_carbon_steel:
+        exponent = options.n or next(filter(None, map(exponent_of, materials)), None)
+        if exponent is None:
+            raise Problem("--low-carbon-steel: the hardening law has no exponent n; give --n")
+        return Limits(keeler_brazier(thickness_of(fields), exponent), "", thinning, given_by)
+    found = [curve_of(fields, material, entries) for material, entries in zip(materials, said)]
+    names = " and ".join(material["name"] for material in materials)
+    if len(found) == 1 or all(entries == said[0] and found[0] for entries in said[1:]):
+        curve = found[0] if found else None
+        why = f"no forming limit curve for the material {names}"
+        if said and said[0].get("grade"):
+            why += ", whose hardening law has no exponent n for the estimate"
     else:
-        zone = curve.zones(major, minor, margin)
-        for number, name in enumerate(ZONES):
-            here = zone == number
-            if here.any():
-                axes.plot(minor[here], major[here], ".", color=COLOURS[number], label=name)
-        at = np.linspace(min(-0.3, minor.min()), max(0.3, minor.max()), 200)
-        axes.plot(at, curve.limit(at), "k-", linewidth=1.5, label=curve.label)
-        axes.plot(at, curve.limit(at) - margin, "k--", linewidth=0.8, label="marginal")
-        room = (curve.limit(minor) - major)[zone > 0]
-        critical = int((zone == ZONES.index("critical")).sum())
-        nearest = f"; smallest distance below the curve {room.min():.3g}" if room.size and not critical else ""
-        said = f"{critical} of {len(zone)} nodes critical{nearest}"
-        axes.legend(frameon=False, fontsize=9)
+        curve, why = None, f"no one forming limit curve for the materials {names}"
+    return Limits(curve, "" if curve else why, thinning, given_by)
+
+
+def entries_of(job: dict[str, Any], name: str) -> dict[str, str]:
+    """Return what *MATERIAL says of the limits of a material, by key."""
+    return {entry["key"]: entry["text"] for block in job["input"]["blocks"] for entry in block["entries"]
+            if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()
+            and entry["key"] in ("grade", "forming_limit", "thinning_limit")}
+
+
+def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str]) -> Curve | None:
+    """Return the curve of a material, None if it says nothing of one."""
+    if "forming_limit" in entries:
+        points = np.array(entries["forming_limit"].split(), float).reshape(-1, 2)
+        return Curve(points[:, 0], points[:, 1], material["name"])
+    exponent = exponent_of(material)
+    if entries.get("grade", "").lower() != LOW_CARBON or exponent is None:
+        return None
+    return keeler_brazier(thickness_of(fields), exponent)
+
+
+def exponent_of(material: dict[str, Any]) -> float | None:
+    """Return the exponent n of the hardening law swift, swift_voce or ludwik of a material; None with another law."""
+    law = material["hardening"]
+    found = (parameter["value"] for parameter in law["parameters"] if parameter["name"] == "n")
+    return next(found, None) if law["name"] in ("swift", "swift_voce", "ludwik") else None
+
+
+def thickness_of(fields: Fields) -> float:
+    """Return the median of the initial thickness, mm."""
+    thickness = fields.values(0, "thickness")[0]
+    return float(np.median(thickness[thickness > 0]))
+
+
+@dataclass
+class Strains:
+    """Major and minor strain of the nodes and of the elements, and their thinning."""
+
+    major: np.ndarray
+    minor: np.ndarray
+    thinning: np.ndarray
+    at_cells: "Strains | None" = None
+
+
+def strains_of(sheet: Sheet, step: int, surface: str) -> Strains:
+    """Return the strains of a sheet at its lower or upper face or its middle."""
+    nodes = [sheet.values(step, f"{name}_strain_{surface}")[0] for name in ("major", "minor")]
+    major, minor = cell_strains(sheet, step, surface)
+    at_cells = "thinning" in sheet.grid["CellData"] if "CellData" in sheet.grid else False
+    thinning = sheet.values(step, "thinning", True)[0] if at_cells else 1 - np.exp(-major - minor)
+    return Strains(nodes[0], nodes[1], sheet.values(step, "thinning")[0], Strains(major, minor, thinning))
+
+
+def draw(axes: Axes, strains: Strains, limits: Limits, margin: float) -> tuple[np.ndarray | None, list[str]]:
+    """Draw the diagram; return the zone of each node and element, None without a curve, and what the diagram says:
+    the verdict by the curve, and that by the thinning."""
+    cells = strains.at_cells or Strains(*np.zeros((3, 0)))
+    major, minor = np.concatenate([strains.major, cells.major]), np.concatenate([strains.minor, cells.minor])
+    count = len(strains.major)
+    zone = None
+    if limits.curve is None:
+        verdict = f"no verdict: {limits.why}; give --curve, --low-carbon-steel, or forming_limit in *MATERIAL"
+        axes.plot(strains.minor, strains.major, ".", color="0.4")
+        axes.plot(cells.minor, cells.major, "x", color="0.6", markersize=3)
+    else:
+        zone = limits.curve.zones(major, minor, margin)
+        verdict = judged(limits.curve, zone, major, minor, count)
+        draw_zones(axes, limits.curve, zone, major, minor, count, margin)
     low, high = axes.get_xlim()
     axes.plot([low, 0, high], [-low, 0, high], color="0.6", linewidth=0.8)
     axes.set(xlim=(low, high), ylim=(min(0, major.min()), None), xlabel="minor strain (logarithmic)",
              ylabel="major strain (logarithmic)")
     axes.grid(True, color="0.9")
-    return zone, said
+    return zone, [verdict, thinned(strains, cells, limits)]
+
+
+def draw_zones(axes: Axes, curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int,
+               margin: float) -> None:
+    """Draw the points in the colours of their zones, the first `count` as nodes, and the curve."""
+    for number, name in enumerate(ZONES):
+        here = np.flatnonzero(zone == number)
+        nodes, elements = here[here < count], here[here >= count]
+        if len(here):
+            axes.plot(minor[nodes], major[nodes], ".", color=COLOURS[number], label=name)
+            axes.plot(minor[elements], major[elements], "x", color=COLOURS[number], markersize=3)
+    at = np.linspace(min(-0.3, minor.min()), max(0.3, minor.max()), 200)
+    axes.plot(at, curve.limit(at), "k-", linewidth=1.5, label=curve.label)
+    axes.plot(at, curve.limit(at) - margin, "k--", linewidth=0.8, label="marginal")
+    axes.legend(frameon=False, fontsize=9)
+
+
+def judged(curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int) -> str:
+    """Return the verdict by the curve on nodes, the first `count`, and elements."""
+    critical = zone == ZONES.index("critical")
+    room = (curve.limit(minor) - major)[zone > 0]
+    nearest = f"; smallest distance below the curve {room.min():.3g}" if room.size and not critical.any() else ""
+    elements = f", {critical[count:].sum()} of {len(zone) - count} elements critical" if len(zone) > count else ""
+    return f"{critical[:count].sum()} of {count} nodes critical{elements} by the curve {curve.label}{nearest}"
+
+
+def thinned(strains: Strains, cells: Strains, limits: Limits) -> str:
+    """Return the verdict by the thinning."""
+    parts = [f"{(values > limits.thinning).sum()} of {len(values)} {name}"
+             for name, values in (("nodes", strains.thinning), ("elements", cells.thinning)) if len(values)]
+    largest = max(strains.thinning.max(), cells.thinning.max(initial=0.0))
+    return (f"thinning above {100 * limits.thinning:.3g} % ({limits.given_by}): {', '.join(parts)}; largest "
+            f"{100 * largest:.3g} %")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the curve."""
-    parser.add_argument("--curve", metavar="FILE", help="measured forming limit curve")
+    """Add the options of the limits."""
+    parser.add_argument("--curve", metavar="FILE", help="measured forming limit curve of the material")
     parser.add_argument("--engineering", action="store_true", help="the strains of --curve are engineering strains")
-    parser.add_argument("--n", type=float, help="hardening exponent of the curve of Keeler and Brazier")
+    parser.add_argument("--low-carbon-steel", action="store_true",
+                        help="the material is low-carbon steel: estimate its curve by Keeler and Brazier")
+    parser.add_argument("--n", type=float, help="hardening exponent of this estimate")
     parser.add_argument("--margin", type=float, default=0.1, help="width of the marginal zone in major strain (0.1)")
+    parser.add_argument("--thinning", type=float, metavar="LIMIT",
+                        help=f"largest thinning allowed (that of *MATERIAL, or {THINNING:g})")
 
 
 def check_options(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
-    """Check the options of the curve."""
-    if (options.n is not None and not options.n > 0) or options.margin < 0:
+    """Check the options of the limits."""
+    if (options.n is not None and not options.n > 0) or not options.margin >= 0:
         parser.error("--n takes a positive number, --margin one that is not negative")
+    if options.thinning is not None and not 0 < options.thinning < 1:
+        parser.error("--thinning takes a fraction between 0 and 1, 0.2 for 20 %")
+    if options.engineering and not options.curve:
+        parser.error("--engineering goes with --curve")
+    if options.curve and (options.low_carbon_steel or options.n):
+        parser.error("--curve goes without --low-carbon-steel and --n")
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -166,11 +290,12 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--output", default="fld.png", help="picture to write: .png, .svg or .pdf (fld.png)")
     options = parser.parse_args(words)
     check_options(parser, options)
-    fields = Fields(options.run)
-    step = fields.last if options.at is None else fields.step_at(options.at)
-    major, minor = (fields.values(step, f"{name}_strain_{options.surface}")[0] for name in ("major", "minor"))
+    sheet = Sheet(options.run)
+    step = sheet.last if options.at is None else sheet.step_at(options.at)
+    account = Account()
+    limits = find_limits(sheet, read_job(sheet.folder), options, account)
     figure, axes = new_figure((8, 5.2))
-    said = draw(axes, major, minor, find_curve(fields, read_job(fields.folder), options), options.margin)[1]
-    axes.set_title(fields.state(step), fontsize=10)
+    said = draw(axes, strains_of(sheet, step, options.surface), limits, options.margin)[1]
+    axes.set_title(sheet.state(step), fontsize=10)
     save(figure, options.output, 130)
-    print(options.output, said, sep="\n")
+    print(options.output, *said, *(f"left out: {item}" for item in account.left_out()), sep="\n")

@@ -19,6 +19,8 @@ def session(path: Path | None = None) -> Iterator[Any]:
         if path:
             gmsh.open(str(path))
         yield gmsh
+    except UnicodeDecodeError:  # of Gmsh's own message, which quotes the file
+        raise Problem(f"{path}: Gmsh: the file is damaged") from None
     except Exception as error:
         if type(error) is Exception:  # Gmsh raises nothing more specific
             raise Problem(f"{path}: Gmsh: {error}" if path else f"Gmsh: {error}") from None

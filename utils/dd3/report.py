@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Make a page about a forming run: one HTML file with its pictures inside, and the pictures as PNG files.
 
-    dd3 report cup.out --mirror x y
+    dd3 report cup.out --mirror x y --low-carbon-steel
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
 
 The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections,
 the outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
 angles, twist), for each phase the tools' motions and forces, what limited its increments and what warned, the
 statistics of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied
-accordingly. The forming limit is the curve of Keeler and Brazier (for low-carbon steel) from the thickness and the
-exponent n of the hardening law or --n, or a measured one: --curve with minor and major logarithmic strain in each
-line. The strains are those at the middle of the sheet.
+accordingly. Forming limit curve and thinning limit are those of `dd3 fld`; without a curve for the material there is no
+verdict. The strains are those at the middle of the sheet.
 """
 
 import argparse
@@ -26,6 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from dd3 import forming_limit, springback
+from dd3.account import Account
 from dd3.command import new_parser
 from dd3.plot import force as forces
 from dd3.plot import sheet as pictures
@@ -64,7 +64,7 @@ class Report:
         self.path: Path = self.pictures / "report.html"
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts: list[str] = []
-        self.limit = ""  # result of the forming limit diagram
+        self.limits: list[str] = []  # results of the forming limit diagram: by the curve, by the thinning
 
     def field(self, name: str) -> np.ndarray:
         """Return a field at the last step."""
@@ -115,8 +115,7 @@ def add_summary(report: Report) -> None:
             ("largest thinning", f"{100 * thinning.max():.3g} % at ({', '.join(f'{x:.1f}' for x in nodes[thin])}) mm"),
             ("largest thickening", f"{max(0.0, -100 * thinning.min()):.3g} %"),
             ("equivalent plastic strain", f"{report.field('equivalent_plastic_strain').max():.4g}")]
-    if report.limit:
-        rows.append(("forming limit", report.limit))
+    rows += zip(("forming limit", "thinning limit"), report.limits)
     tools = [(f"{tool}: largest force along z, largest pressure",
               f"{report.whole * np.abs(report.column(f'{tool}_fz')).max() / 1000:.4g} kN, "
               f"{report.column(f'{tool}_pressure').max():.3g} MPa") for tool in report.tools]
@@ -307,17 +306,17 @@ def add_beads(report: Report) -> None:
 def add_limit_diagram(report: Report) -> None:
     """Add the forming limit diagram and the map of its zones."""
     figure, axes = new_figure((8, 5.2))
-    curve = forming_limit.find_curve(report.sheet, report.job, report.options)
-    zone, said = forming_limit.draw(axes, report.field("major_strain_middle"), report.field("minor_strain_middle"),
-                                    curve, report.options.margin)
+    account = Account()
+    limits = forming_limit.find_limits(report.sheet, report.job, report.options, account)
+    strains = forming_limit.strains_of(report.sheet, report.last, "middle")
+    zone, report.limits = forming_limit.draw(axes, strains, limits, report.options.margin)
     content = report.figure("limit", figure, "forming limit diagram")
-    if zone is None:
-        content += f"<p>{html.escape(said)}</p>"
-    else:
-        report.limit = said
-        content += zone_map(report, zone) + f"<p>{html.escape(said)}. Marginal: less than " \
-            f"{report.options.margin:g} below the curve; wrinkling: thicker than before, the major strain is smaller " \
-            "than minus the minor one.</p>"
+    content += "" if zone is None else zone_map(report, zone)
+    said = [*report.limits, *(f"left out: {item}" for item in account.left_out())]
+    content += "".join(f"<p>{html.escape(line[:1].upper() + line[1:])}.</p>" for line in said)
+    if zone is not None:
+        content += f"<p>Dots: nodes; crosses: elements. Marginal: less than {report.options.margin:g} below the " \
+            "curve; thickening: thicker than before, the major strain is smaller than minus the minor one.</p>"
     report.add("Forming limit", content)
 
 
@@ -327,8 +326,9 @@ def zone_map(report: Report, zone: np.ndarray) -> str:
     plotter = pictures.new_plotter(options, 1)
     plotter.subplot(0, 0)
     mesh = report.run.shape(report.last)
-    # A cell has the worst zone of its nodes.
-    mesh.cell_data["zone"] = np.array([zone[mesh.get_cell(i).point_ids].max() for i in range(mesh.n_cells)])
+    # A cell has the worst zone of its nodes and its own.
+    mesh.cell_data["zone"] = np.array([max(zone[mesh.get_cell(i).point_ids].max(), zone[mesh.n_points + i])
+                                       for i in range(mesh.n_cells)])
     for part in pictures.reflected(mesh, options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface")
         plotter.add_mesh(skin, scalars="zone", cmap=list(forming_limit.COLOURS), show_edges=True, edge_color="#444444",

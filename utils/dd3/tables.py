@@ -13,11 +13,13 @@ Row = dict[str, str]
 
 
 def read_text(path: str | Path) -> str:
-    """Return the text of a file; bytes that are not UTF-8 are replaced."""
+    """Return the text of a file, of UTF-16 too where it begins so; bytes that are not UTF-8 are replaced."""
     try:
-        text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
+        data = Path(path).read_bytes()
     except OSError as error:
         raise Problem(f"{path}: {error.strerror}") from None
+    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    text = data.decode("utf-16" if wide else "utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n")
     if "\0" in text:
         raise Problem(f"{path}: not a text")
     return text
@@ -30,11 +32,15 @@ def read_table(path: str | Path, *needed: str) -> list[Row]:
     """
     lines = [line for line in read_text(path).splitlines() if line.strip() and not line.lstrip().startswith("#")]
     reader = csv.DictReader(lines, skipinitialspace=True)
-    reader.fieldnames = [name.strip() for name in reader.fieldnames or []]
+    try:
+        reader.fieldnames = [name.strip() for name in reader.fieldnames or []]
+        rows = list(reader)
+    except csv.Error as error:
+        raise Problem(f"{path}: not a table with commas: {error}") from None
     for name in needed:
         if name not in reader.fieldnames:
             raise Problem(f"{path}: no column '{name}'")
-    return [{name: value.strip() if isinstance(value, str) else value for name, value in row.items()} for row in reader]
+    return [{name: value.strip() if isinstance(value, str) else value for name, value in row.items()} for row in rows]
 
 
 def is_whole(row: Row) -> bool:

@@ -106,6 +106,9 @@ def of_cad(path: Path, size: float | None, side: str | None, words: Sequence[str
 def of_facets(path: Path) -> Triangles:
     """Return the facets of a file as triangles."""
     mesh = read_facets(path)
+    for note in mesh.notes:
+        if note.startswith("left out: "):
+            print(note)
     quads = mesh.facets[:, 3] >= 0
     return Triangles(mesh.nodes, np.vstack((mesh.facets[:, :3], mesh.facets[quads][:, [0, 2, 3]])))
 

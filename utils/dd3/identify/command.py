@@ -14,8 +14,9 @@ not convex, have an infinite cost. The result is a file with one *MATERIAL block
     dd3 identify steel --criterion hill48 --r 0:1.79 45:1.51 90:2.27 --hardening voce --curve tension.csv
     dd3 identify steel --hardening voce --backstress lemaitre_chaboche --curve reversal.csv
 
-The curve is a table: logarithmic strain and true stress (MPa) in two columns, separated by commas, semicolons or
-blanks; lines before the first number are skipped. Each line of the file of --data gives one of the values of the
+The curve is a table: logarithmic strain and true stress (MPa) in two columns, or in those that its heading names,
+separated by commas, semicolons, tabs or blanks, with quotes or without, with a decimal point, or a comma where commas do
+not separate. The heading may give units (%, GPa). Other columns, and rows above the numbers, are listed as left out. Each line of the file of --data gives one of the values of the
 options --r, --stress and so on, such as `r 45 1.51` or `biaxial_stress 1.18 2`; # begins a comment.
 """
 
@@ -27,12 +28,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from dd3.columns import every
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.identify.criterion import CRITERIA, criterion
 from dd3.identify.hardening import BACKSTRESSES, LAWS, hardening
 from dd3.identify.least_squares import UNIT, NoStart, Points
-from dd3.identify.measurements import KEYS, TENSION, Datum, every, from_argument, read_data
+from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
 from dd3.plot.figures import save
 
 

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dd3.command import new_parser
 from dd3.identify.command import add_curve, check_options, identify
 from dd3.identify.hardening import LAWS
+from dd3.identify.measurements import check_law
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -28,4 +29,5 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.set_defaults(criterion=None)
     options = parser.parse_args(words)
     check_options(parser, options)
+    check_law("--yield", options.yields)
     identify(options, options.yields)

@@ -22,9 +22,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.account import Account
 from dd3.errors import Problem
 from dd3.progress import Progress
 from dd3.tools import faces, moved
+from dd3.tools.cad_account import enter_cad
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
 from dd3.tools.division import Division
@@ -443,7 +445,10 @@ def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
 def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
     """Return the model of a CAD file, meshed within the tolerance."""
     model = Model()
+    account = Account()
     load(gmsh, path)
+    enter_cad(path, account, len(gmsh.model.getEntities(2)))
+    model.notes += [f"left out: {item}" for item in account.left_out()]
     model.notes += sew(gmsh, path, options.sew or options.tolerance, options.sew is not None)
     if options.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)

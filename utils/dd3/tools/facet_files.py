@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3.account import Account
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.mesh import inp_blocks, inp_elements
@@ -53,49 +54,117 @@ def read_facets(path: Path) -> Facets:
 def read_stl(path: Path) -> Facets:
     """Read an STL file, binary or text; equal points become one node."""
     data = path.read_bytes()
-    count = int(np.frombuffer(data[80:84], "<u4")[0]) if len(data) >= 84 else -1
-    if len(data) == 84 + 50 * count:
-        record = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
-        points = np.frombuffer(data, record, count, 84)["points"].astype(float)
-        part, names = np.zeros(count, int), ["stl"]
+    account = Account()
+    if is_text(data):
+        points, part, names = stl_text(path, data, account)
     else:
-        points, part, names = stl_text(path, data)
+        points = stl_binary(path, data, account)
+        part, names = np.zeros(len(points), int), ["stl"]
     if not len(points):
         raise Problem(f"{path}: an STL file without facets")
     # Without -0, which differs from 0 bit by bit.
     nodes, inverse = np.unique(points.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
     facets = np.column_stack([inverse.reshape(-1, 3), np.full(len(points), -1)])
-    return Facets(nodes, facets, part, names)
+    return Facets(nodes, facets, part, names, [f"left out: {item}" for item in account.left_out()])
 
 
-def stl_text(path: Path, data: bytes) -> tuple[np.ndarray, np.ndarray, list[str]]:
+def is_text(data: bytes) -> bool:
+    """Tell whether an STL file is a text: a binary one may begin with "solid" as well, but has other bytes after its
+    header, or the length that its header gives."""
+    if not data.removeprefix(b"\xef\xbb\xbf").lstrip()[:5].lower() == b"solid":
+        return False
+    count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
+    if len(data) == 84 + 50 * count:
+        return False
+    start = data[80:4096].lower()
+    return not re.search(rb"[\x00-\x08\x0e-\x1f]", start) or (b"facet" in data[:4096].lower() and b"vertex" in start)
+
+
+def stl_binary(path: Path, data: bytes, account: Account) -> np.ndarray:
+    """Return the points of a binary file; bytes behind its facets, and the attributes of the facets, are left out."""
+    if len(data) < 84:
+        raise Problem(f"{path}: neither a text nor a binary STL file: {len(data)} bytes")
+    count, there = int.from_bytes(data[80:84], "little"), (len(data) - 84) // 50
+    if count > there:
+        if not any(data[:80]) or not re.search(rb"[^\x09-\x0d\x20-\x7e]", data[:80].rstrip(b"\0")):
+            raise Problem(f"{path}: the binary STL file is cut off: {there} of {count} facets")
+        raise Problem(f"{path}: neither a text nor a complete binary STL file; as one it would be cut off: {there} of "
+                      f"{count} facets")
+    record = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets = np.frombuffer(data, record, count, 84)
+    for number in np.flatnonzero(facets["attribute"])[:1]:
+        marked = int(np.count_nonzero(facets["attribute"]))
+        account.enter(f"{path}: facet {number + 1}", "attribute").leave(f"colours and marks; of {marked} facets")
+    if len(data) > 84 + 50 * count:
+        account.enter(f"{path}: byte {85 + 50 * count}", f"{len(data) - 84 - 50 * count} bytes").leave(
+            f"behind the {count} facets of the header")
+    return np.asarray(facets["points"], float)
+
+
+# What may follow a keyword of STL: the keyword that opens it, and the one expected next.
+STL_OPENS = {"facet": "solid", "outer": "facet", "vertex": "outer"}
+STL_CLOSES = {"endloop": "outer", "endfacet": "facet", "endsolid": "solid"}
+
+
+def stl_text(path: Path, data: bytes, account: Account) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Return the points, the part of each facet and the parts' names of a text."""
-    text = data.decode("utf-8-sig", errors="replace")
-    if not text.lstrip().lower().startswith("solid") or "facet" not in text.lower():
-        raise Problem(f"{path}: neither a text nor a complete binary STL file")
-    points: list[Any] = []
+    points: list[list[float]] = []
     part: list[int] = []
     names: list[str] = []
+    is_open: list[str] = []
+    text = data.decode("utf-8-sig", errors="replace")
     for number, line in enumerate(text.splitlines(), 1):
         words = line.split()
-        key = words[0].lower() if words else ""
+        if not words:
+            continue
+        key = "".join(words[:2]).lower() if words[0].lower() == "end" else words[0].lower()
+        if key in ("facet", "outer", "vertex", *STL_CLOSES) and not names:
+            raise Problem(f"{path}:{number}: error: {key} before the first solid")
         if key == "solid":
+            if is_open:
+                raise cut_off(path, number, is_open, "solid")
             names.append(" ".join(words[1:]) or f"solid {len(names) + 1}")
+            is_open = ["solid"]
+        elif key in STL_OPENS and key != "vertex":
+            if is_open[-1:] != [STL_OPENS[key]]:
+                raise cut_off(path, number, is_open, key)
+            is_open.append(key)
         elif key == "vertex":
-            try:
-                point = [float(word) for word in words[1:4]]
-            except ValueError:
-                point = []
-            if len(point) != 3:
-                raise Problem(f"{path}:{number}: expected vertex x y z, got '{line.strip()}'")
-            points.append(point)
-        elif key == "endfacet":
-            if len(points) != 3 * (len(part) + 1):
-                raise Problem(f"{path}:{number}: a facet with {len(points) - 3 * len(part)} vertices, expected 3")
-            part.append(len(names) - 1)
-    if len(points) != 3 * len(part):
-        raise Problem(f"{path}: the last facet is not complete: the file is cut off")
+            if is_open[-1:] != ["outer"]:
+                raise cut_off(path, number, is_open, key)
+            points.append(vertex(path, number, line, words))
+        elif key in STL_CLOSES:
+            if is_open[-1:] != [STL_CLOSES[key]]:
+                raise cut_off(path, number, is_open, key)
+            is_open.pop()
+            if key == "endfacet":
+                if len(points) != 3 * (len(part) + 1):
+                    raise Problem(f"{path}:{number}: error: a facet with {len(points) - 3 * len(part)} vertices, "
+                                  "expected 3")
+                part.append(len(names) - 1)
+        elif is_open or names:
+            account.enter(f"{path}:{number}", words[0]).leave("not a keyword of STL")
+    if is_open:
+        raise Problem(f"{path}: the file is cut off: it ends inside {' of '.join(reversed(is_open))}")
     return np.array(points, float).reshape(-1, 3, 3), np.array(part, int), names
+
+
+def vertex(path: Path, number: int, line: str, words: list[str]) -> list[float]:
+    """Return the coordinates of a line of a vertex."""
+    try:
+        point = [float(word) for word in words[1:]]
+    except ValueError:
+        point = []
+    if len(point) != 3:
+        raise Problem(f"{path}:{number}: error: expected vertex x y z, got '{line.strip()}'")
+    return point
+
+
+def cut_off(path: Path, number: int, is_open: list[str], key: str) -> Problem:
+    """Return the Problem of a keyword that is not where it may be."""
+    inside = f"inside {is_open[-1]}" if is_open else "outside of a solid"
+    return Problem(f"{path}:{number}: error: {key} {inside}: a line before it is missing, or the file was cut off and "
+                   "joined")
 
 
 def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
@@ -263,20 +332,56 @@ def corners_of(labels: list[int]) -> tuple[int, ...]:
 
 def read_msh(path: Path) -> Facets:
     """Read the facets and solids of a Gmsh mesh; parts are its physical groups."""
+    account = Account()
+    enter_sections(path, account)
     with session(path) as gmsh:
         labels, xyz, _ = gmsh.model.mesh.getNodes()
         nodes = dict(zip(labels.tolist(), np.reshape(xyz, (-1, 3)).tolist()))
         dimension = 2 if gmsh.model.mesh.getElements(2)[0].size else 3
         cells = []
+        for other in range(4):
+            count = sum(len(tags) for tags in gmsh.model.mesh.getElements(other)[1])
+            if count and other != dimension:
+                account.enter(str(path), f"{count} elements of dimension {other}").leave(
+                    f"the facets are the elements of dimension {dimension}")
         for _, entity in gmsh.model.getEntities(dimension):
             groups = gmsh.model.getPhysicalGroupsForEntity(dimension, entity)
             name = f"face {entity}"
             if len(groups):
                 name = gmsh.model.getPhysicalName(dimension, groups[0]) or str(groups[0])
+            for group in groups[1:]:
+                title = gmsh.model.getPhysicalName(dimension, group) or group
+                account.enter(str(path), f"group {title} of face {entity}").leave(
+                    f"the part of the face is its first group, {name}")
             for kind, _, members in zip(*gmsh.model.mesh.getElements(dimension, entity)):
-                _, _, _, count, _, corners = gmsh.model.mesh.getElementProperties(kind)
+                title, _, _, count, _, corners = gmsh.model.mesh.getElementProperties(kind)
+                if corners not in ((3, 4) if dimension == 2 else SOLIDS):
+                    account.enter(str(path), f"elements {title}").leave("not triangles, quadrilaterals or solids")
+                    continue
+                if count > corners:
+                    account.enter(str(path), f"nodes between corners of {title}").leave("facets have corners only")
                 cells += [(name, dimension, tuple(row[:corners])) for row in np.reshape(members, (-1, count)).tolist()]
-        return from_cells(path, nodes, cells)
+        result = from_cells(path, nodes, cells)
+    result.notes += [f"left out: {item}" for item in account.left_out()]
+    return result
+
+
+# Sections of a Gmsh mesh that are read.
+MSH_SECTIONS = {b"MeshFormat", b"PhysicalNames", b"Entities", b"PartitionedEntities", b"Nodes", b"Elements", b"NOD",
+                b"ELM", b"Comments"}
+
+
+def enter_sections(path: Path, account: Account) -> None:
+    """Enter the sections of a Gmsh mesh; one without its end is refused."""
+    data = path.read_bytes()
+    for found in re.finditer(rb"^\$(?!End)([A-Za-z]\w*)\s*$", data, re.MULTILINE):
+        name, place = found[1], f"{path}:{data[:found.start()].count(10) + 1}"
+        ended = re.search(rb"^\$(?:End" + name + rb"|ENDNOD|ENDELM)\s*$", data[found.end():], re.MULTILINE)
+        if name in MSH_SECTIONS and not ended:
+            raise Problem(f"{place}: error: ${name.decode()} without its end: the file is cut off")
+        entry = account.enter(place, f"${name.decode()}")
+        if name in MSH_SECTIONS:
+            entry.use()
 
 
 def read_vtk(path: Path) -> Facets:
@@ -285,24 +390,96 @@ def read_vtk(path: Path) -> Facets:
     from vtkmodules.vtkCommonCore import vtkLogger, vtkObject
     vtkObject.GlobalWarningDisplayOff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    account = Account()
+    wanted = {".ply": enter_ply, ".obj": enter_obj}.get(path.suffix.lower(), lambda *_: None)(path, account)
     try:
         data = pv.read(Path(path))
+        if isinstance(data, pv.MultiBlock):
+            data = data.combine()
+        enter_data(path, data, account, wanted is None)
+        data = data if isinstance(data, pv.PolyData) else data.extract_surface(nonlinear_subdivision=0,
+                                                                              algorithm="dataset_surface")
+        faces, points = np.asarray(data.faces), np.asarray(data.points, float)
     except Exception as error:  # readers raise many kinds
         raise Problem(f"{path}: cannot be read: {error}") from None
-    if isinstance(data, pv.MultiBlock):
-        data = data.combine()
-    data = data if isinstance(data, pv.PolyData) else data.extract_surface(nonlinear_subdivision=0,
-                                                                          algorithm="dataset_surface")
     if not data.n_cells or not data.n_faces:
-        raise Problem(f"{path}: no facets; a damaged file or one of another kind")
-    cells, faces, i = [], np.asarray(data.faces), 0
+        known = "".join(f"; {item}" for item in account.left_out()[:5])
+        raise Problem(f"{path}: no facets; a damaged file or one of another kind{known}")
+    if wanted is not None and data.n_faces != wanted:
+        raise Problem(f"{path}: {data.n_faces} of {wanted} faces are read: the file is cut off or damaged")
+    cells, i = [], 0
     while i < len(faces):
         count = int(faces[i])
+        if not 0 < count < len(faces) - i:
+            raise Problem(f"{path}: a polygon of {count} nodes: the file is damaged")
         ring = faces[i + 1:i + 1 + count].tolist()
         if count in (3, 4):
             cells.append(("vtk", 2, tuple(ring)))
         else:  # a polygon becomes a fan of triangles
             cells += [("vtk", 2, (ring[0], ring[k], ring[k + 1])) for k in range(1, count - 1)]
         i += count + 1
-    nodes = dict(enumerate(np.asarray(data.points, float).tolist()))
-    return from_cells(path, nodes, cells)
+    result = from_cells(path, dict(enumerate(points.tolist())), cells)
+    result.notes += [f"left out: {item}" for item in account.left_out()]
+    return result
+
+
+def enter_data(path: Path, data: Any, account: Account, fields: bool) -> None:
+    """Enter the fields of a data set, if wanted, and its lines and points, which no facet is made of."""
+    if fields:
+        for place, names in (("nodes", data.point_data.keys()), ("cells", data.cell_data.keys()),
+                             ("the whole", data.field_data.keys())):
+            for name in names:
+                account.enter(str(path), f"field {name} of {place}").leave("facets have no fields")
+    kinds = getattr(data, "celltypes", None)
+    counts = {"lines": getattr(data, "n_lines", 0), "points": getattr(data, "n_verts", 0)} if kinds is None else {
+        "lines": int(np.isin(kinds, (3, 4, 21)).sum()), "points": int(np.isin(kinds, (1, 2)).sum())}
+    for name, count in counts.items():
+        if count:
+            account.enter(str(path), f"{count} {name}").leave("no facets")
+
+
+PLY_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2,
+             "double": 8, "float64": 8}
+
+
+def enter_ply(path: Path, account: Account) -> int | None:
+    """Enter the elements and properties that the head of a PLY file lists; return the number of its faces. A file whose
+    body is too short for its head is refused."""
+    head, _, body = path.read_bytes().partition(b"end_header")
+    element, faces, count, rows, least, text = "", None, 0, 0, 0, True
+    for number, line in enumerate(head.decode("latin-1").splitlines(), 1):
+        words = line.split()
+        if words[:1] == ["format"]:
+            text = words[1:2] == ["ascii"]
+        elif words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
+            element, count = words[1], int(words[2])
+            rows += count
+            entry = account.enter(f"{path}:{number}", f"element {element}, {count}")
+            faces = count if element == "face" else faces
+            if element in ("vertex", "face"):
+                entry.use()
+        elif words[:1] == ["property"] and len(words) > 2:
+            least += count * PLY_SIZES.get(words[1], 1 if words[1] == "list" else 4)
+            if element in ("vertex", "face"):
+                entry = account.enter(f"{path}:{number}", f"property {words[-1]} of element {element}")
+                if words[-1] in (("x", "y", "z") if element == "vertex" else ("vertex_indices", "vertex_index")):
+                    entry.use()
+    there = sum(bool(line.strip()) for line in body.splitlines()) if text else len(body)
+    if there < (rows if text else least):
+        raise Problem(f"{path}: the file is cut off: {there} of {rows} lines behind its head" if text else
+                      f"{path}: the file is cut off: {there} bytes behind its head, which needs {least} or more")
+    return faces
+
+
+def enter_obj(path: Path, account: Account) -> int:
+    """Enter the lines of an OBJ file by their keywords; return the number of its faces."""
+    faces = 0
+    text = path.read_text(encoding="utf-8", errors="replace").replace("\\\n", " ")
+    for number, line in enumerate(text.splitlines(), 1):
+        word = line.partition("#")[0].split()[:1]
+        if not word:
+            continue
+        faces += word[0] == "f"
+        if word[0] not in ("v", "f"):
+            account.enter(f"{path}:{number}", word[0])
+    return faces
