@@ -25,6 +25,7 @@ from dd3.errors import Problem
 from dd3.fields import Fields
 from dd3.gmsh_session import session
 from dd3.hanging import TOLERANCE, hanging, outer_faces
+from dd3.inp.blocks import refuse
 from dd3.inp.model import Model, set_members
 from dd3.inp.scope import Element, Scope
 
@@ -139,7 +140,7 @@ def mesh_of(model: Model, scope: Scope) -> Mesh:
     used = set(itertools.chain.from_iterable(mesh.elements.values()))
     for label in sorted(used - scope.nodes.keys())[:1]:
         owner = next(element for element in scope.elements.values() if label in element.nodes)
-        raise Problem(f"{owner.place}: error: node {label} of an element has no coordinates")
+        refuse(owner.place, f"node {label} of an element has no coordinates")
     mesh.nodes = {label: scope.nodes[label] for label in sorted(used)}
     unused = [label for label in scope.nodes if label not in used]
     if unused:
@@ -152,13 +153,10 @@ def mesh_of(model: Model, scope: Scope) -> Mesh:
 
 def hexahedron(label: int, element: Element) -> list[int]:
     """Return the nodes of a hexahedron."""
-    count = next(size for size in (20, 27, 8) if str(size) in element.kind)
-    if len(element.nodes) != count:
-        raise Problem(f"{element.place}: error: element {label}: an element with {len(element.nodes)} nodes, "
-                      f"expected {count} for type {element.kind}; a line that ends with a comma goes on in the next one")
-    if len(set(element.nodes)) < count:
-        raise Problem(f"{element.place}: error: element {label} names a node twice; wedges and pyramids are not read")
-    return element.nodes
+    nodes = element.counted(label, next(size for size in (20, 27, 8) if str(size) in element.kind))
+    if len(set(nodes)) < len(nodes):
+        refuse(element.place, f"element {label} names a node twice; wedges and pyramids are not read")
+    return nodes
 
 
 def sets_of(model: Model, scope: Scope, of_nodes: bool, there: Container[int]) -> dict[str, set[int]]:
@@ -329,4 +327,4 @@ def main(words: Sequence[str] | None = None) -> None:
     write_inp(options.target, mesh, options.source)
     report(options.target, mesh, merged, mirrored)
     if doubled:
-        print(f"warning: {doubled} nodes are at the place of another one: the elements there are not joined; see --merge")
+        print(f"warning: {doubled} nodes at the place of another one do not join the elements there; see --merge")

@@ -4,7 +4,7 @@
 Source: Abaqus Keywords Reference Guide. What is not read of them is refused, as the mesh depends on it.
 """
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product
 
 import numpy as np
@@ -20,12 +20,12 @@ def add_to_set(scope: Scope, of_nodes: bool, name: str, numbers: list[int], plac
         scope.set_of(sets, name, place).items += [range(number, number + 1) for number in numbers]
 
 
-def set_members(scope: Scope, of_nodes: bool, name: str, place: str, what: str) -> list[int]:
-    """Return the members of a set that must be there."""
+def set_members(scope: Scope, of_nodes: bool, name: str, place: str, what: str, complete: bool = False) -> list[int]:
+    """Return the members of a set that must be there, with `complete` all of them."""
     def missing(why: str) -> None:
         refuse(place, f"{what}: {why}")
 
-    found = members(scope, of_nodes, name, missing)
+    found = members(scope, of_nodes, name, missing, complete)
     return found if found else refuse(place, f"{what}: the set '{name}' is empty")
 
 
@@ -88,7 +88,7 @@ def arc(ends: np.ndarray, centre: np.ndarray, normal: list[str], at: np.ndarray,
     one, two = ends - centre
     radii = np.linalg.norm(one), np.linalg.norm(two)
     if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > 1e-3 * max(radii):
-        refuse(row.place, f"*NGEN, LINE=C: the ends are {radii[0]:.6g} and {radii[1]:.6g} from the centre, not equally far")
+        refuse(row.place, f"*NGEN, LINE=C: the ends are {radii[0]:.6g} and {radii[1]:.6g} from the centre")
     cross = np.cross(one, two)
     if any(normal):
         axis = unit(np.array([real(word, row.place, "*NGEN") for word in normal]), row.place, "*NGEN")
@@ -116,7 +116,7 @@ def nfill(scope: Scope, block: Block) -> None:
     block.all_read()
     for row in block.data():
         words = block.words(row, 4)
-        one, two = (set_members(scope, True, name_of(word), row.place, "*NFILL") for word in words[:2])
+        one, two = (set_members(scope, True, name_of(word), row.place, "*NFILL", complete=True) for word in words[:2])
         count = whole(words[2], row.place, "*NFILL")
         step = whole(words[3], row.place, "*NFILL") if words[3] else 1
         if len(one) != len(two):
@@ -147,18 +147,19 @@ def ncopy(scope: Scope, block: Block) -> None:
     move = copier(block, kind)
     labels = set_members(scope, True, old, block.place, "*NCOPY")
     for number in labels:
-        scope.add_node(label(str(number + change), block.place, "*NCOPY"), move(scope.nodes[number]), block.place, "*NCOPY")
+        copy = label(str(number + change), block.place, "*NCOPY")
+        scope.add_node(copy, move(scope.nodes[number]), block.place, "*NCOPY")
     add_to_set(scope, True, new, [number + change for number in labels], block.place)
 
 
-def copier(block: Block, kind: str):
+def copier(block: Block, kind: str) -> Callable[[Point], Point]:
     """Return the function that places a copied node."""
     rows = block.data(blank=kind == "shift")
     if kind == "shift":
         return placement(block, rows).of
     need = {"point": 3, "line": 6, "mirror": 9}.get(kind)
     if need is None:
-        refuse(block.place, "*NCOPY: expected SHIFT or REFLECT=POINT, LINE or MIRROR" + (f", got '{kind}'" if kind else ""))
+        refuse(block.place, f"*NCOPY: expected SHIFT or REFLECT=POINT, LINE or MIRROR, got '{kind}'")
     values = np.array([value for row in rows for value in block.numbers(row, 6 if need > 3 else 3)])
     if len(values) < need:
         refuse(block.place, f"*NCOPY, REFLECT={kind.upper()}: expected {need} coordinates")

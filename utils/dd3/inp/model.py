@@ -237,7 +237,7 @@ class Model:
         instance, point, rest = word.partition(".")
         if point and rest and instance in self.instances:
             number = label(rest, row.place, block.shown) if rest.isdigit() else 0
-            self.target(block, instance, of_nodes, name).items.append(range(number, number + 1) if number else rest)
+            self.target(block, instance, of_nodes, name).items.append(range(number, number + 1) if number else word)
             return
         # In the assembly a set may have members in several instances.
         holders = [other.name for other in self.instances.values()

@@ -79,6 +79,13 @@ class Element(NamedTuple):
     place: str
     group: str = ""
 
+    def counted(self, label: int, count: int) -> list[int]:
+        """Return the nodes, whose number must be that of the type."""
+        if len(self.nodes) == count:
+            return self.nodes
+        return refuse(self.place, f"element {label}: an element with {len(self.nodes)} nodes, expected {count} for "
+                      f"type {self.kind}; a line that ends with a comma goes on in the next one")
+
 
 @dataclass
 class Scope:
@@ -109,13 +116,13 @@ class Scope:
         if there is point or there == point:
             return
         if max(abs(a - b) for a, b in zip(there, point)) > 1e-9 * max(map(abs, (*there, *point))):
-            refuse(place, f"{what}: node {number} is given twice: at {shown(point)} here, at {shown(there)} in {first}")
+            refuse(place, f"{what}: node {number} is given twice: at {shown(point)}, and at {shown(there)} in {first}")
 
     def add_element(self, number: int, element: Element) -> None:
         """Add an element; one that is there must be the same."""
         there = self.elements.setdefault(number, element)
         if there[:2] != element[:2]:
-            refuse(element.place, f"element {number} is given twice, with other nodes or of another type in {there.place}")
+            refuse(element.place, f"element {number} is given twice, otherwise in {there.place}")
 
     def node(self, word: str, place: str, what: str) -> int:
         """Return the label of a node that is there."""
@@ -127,14 +134,17 @@ class Scope:
         return sets.setdefault(name, Members(place))
 
 
-def members(scope: Scope, of_nodes: bool, name: str, missing: Callable[[str], None]) -> list[int]:
-    """Return the members of a set that are there. What is not there is told to `missing`."""
+def members(scope: Scope, of_nodes: bool, name: str, missing: Callable[[str], None],
+            absent_too: bool = True) -> list[int]:
+    """Return the members of a set that are there. What is not there is told to `missing`: sets that are named, and
+    unless `absent_too` is false labels."""
     sets, there = (scope.node_sets, scope.nodes) if of_nodes else (scope.element_sets, scope.elements)
     found = list(dict.fromkeys(walk(scope, of_nodes, name, missing, ())))
     absent = [number for number in found if number not in there]
     if absent:
         what = "node" if of_nodes else "element"
-        missing(f"there is no {what} {absent[0]}" + (f", and {len(absent) - 1} more" if absent[1:] else ""))
+        if absent_too:
+            missing(f"there is no {what} {absent[0]}" + (f", and {len(absent) - 1} more" if absent[1:] else ""))
         found = [number for number in found if number in there]
     return found if sets[name].ordered else sorted(found)
 
@@ -143,6 +153,8 @@ def walk(scope: Scope, of_nodes: bool, name: str, missing: Callable[[str], None]
          above: tuple[str, ...]) -> Iterator[int]:
     """Yield the labels in a set and in the sets that it names."""
     sets, there = (scope.node_sets, scope.nodes) if of_nodes else (scope.element_sets, scope.elements)
+    if name not in sets:  # that of a part by the name of its instance
+        name = name.partition(".")[2] or name
     if name in above:
         missing(f"the set '{name}' names itself")
         return

@@ -168,10 +168,8 @@ def corners_and_dimension(label: int, element: Element) -> tuple[list[int], int]
     if not kind_of:
         return [], 0
     count = int(kind_of[1])
-    if len(element.nodes) != count:
-        raise Problem(f"{element.place}: error: element {label}: an element with {len(element.nodes)} nodes, "
-                      f"expected {count} for type {element.kind}; a line that ends with a comma goes on in the next one")
-    return element.nodes[:(3 if count in (3, 6) else 4) if shell else CORNERS.get(count, count)], 2 if shell else 3
+    corners = (3 if count in (3, 6) else 4) if shell else CORNERS.get(count, count)
+    return element.counted(label, count)[:corners], 2 if shell else 3
 
 
 def dyna_lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
