@@ -9,8 +9,9 @@ module dd3_mesh_inp_mesh
   use dd3_input_bezier_file, only : push_file_errors
   use dd3_input_case, only : mesh_spec_t
   use dd3_mesh_hexahedra, only : find_neighbours, neighbours_t
-  use dd3_mesh_inp, only : inp_t, inp_set_t
-  use dd3_mesh_inp_check, only : check_layers, check_neighbours, check_places, check_shapes
+  use dd3_mesh_inp, only : inp_t, inp_set_t, position_of_set
+  use dd3_mesh_inp_check, only : check_hanging, check_layers, check_neighbours, &
+      check_places, check_shapes
   use dd3_mesh_inp_element, only : node_order
   use dd3_mesh_inp_file, only : read_inp
   use dd3_mesh_layers, only : find_layers, layers_t, turn_of
@@ -18,6 +19,11 @@ module dd3_mesh_inp_mesh
   implicit none
   private
   public :: new_inp_mesh
+
+  !> Which nodes or elements a set names by their labels.
+  type :: members_t
+    logical, allocatable :: named(:)
+  end type members_t
 
 contains
 
@@ -45,7 +51,7 @@ contains
       return
     end if
     if (inp%errors%count == 0) call resolve(mesh, inp, node)
-    if (inp%errors%count == 0) call check_geometry(inp, node(:8, :), layers)
+    if (inp%errors%count == 0) call check_geometry(inp, node, layers)
     call push_file_errors(errors, inp%errors, spec%source%at("file"))
     if (inp%errors%count > 0) return
     mesh%x = inp%x(:, :inp%n_node)
@@ -81,7 +87,7 @@ contains
     call index_labels(elements, inp, "element", inp%element_label, inp%element_line)
     call resolve_elements(inp, nodes, node)
     if (inp%errors%count == 0) call report_unused(inp, node)
-    call resolve_sets(mesh, inp, nodes, elements)
+    call resolve_sets(mesh, inp, nodes, elements, node)
     mesh%node_label = inp%node_label
   end subroutine resolve
 
@@ -159,20 +165,24 @@ contains
   end subroutine report_unused
 
   !> Check shapes and neighbours, and find the thickness direction.
-  subroutine check_geometry(inp, corner, layers)
+  subroutine check_geometry(inp, node, layers)
     type(inp_t), intent(inout) :: inp
-    !> Nodes at the corners, `(8, n_element)`.
-    integer, intent(in) :: corner(:, :)
+    !> Nodes of the elements, their corners first, `(n_element_node, n_element)`.
+    integer, intent(in) :: node(:, :)
     type(layers_t), intent(out) :: layers
 
     type(neighbours_t) :: neighbours
 
-    call check_shapes(inp, corner)
-    call check_places(inp, corner)
-    call find_neighbours(neighbours, corner, inp%n_node)
-    call check_neighbours(inp, neighbours)
-    if (inp%errors%count > 0) return
-    call find_layers(layers, neighbours, corner, inp%x)
+    associate (corner => node(:8, :))
+      call check_shapes(inp, corner)
+      call check_places(inp, corner)
+      call find_neighbours(neighbours, corner, inp%n_node)
+      call check_neighbours(inp, neighbours)
+      if (inp%errors%count > 0) return
+      call check_hanging(inp, node, neighbours)
+      if (inp%errors%count > 0) return
+      call find_layers(layers, neighbours, corner, inp%x)
+    end associate
     call check_layers(inp, layers)
   end subroutine check_geometry
 
@@ -264,27 +274,36 @@ contains
   end function meaning
 
   !> Make the sets: those of nodes as they are, those of elements with their nodes as well.
-  subroutine resolve_sets(mesh, inp, nodes, elements)
+  subroutine resolve_sets(mesh, inp, nodes, elements, node)
     type(mesh_t), intent(inout) :: mesh
     type(inp_t), intent(inout) :: inp
     type(number_index_t), intent(in) :: nodes, elements
+    !> Nodes of the elements in the file's order.
+    integer, intent(in) :: node(:, :)
 
+    type(members_t) :: of(inp%n_set)
     integer, allocatable :: member(:)
-    integer :: s, n, k, n_set
+    integer :: s, n, k, i
 
-    n_set = inp%n_set
-    n = count(inp%set(:n_set)%of_elements)
-    allocate (mesh%set(n_set - n), mesh%element_set(n))
+    do s = 1, inp%n_set
+      if (inp%set(s)%of_elements) then
+        call own_members(inp, inp%set(s), elements, inp%n_element, of(s)%named)
+      else
+        call own_members(inp, inp%set(s), nodes, inp%n_node, of(s)%named)
+      end if
+    end do
+    call add_sources(inp, node, of)
+    n = count(inp%set(:inp%n_set)%of_elements)
+    allocate (mesh%set(inp%n_set - n), mesh%element_set(n))
     n = 0
     k = 0
-    do s = 1, n_set
+    do s = 1, inp%n_set
+      member = pack([(i, i=1, size(of(s)%named))], of(s)%named)
       if (inp%set(s)%of_elements) then
-        call members_of(inp, inp%set(s), elements, inp%n_element, member)
         k = k + 1
         mesh%element_set(k)%name = lower_case(inp%set(s)%name)
         call move_alloc(member, mesh%element_set(k)%element)
       else
-        call members_of(inp, inp%set(s), nodes, inp%n_node, member)
         n = n + 1
         mesh%set(n)%name = lower_case(inp%set(s)%name)
         call move_alloc(member, mesh%set(n)%node)
@@ -292,17 +311,17 @@ contains
     end do
   end subroutine resolve_sets
 
-  !> Return the members of a set in ascending order; report those that the file does not have.
-  subroutine members_of(inp, set, numbers, n, member)
+  !> Find the nodes or elements that a set names by their labels; report those that the file does
+  !> not have, and an empty set.
+  subroutine own_members(inp, set, numbers, n, named)
     type(inp_t), intent(inout) :: inp
     type(inp_set_t), intent(in) :: set
     type(number_index_t), intent(in) :: numbers
     !> Number of all nodes or elements.
     integer, intent(in) :: n
-    integer, allocatable, intent(out) :: member(:)
+    logical, allocatable, intent(out) :: named(:)
 
     character(len=:), allocatable :: what
-    logical, allocatable :: named(:)
     integer :: i, k, before
 
     what = trim(merge("element", "node   ", set%of_elements))
@@ -315,10 +334,66 @@ contains
           set%name//"' names "//what//" "//to_text(set%label(i))// &
           ", which the file does not have", "labels of "//what//"s")
     end do
-    member = pack([(i, i=1, n)], named)
-    if (set%n == 0) call inp%report(set%opened, "set '"//set%name//"' is empty", &
-        "labels of "//what//"s")
-  end subroutine members_of
+    if (set%n == 0 .and. size(set%source) == 0) call inp%report(set%opened, "set '"//set%name// &
+        "' is empty", "labels of "//what//"s")
+  end subroutine own_members
+
+  !> Add the members of the sets that sets name, until nothing changes; report sets that the file
+  !> does not have.
+  subroutine add_sources(inp, node, of)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes of the elements.
+    integer, intent(in) :: node(:, :)
+    !> Members of the sets; get those of others.
+    type(members_t), intent(inout) :: of(:)
+
+    logical :: changed
+    integer :: s, i, k, before
+
+    do s = 1, size(of)
+      do i = 1, size(inp%set(s)%source)
+        associate (source => inp%set(s)%source(i))
+          if (position_of_set(inp, source%name, source%of_elements) > 0) cycle
+          call inp%report(source%line_number, "set '"//inp%set(s)%name//"' names set '"// &
+              source%name//"', which the file does not have", "labels, or sets of the file")
+        end associate
+      end do
+    end do
+    changed = inp%errors%count == 0
+    do while (changed)
+      changed = .false.
+      do s = 1, size(of)
+        before = count(of(s)%named)
+        do i = 1, size(inp%set(s)%source)
+          associate (source => inp%set(s)%source(i))
+            k = position_of_set(inp, source%name, source%of_elements)
+            call unite(of(s)%named, of(k)%named, source%of_elements .and. &
+                .not. inp%set(s)%of_elements)
+          end associate
+        end do
+        changed = changed .or. count(of(s)%named) > before
+      end do
+    end do
+
+  contains
+
+    !> Add members, or the nodes of elements.
+    subroutine unite(named, other, by_nodes)
+      logical, intent(inout) :: named(:)
+      logical, intent(in) :: other(:), by_nodes
+
+      integer :: e
+
+      if (.not. by_nodes) then
+        named = named .or. other
+        return
+      end if
+      do e = 1, size(other)
+        if (other(e)) named(node(:, e)) = .true.
+      end do
+    end subroutine unite
+
+  end subroutine add_sources
 
   !> Set the material of all elements, and make the sets of elements sets of nodes.
   subroutine set_materials(mesh, inp, spec, errors)
