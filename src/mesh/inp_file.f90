@@ -131,7 +131,7 @@ contains
       what = " is not read"
       if (any(word%name(2:i - 1) == word%name(i))) what = " is given twice"
       call self%report(at%number, "the parameter "//upper_case(trim(word%name(i)))//" of "// &
-          upper_case(trim(word%name(1)))//what, upper_case(trim(known_parameters(word%name(1)))), &
+          upper_case(trim(word%name(1)))//what, known_parameters(word%name(1)), &
           word%column(i), word%column(i) + len_trim(word%name(i)) - 1)
     end do
   end subroutine report_untaken
@@ -143,13 +143,13 @@ contains
 
     select case (keyword)
     case ("*node")
-      text = "nset"
+      text = "NSET"
     case ("*element")
-      text = "type elset"
+      text = "TYPE ELSET"
     case ("*nset")
-      text = "nset generate elset"
+      text = "NSET GENERATE ELSET"
     case ("*elset")
-      text = "elset generate"
+      text = "ELSET GENERATE"
     case default
       text = "no parameters"
     end select
