@@ -36,7 +36,7 @@ module dd3_app_warnings
   real(wp), parameter :: least_density = 1.0e-10_wp, largest_density = 3.0e-8_wp
   real(wp), parameter :: least_gravity = 9.81e2_wp, largest_gravity = 9.81e4_wp
   !> Usual range of r-values.
-  real(wp), parameter :: least_r = 0.05_wp, largest_r = 10.0_wp
+  real(wp), parameter :: least_r = 0.05_wp, largest_r = 25.0_wp
   character(len=*), parameter :: unusual_unit = "unusual; units are N, mm and MPa"
 
 contains
@@ -49,7 +49,7 @@ contains
     type(model_t), intent(in) :: model
     type(message_list_t), intent(out) :: warnings
 
-    integer :: i
+    integer :: i, before
 
     do i = 1, size(case%material)
       associate (material => case%material(i))
@@ -58,9 +58,10 @@ contains
               to_text(material%young)//" MPa of material '"//material%source%called()//"'", &
               unusual_unit)
         end if
+        before = warnings%count
         call check_criterion(case, model, i, warnings)
+        if (warnings%count == before) call check_r_values(case, model, i, warnings)
         call check_flow_stress(case, model, i, warnings)
-        call check_r_values(case, model, i, warnings)
         call check_density(case, i, warnings)
       end associate
     end do
@@ -255,36 +256,28 @@ contains
     type(message_list_t), intent(inout) :: warnings
 
     character(len=*), parameter :: name(3) = ["r0 ", "r45", "r90"]
-    real(wp) :: r
+    character(len=:), allocatable :: remark
     type(location_t) :: at
+    real(wp) :: r(3)
     integer :: k, p
 
-    do k = 1, 3
-      r = r_value(model, i, 45*(k - 1))
-      if (r >= least_r .and. r <= largest_r) cycle
-      associate (law => case%material(i)%yield)
-        at = law%at
-        do p = 1, size(law%parameter)
-          if (law%parameter(p)%key == name(k)) at = law%parameter(p)%at
-        end do
-        call add(warnings, "W021", at, "material '"//case%material(i)%source%called()// &
-            "' has the r-value "//to_text(r, 4)//" at "//to_text(45*(k - 1))// &
-            " degrees from the rolling direction", "unusual"//meant(r))
-      end associate
-    end do
-
-  contains
-
-    !> Return what was probably meant.
-    function meant(r) result(text)
-      real(wp), intent(in) :: r
-      character(len=:), allocatable :: text
-
-      text = "; it is the ratio of the strains along width and thickness"
-      if (r > largest_r .and. r < 100*largest_r) text = text//", not per cent: "// &
-          to_text(r/100, 4)//"?"
-    end function meant
-
+    r = [(r_value(model, i, 45*(k - 1)), k=1, 3)]
+    if (all(r >= least_r .and. r <= largest_r)) return
+    associate (law => case%material(i)%yield)
+      at = law%at
+      do p = size(law%parameter), 1, -1
+        k = findloc(name == law%parameter(p)%key, .true., dim=1)
+        if (k == 0) cycle
+        if (outside(r(k), least_r, largest_r)) at = law%parameter(p)%at
+      end do
+    end associate
+    remark = "unusual; they are ratios of the strains along width and thickness"
+    k = maxloc(r, dim=1)
+    if (r(k) > largest_r .and. r(k) < 100*largest_r) remark = remark//", not per cent: "// &
+        to_text(r(k)/100, 4)//" for "//to_text(r(k), 4)//"?"
+    call add(warnings, "W021", at, "material '"//case%material(i)%source%called()// &
+        "' has the r-values "//to_text(r(1), 4)//", "//to_text(r(2), 4)//", "//to_text(r(3), 4)// &
+        " at 0, 45, 90 degrees from the rolling direction", remark)
   end subroutine check_r_values
 
   !> Return the r-value of a material in tension: the ratio of the plastic strains along the width

@@ -64,7 +64,7 @@ contains
           "directions.", "`normal_direction` left out, for the normal of the sheet; "// &
           "`rolling_direction` in its plane."), &
       row("W021", "unusual r-value", &
-          "It lies outside 0.05 to 10: most often per cent, or parameters in a wrong order.", &
+          "It lies outside 0.05 to 25: most often per cent, or parameters in a wrong order.", &
           "Ratios of strains, such as r0=1.79; the convention of the criterion's parameters."), &
       row("W022", "unusual density", &
           "It lies outside 1e-10 to 3e-8 t/mm3: most often another unit.", &
