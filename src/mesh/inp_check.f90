@@ -169,6 +169,7 @@ contains
     integer, allocatable :: found(:, :)
     integer :: i
 
+    call check_roles(inp, node)
     call find_hanging(inp%x(:, :inp%n_node), node, neighbours, most_pairs, found)
     do i = 1, min(most_named, size(found, 2))
       others = ""
@@ -183,6 +184,31 @@ contains
       end associate
     end do
   end subroutine check_hanging
+
+  !> Report the first node that is at a corner of an element and between the corners of another.
+  subroutine check_roles(inp, node)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes of the elements, their corners first.
+    integer, intent(in) :: node(:, :)
+
+    integer :: with_corner(inp%n_node), e, a
+
+    with_corner = 0
+    do e = 1, size(node, 2)
+      with_corner(node(:8, e)) = e
+    end do
+    do e = 1, size(node, 2)
+      do a = 9, size(node, 1)
+        associate (other => with_corner(node(a, e)))
+          if (other == 0) cycle
+          call report_element(inp, e, "has node "//to_text(inp%node_label(node(a, e)))// &
+              " between its corners, and element "//to_text(inp%element_label(other))// &
+              " at a corner: the sheet would tear there", "elements with whole faces in common")
+        end associate
+        return
+      end do
+    end do
+  end subroutine check_roles
 
   !> Return the length of the shortest edge that is not zero, mm.
   pure real(wp) function shortest_edge(x, corner) result(shortest)

@@ -262,7 +262,8 @@ def test_left_out():
     Path("model.inp").write_text(UNKNOWN)
     said = call("mesh", "model.inp", "part.inp")
     for line, text in ((1, "data line: no keyword"), (5, "*NODE, values after the first 4"),
-                       (13, "nodes without hexahedra: 1"), (17, "*ELEMENT, TYPE=S4R: 1"), (18, "*NSET, COLOUR = red: not used"),
+                       (13, "nodes without hexahedra: 1"), (17, "*ELEMENT, TYPE=S4R: 1"),
+                       (18, "*NSET, COLOUR = red: not used"),
                        (18, "*NSET some: there is no node 77"), (18, "*NSET some: there is no set 'nowhere'"),
                        (20, "*ELSET both: 1 elements that are no"), (21, "*ELSET, values after the first 3"),
                        (23, "*TRANSFORM: not read"), (25, "*FROBNICATE: not read"), (26, "*SURFACE: not read")):

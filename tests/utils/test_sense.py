@@ -10,8 +10,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from helpers import call
 
 from dd3.fields import Fields
+from dd3.mesh import NATURAL
 
 DECK = """*TITLE
   Tension along x of a strip of 10 x 4 x 1 mm
@@ -81,8 +83,8 @@ def r_value(axes, out="strip.out"):
 
 
 @pytest.mark.parametrize("axes, material_axes", (
-    ((0, 1, 2), ""), ((0, 2, 1), ""), ((0, 1, 2), "normal_direction = 0 0 -1"), ((2, 0, 1), "rolling_direction = 0 0 1"),
-    ((1, 2, 0), "rolling_direction = 0 1 0"), ((0, 2, 1), "normal_direction = 0 1 0")))
+    ((0, 1, 2), ""), ((0, 2, 1), ""), ((0, 1, 2), "normal_direction = 0 0 -1"),
+    ((2, 0, 1), "rolling_direction = 0 0 1"), ((1, 2, 0), "rolling_direction = 0 1 0"), ((0, 2, 1), "normal_direction = 0 1 0")))
 def test_normal(program, axes, material_axes):
     """The r-value is that of a flat strip, in whatever plane the mesh stands; the log tells the normal."""
     write_strip(axes, material_axes=material_axes)
@@ -132,3 +134,23 @@ def test_long_title(program):
         title = file["job"].attrs["title"]
     assert len(title) > 65536 and title == json.loads(Path("strip.out/run.json").read_text())["title"]
     assert Fields("strip.out").points(-1).shape == (30, 3)
+
+
+def test_middle_nodes(program):
+    """A node between the corners of one element and at a corner of another is refused, here and in `dd3 mesh`."""
+    labels, elements = {}, []
+    for x, y, size in ((0, 0, 2), (2, 0, 1), (2, 1, 1)):
+        corners = [(x + 1.0 + a, y + size * (1 + b) / 2, (1 + c) / 2) for a, b, c in NATURAL[:20]]
+        elements.append([labels.setdefault(corner, len(labels) + 1) for corner in corners])
+    lines = ["*NODE", *(f"{label}, {x}, {y}, {z}" for (x, y, z), label in labels.items()), "*ELEMENT, TYPE=C3D20"]
+    for number, nodes in enumerate(elements, 1):
+        lines += [", ".join(map(str, [number, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
+    lines += ["*NSET, NSET=end, GENERATE", "1, 2", "*NSET, NSET=pulled, GENERATE", "1, 2", "*NSET, NSET=corner", "1",
+              "*NSET, NSET=beside", "1"]
+    write_strip((0, 1, 2), DECK.replace("solid_shell", "hex20"))
+    Path("strip.inp").write_text("\n".join(lines) + "\n")
+    there = labels[2.0, 1.0, 0.0]
+    said = run(program, "--check", expect=2)
+    assert f"error E147: element 1 has node {there} between its corners, and element 3 at a corner" in said
+    said = call("mesh", "strip.inp", "other.inp", expect=2)
+    assert f"node {there} is between the corners of element 1 and at a corner of another" in said

@@ -223,6 +223,11 @@ def check_joints(mesh: Mesh, path: Path) -> int:
     points = np.array(list(mesh.nodes.values()), float).reshape(-1, 3)
     members = [[number_of[node] for node in nodes] for nodes in mesh.elements.values()]
     corners = np.array([nodes[:8] for nodes in members], int).reshape(-1, 8)
+    at_corner = set(corners.ravel().tolist())
+    for element, nodes in zip(elements, members):
+        for node in at_corner.intersection(nodes[8:]):
+            raise Problem(f"{path}: error: node {labels[node]} is between the corners of element {element} and at a "
+                          "corner of another: the sheet would tear there; expected elements with whole faces in common")
     faces, owners = outer_faces(corners)
     found = hanging(points, faces, owners, members)
     if found:
