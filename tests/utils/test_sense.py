@@ -84,7 +84,8 @@ def r_value(axes, out="strip.out"):
 
 @pytest.mark.parametrize("axes, material_axes", (
     ((0, 1, 2), ""), ((0, 2, 1), ""), ((0, 1, 2), "normal_direction = 0 0 -1"),
-    ((2, 0, 1), "rolling_direction = 0 0 1"), ((1, 2, 0), "rolling_direction = 0 1 0"), ((0, 2, 1), "normal_direction = 0 1 0")))
+    ((2, 0, 1), "rolling_direction = 0 0 1"), ((1, 2, 0), "rolling_direction = 0 1 0"),
+    ((0, 2, 1), "normal_direction = 0 1 0")))
 def test_normal(program, axes, material_axes):
     """The r-value is that of a flat strip, in whatever plane the mesh stands; the log tells the normal."""
     write_strip(axes, material_axes=material_axes)
