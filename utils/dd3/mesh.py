@@ -7,7 +7,9 @@
 
 Elements other than hexahedra, such as the faces and edges of a Gmsh mesh, and nodes without elements are left out;
 nodes and elements are numbered from 1. Physical groups of volumes become element sets, those of surfaces, curves and
-points node sets. Mirrored elements are turned.
+points node sets. Mirrored elements are turned. Of a model of Abaqus or CalculiX the mesh is read in the place of its
+instance, with local axes, generated and copied nodes and elements; what is left out is listed with its line. A node on
+an edge or a face of an element that does not have it is refused.
 """
 import itertools
 import re
@@ -307,7 +309,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("target", type=Path, help=".inp file to write")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the coordinates, 1000 for metres")
     parser.add_argument("--merge", type=float, metavar="mm", help="merge nodes nearer than this, after --scale")
-    parser.add_argument("--part", help="part of a model with several")
+    parser.add_argument("--part", help="part or instance of a model with several")
     options = parser.parse_args(words)
     if not options.source.is_file():
         raise Problem(f"{options.source}: no such file")
