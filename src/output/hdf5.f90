@@ -11,7 +11,8 @@ module dd3_output_hdf5
       h5awrite_f, h5aclose_f, h5tcopy_f, h5tset_size_f, h5tclose_f, h5gcreate_f, h5fflush_f, &
       h5iget_name_f, H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5S_SCALAR_F, H5P_DATASET_CREATE_F, &
       H5T_FORTRAN_S1, H5T_STRING, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, &
-      H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
+      H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, &
+      H5_INTEGER_KIND
   implicit none
   private
   public :: series_t, start_hdf5, make_group, flush_hdf5

@@ -133,7 +133,7 @@ def test_generated():
                             for i in range(3) for j in range(3) for k in range(2)}
     assert mesh.node_sets["far"] == {21, 22, 23}
     assert mesh.node_sets["upper"] == {label for label in mesh.nodes if label > 100}
-    assert mesh.element_sets["sheet"] == {1, 2, 3, 4} and not mesh.account.left_out()
+    assert mesh.element_sets["sheet"] == {1, 2, 3, 4} and not mesh.model.left_out()
 
 
 @pytest.mark.parametrize("line, middle", (
@@ -205,7 +205,7 @@ def test_sets():
                    "*NSET, NSET=all\nof, of two, 16\n*NSET, NSET=twice\n 1,\n*NSET, NSET=twice\n 2,\n")
     assert mesh.node_sets == {"of": {1, 2, 5, 4, 11, 12, 15, 14}, "of two": {1, 3, 5}, "twice": {1, 2},
                               "all": {1, 2, 5, 4, 11, 12, 15, 14, 3, 16}}
-    assert not mesh.account.left_out()
+    assert not mesh.model.left_out()
 
 
 ASSEMBLY = "*PART, NAME=Sheet\n" + TWO + """*NSET, NSET=tip
@@ -245,7 +245,7 @@ def test_instances():
     with pytest.raises(Problem, match="no part 'other'"):
         mesh_of(ASSEMBLY.replace("PART=Sheet", "PART=Other"))
     mesh = mesh_of(ASSEMBLY.replace("*ASSEMBLY", "*PART, NAME=idle\n" + TWO + "*END PART\n*ASSEMBLY"))
-    assert [item.name for item in mesh.account.left_out()] == ["*PART idle"]
+    assert [item.name for item in mesh.model.left_out()] == ["*PART idle"]
 
 
 def test_own_mesh():
@@ -261,6 +261,8 @@ def test_left_out():
     """One unknown thing of every kind is named with its line, in `dd3 mesh` and `dd3 tool`."""
     Path("model.inp").write_text(UNKNOWN)
     said = call("mesh", "model.inp", "part.inp")
+    numbers = [int(line.split(":")[2]) for line in said.splitlines() if line.startswith("left out: model.inp")]
+    assert numbers == sorted(numbers)
     for line, text in ((1, "data line: no keyword"), (5, "*NODE, values after the first 4"),
                        (13, "nodes without hexahedra: 1"), (17, "*ELEMENT, TYPE=S4R: 1"),
                        (18, "*NSET, COLOUR = red: not used"),

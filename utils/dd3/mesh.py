@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dd3.account import Account
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
@@ -51,7 +50,7 @@ class Mesh:
     node_sets: dict[str, Any] = field(default_factory=dict)
     element_sets: dict[str, Any] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)  # kind: number
-    account: Account = field(default_factory=Account)
+    model: Model | None = None  # of an .inp file
 
 
 # ---- readers ---------------------------------------------------------------------------------------------------------
@@ -129,7 +128,7 @@ def read_inp(path: Path, wanted: str | None) -> Mesh:
 
 def mesh_of(model: Model, scope: Scope) -> Mesh:
     """Return the hexahedra of a mesh with their nodes and sets; what is left out is entered in the account."""
-    mesh = Mesh(account=model.account)
+    mesh = Mesh(model=model)
     others: dict[str, list[Element]] = {}
     for label, element in sorted(scope.elements.items()):
         if INP_HEXAHEDRA.match(element.kind):
@@ -298,7 +297,7 @@ def report(path: Path, mesh: Mesh, merged: int, mirrored: int) -> None:
         print(f"mirrored elements turned: {mirrored}")
     for kind, count in mesh.left_out.items():
         print(f"left out: {kind}: {count}")
-    for item in mesh.account.left_out():
+    for item in mesh.model.left_out() if mesh.model else ():
         print(f"left out: {item}")
 
 

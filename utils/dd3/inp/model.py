@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dd3.account import Account
+from dd3.account import Account, LeftOut
 from dd3.inp.blocks import Block, Row, blocks, label, name_of, refuse, whole
 from dd3.inp.generate import elcopy, elgen, from_cylinder, ncopy, nfill, ngen
 from dd3.inp.scope import Element, Members, Placement, Scope, members, placement, unit
@@ -44,13 +44,13 @@ class Model:
 
     path: Path
     account: Account = field(default_factory=Account)
-    outside: Scope = field(default_factory=lambda: Scope("", ""))
+    outside: Scope = field(init=False)
     parts: dict[str, Scope] = field(default_factory=dict)
     instances: dict[str, Instance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Read the file."""
-        self.scope = self.outside
+        self.scope = self.outside = Scope("", str(self.path))
         self.end = ""  # keyword that ends the part or instance
         readers: dict[str, Callable[[Block], None]] = {
             "PART": self.part, "ENDPART": self.leave, "ASSEMBLY": self.assembly, "ENDASSEMBLY": self.assembly,
@@ -64,6 +64,10 @@ class Model:
                 readers[block.keyword](block)
             elif block.keyword.startswith("END"):  # of something that is not read
                 block.entry.use()
+
+    def left_out(self) -> list[LeftOut]:
+        """Return what was not used, in the order of the lines."""
+        return sorted(self.account.left_out(), key=lambda item: line_of(item.place))
 
     def refuse(self, block: Block) -> None:
         """Refuse a keyword that moves nodes."""
@@ -247,6 +251,12 @@ class Model:
         else:
             for holder in holders:
                 self.target(block, holder, of_nodes, name).items.append(word)
+
+
+def line_of(place: str) -> tuple[str, int]:
+    """Return file and line of a place."""
+    path, _, number = place.rpartition(":")
+    return (path, int(number)) if path and number.isdigit() else (place, 0)
 
 
 def joined(rows: list[Row]) -> Iterator[tuple[str, list[str]]]:

@@ -46,8 +46,8 @@ def turn(axis: np.ndarray, angle: float, place: str, what: str) -> np.ndarray:
     n = unit(axis, place, what)
     skew = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     # Exact for right angles.
-    sine = {0: 0.0, 90: 1.0, 180: 0.0, 270: -1.0}.get(angle % 360, math.sin(math.radians(angle)))
-    cosine = {0: 1.0, 90: 0.0, 180: -1.0, 270: 0.0}.get(angle % 360, math.cos(math.radians(angle)))
+    sine, cosine = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}.get(
+        angle % 360.0, (math.sin(math.radians(angle)), math.cos(math.radians(angle))))
     return np.eye(3) + sine * skew + (1.0 - cosine) * skew @ skew
 
 

@@ -139,7 +139,8 @@ def read_inp(path: Path) -> Facets:
     """Read the shells and solids of a model of Abaqus or CalculiX in their places; parts are its *PARTs, or their
     instances where there are several of one, or element sets."""
     model = Model(path)
-    nodes, cells = {}, []
+    nodes: dict[int, tuple[float, float, float]] = {}
+    cells = []
     others: dict[str, list[Element]] = {}
     solids = list(model.solids())
     for number, solid in enumerate(solids):
@@ -158,7 +159,7 @@ def read_inp(path: Path) -> Facets:
         entry = model.account.enter(elements[0].place, f"*ELEMENT, TYPE={kind}: {len(elements)}")
         entry.leave("neither shells nor solids")
     result = from_cells(path, nodes, cells)
-    return replace(result, notes=[*result.notes, *(f"left out: {item}" for item in model.account.left_out())])
+    return replace(result, notes=[*result.notes, *(f"left out: {item}" for item in model.left_out())])
 
 
 def corners_and_dimension(label: int, element: Element) -> tuple[list[int], int]:
