@@ -24,6 +24,7 @@ module dd3_app_job
   use dd3_model_build, only : new_model
   use dd3_model_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_model_sheet_element, only : default_report
+  use dd3_model_sheet_normal, only : normal_report
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
   use dd3_model_tool_report, only : tool_report
@@ -170,6 +171,7 @@ contains
     settings = contact_report(model)
     if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//default_report(case, model)// &
+        normal_report(case, model)// &
         tool_report(model)//settings//limits_report(model)//drawbead_report(model)
     if (allocated(start%sheet_report)) &
         write (output_unit, '(a)', advance="no") start%sheet_report

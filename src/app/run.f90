@@ -25,6 +25,7 @@ module dd3_app_run
   use dd3_model_model, only : model_t
   use dd3_model_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_model_sheet_element, only : default_report
+  use dd3_model_sheet_normal, only : normal_report
   use dd3_model_tool_report, only : tool_report
   use dd3_output_run_summary, only : phase_summary_t, run_summary_t
   use dd3_point_run, only : run_points
@@ -255,7 +256,7 @@ contains
         to_text(model%part%n_point)//" candidates for contact with "//to_text(model%n_tool)// &
         " tools")
     end if
-    call say_lines(log, default_report(case, model))
+    call say_lines(log, default_report(case, model)//normal_report(case, model))
     do i = 1, size(case%mesh)
       call log%say("mesh of "//case%mesh(i)%file//": thickness from z_min to z_max "// &
           thickness_range(model)//" mm")

@@ -3,7 +3,7 @@
 !> settings and meshes that make results inaccurate, loads on held directions, tools that probably
 !> are not as meant. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : sqrt2, wp
   use dd3_base_error, only : location_t
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : axis_name, to_text
@@ -13,6 +13,7 @@ module dd3_app_warnings
       longest_known, measure_elements
   use dd3_model_held_loads, only : find_held_loads, held_load_t
   use dd3_model_model, only : model_t
+  use dd3_model_sheet_normal, only : normal_warnings
   use dd3_model_tool_report, only : tool_warnings
   implicit none
   private
@@ -31,6 +32,11 @@ module dd3_app_warnings
   !> distance of the tools, in thicknesses of the sheet.
   real(wp), parameter :: largest_friction = 1.0_wp, largest_tolerance = 0.02_wp, &
       least_search = 0.1_wp
+  !> Usual range of the density, t/mm3, and of gravity, mm/s2.
+  real(wp), parameter :: least_density = 1.0e-10_wp, largest_density = 3.0e-8_wp
+  real(wp), parameter :: least_gravity = 9.81e2_wp, largest_gravity = 9.81e4_wp
+  !> Usual range of r-values.
+  real(wp), parameter :: least_r = 0.05_wp, largest_r = 25.0_wp
   character(len=*), parameter :: unusual_unit = "unusual; units are N, mm and MPa"
 
 contains
@@ -43,7 +49,7 @@ contains
     type(model_t), intent(in) :: model
     type(message_list_t), intent(out) :: warnings
 
-    integer :: i
+    integer :: i, before
 
     do i = 1, size(case%material)
       associate (material => case%material(i))
@@ -52,8 +58,11 @@ contains
               to_text(material%young)//" MPa of material '"//material%source%called()//"'", &
               unusual_unit)
         end if
+        before = warnings%count
         call check_criterion(case, model, i, warnings)
+        if (warnings%count == before) call check_r_values(case, model, i, warnings)
         call check_flow_stress(case, model, i, warnings)
+        call check_density(case, i, warnings)
       end associate
     end do
     call check_thickness(case, model, warnings)
@@ -65,6 +74,8 @@ contains
             "unusual; Coulomb's coefficient is below 1 in sheet metal forming")
       end associate
     end do
+    call check_gravity(case, warnings)
+    call normal_warnings(case, model, warnings)
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
     call check_element_length(case, model, warnings)
@@ -235,6 +246,115 @@ contains
         to_text(stress, 4)//" MPa of material '"//case%material(i)%source%called()// &
         "', young = "//to_text(case%material(i)%young)//" MPa", unusual_unit)
   end subroutine check_flow_stress
+
+  !> Warn of r-values that are most often per cent, or the parameters of another law.
+  subroutine check_r_values(case, model, i, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    !> Number of the material.
+    integer, intent(in) :: i
+    type(message_list_t), intent(inout) :: warnings
+
+    character(len=*), parameter :: name(3) = ["r0 ", "r45", "r90"]
+    character(len=:), allocatable :: remark
+    type(location_t) :: at
+    real(wp) :: r(3)
+    integer :: k, p
+
+    r = [(r_value(model, i, 45*(k - 1)), k=1, 3)]
+    if (all(r >= least_r .and. r <= largest_r)) return
+    associate (law => case%material(i)%yield)
+      at = law%at
+      do p = size(law%parameter), 1, -1
+        k = findloc(name == law%parameter(p)%key, .true., dim=1)
+        if (k == 0) cycle
+        if (outside(r(k), least_r, largest_r)) at = law%parameter(p)%at
+      end do
+    end associate
+    remark = "unusual; they are ratios of the strains along width and thickness"
+    k = maxloc(r, dim=1)
+    if (r(k) > largest_r .and. r(k) < 100*largest_r) remark = remark//", not per cent: "// &
+        to_text(r(k)/100, 4)//" for "//to_text(r(k), 4)//"?"
+    call add(warnings, "W021", at, "material '"//case%material(i)%source%called()// &
+        "' has the r-values "//to_text(r(1), 4)//", "//to_text(r(2), 4)//", "//to_text(r(3), 4)// &
+        " at 0, 45, 90 degrees from the rolling direction", remark)
+  end subroutine check_r_values
+
+  !> Return the r-value of a material in tension: the ratio of the plastic strains along the width
+  !> and the thickness.
+  real(wp) function r_value(model, i, angle)
+    type(model_t), intent(in) :: model
+    !> Number of the material, and angle from the rolling direction, degrees: 0, 45 or 90.
+    integer, intent(in) :: i, angle
+
+    real(wp) :: c, s, stress(6), normal(6), value
+
+    c = merge(sqrt2/2, merge(1.0_wp, 0.0_wp, angle == 0), angle == 45)
+    s = merge(sqrt2/2, merge(1.0_wp, 0.0_wp, angle == 90), angle == 45)
+    stress = [c**2, s**2, 0.0_wp, 0.0_wp, 0.0_wp, sqrt2*s*c]
+    call model%material(i)%laws%criterion%gradient(stress, value, normal)
+    r_value = huge(1.0_wp)
+    if (abs(normal(3)) > tiny(1.0_wp)) &
+        r_value = (s**2*normal(1) + c**2*normal(2) - sqrt2*s*c*normal(6))/normal(3)
+  end function r_value
+
+  !> Warn of an unusual density.
+  subroutine check_density(case, i, warnings)
+    type(case_t), intent(in) :: case
+    !> Number of the material.
+    integer, intent(in) :: i
+    type(message_list_t), intent(inout) :: warnings
+
+    !> Other units in t/mm3.
+    real(wp), parameter :: factor(3) = [1.0e-3_wp, 1.0e-9_wp, 1.0e-12_wp]
+    character(len=*), parameter :: unit(3) = ["kg/mm3", "g/cm3 ", "kg/m3 "]
+    character(len=:), allocatable :: remark
+    integer :: k
+
+    associate (material => case%material(i))
+      if (material%density <= 0.0_wp) return
+      if (.not. outside(material%density, least_density, largest_density)) return
+      remark = "unusual; the unit is t/mm3, 7.85e-9 for steel"
+      do k = size(factor), 1, -1
+        if (outside(factor(k)*material%density, least_density, largest_density)) cycle
+        remark = remark//"; given in "//trim(unit(k))//"? then it is "// &
+            to_text(factor(k)*material%density, 4)
+        exit
+      end do
+      call add(warnings, "W022", material%source%at("density"), "density = "// &
+          to_text(material%density, 4)//" t/mm3 of material '"//material%source%called()//"'", &
+          remark)
+    end associate
+  end subroutine check_density
+
+  !> Warn of an unusual acceleration of gravity.
+  subroutine check_gravity(case, warnings)
+    type(case_t), intent(in) :: case
+    type(message_list_t), intent(inout) :: warnings
+
+    !> Other units in mm/s2.
+    real(wp), parameter :: factor(3) = [1.0e3_wp, 1.0e6_wp, 9.81e3_wp]
+    character(len=24), parameter :: unit(3) = [character(len=24) :: "m/s2", "mm/ms2", &
+        "multiples of the earth's"]
+    real(wp), parameter :: earth = 9.81e3_wp
+    character(len=:), allocatable :: remark
+    real(wp) :: size_of
+    integer :: i, k
+
+    do i = 1, size(case%phase)
+      if (.not. case%phase(i)%has_gravity) cycle
+      size_of = norm2(case%phase(i)%gravity)
+      if (size_of <= 0.0_wp .or. .not. outside(size_of, least_gravity, largest_gravity)) cycle
+      remark = "unusual; the unit is mm/s2, 9810 on the earth"
+      do k = 1, size(factor)
+        if (outside(factor(k)*size_of, 0.9_wp*earth, 1.1_wp*earth)) cycle
+        remark = remark//"; given in "//trim(unit(k))//"?"
+        exit
+      end do
+      call add(warnings, "W023", case%phase(i)%source%at("gravity"), "gravity of "// &
+          to_text(size_of, 4)//" mm/s2", remark)
+    end do
+  end subroutine check_gravity
 
   !> Whether a value lies outside its bounds.
   pure logical function outside(value, lower, upper)

@@ -29,7 +29,10 @@ contains
       if (case%set(i)%source%valid) call check_set(case%set(i), errors)
     end do
     do i = 1, size(case%material)
-      if (case%material(i)%source%valid) call check_material(case%material(i), errors)
+      ! With a mesh and without a normal the directions are checked in the model.
+      if (case%material(i)%source%valid .and. (size(case%mesh) == 0 .or. &
+          case%material(i)%source%has("normal_direction"))) &
+          call check_material(case%material(i), errors)
     end do
     do i = 1, size(case%start)
       if (case%start(i)%source%valid) call check_start(case%start(i), errors)

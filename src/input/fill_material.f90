@@ -9,7 +9,7 @@ module dd3_input_fill_material
   use dd3_input_number, only : parse_pair, parse_real
   implicit none
   private
-  public :: fill_material
+  public :: fill_material, frame_of
 
 contains
 
@@ -17,6 +17,7 @@ contains
     type(material_spec_t), intent(inout) :: material
     type(block_t), intent(in) :: block
 
+    real(wp) :: normal(3)
     integer :: i
 
     material%name = block%name
@@ -38,9 +39,10 @@ contains
       if (block%entry(i)%value(1)%text == "none" .and. size(block%entry(i)%value) == 1) cycle
       call add_law(material%backstress, block%entry(i), block%folder)
     end do
-    if (block%has("rolling_direction") .and. block%has("normal_direction")) then
-      material%frame = frame_of(block%numbers("rolling_direction"), &
-          block%numbers("normal_direction"))
+    if (block%has("rolling_direction")) then
+      normal = [0.0_wp, 0.0_wp, 1.0_wp]
+      if (block%has("normal_direction")) normal = block%numbers("normal_direction")
+      material%frame = frame_of(block%numbers("rolling_direction"), normal)
     end if
   end subroutine fill_material
 

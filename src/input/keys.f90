@@ -125,7 +125,8 @@ contains
           lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
           count=3), &
-      row("normal_direction", kind_reals, "", "0 0 1", "normal of the initial sheet", count=3), &
+      row("normal_direction", kind_reals, "", "-", "normal of the initial sheet; default: that "// &
+          "of the mesh of *MESH, else 0 0 1", count=3), &
       row("grade", kind_name, "", "-", "kind of sheet metal, for the estimate of its forming "// &
           "limit curve by dd3 fld and dd3 report", choices="low_carbon_steel"), &
       row("forming_limit", kind_reals, "", "-", "forming limit curve for dd3 fld and dd3 "// &

@@ -8,8 +8,18 @@ module dd3_mesh_inp
   use dd3_input_token, only : line_t, place
   implicit none
   private
-  public :: inp_t, inp_set_t, new_inp, find_set, add_member, make_room_for_nodes, &
+  public :: inp_t, inp_set_t, inp_source_t, new_inp, find_set, position_of_set, add_member, &
+      make_room_for_nodes, &
       make_room_for_elements
+
+  !> A set that another one names.
+  type :: inp_source_t
+    character(len=:), allocatable :: name
+    !> Whether it holds elements, whose nodes are meant in a set of nodes.
+    logical :: of_elements = .false.
+    !> Line that names it.
+    integer :: line_number = 0
+  end type inp_source_t
 
   !> A set as written in the file.
   type :: inp_set_t
@@ -21,6 +31,8 @@ module dd3_mesh_inp
     !> Labels, `label(1:n)`, and the lines that name them.
     integer :: n = 0
     integer, allocatable :: label(:), line_number(:)
+    !> Sets whose members it has too.
+    type(inp_source_t), allocatable :: source(:)
   end type inp_set_t
 
   !> The content of a file, with the line of each part for the messages.
@@ -94,10 +106,9 @@ contains
     type(inp_set_t), allocatable :: larger(:)
     integer :: i
 
-    do position = 1, self%n_set
-      if (self%set(position)%of_elements .neqv. of_elements) cycle
-      if (same_name(self%set(position)%name, name)) return
-    end do
+    position = position_of_set(self, name, of_elements)
+    if (position > 0) return
+    position = self%n_set + 1
     if (self%n_set == size(self%set)) then
       allocate (larger(2*self%n_set))
       do i = 1, self%n_set
@@ -110,7 +121,20 @@ contains
     self%set(position)%of_elements = of_elements
     self%set(position)%opened = line_number
     allocate (self%set(position)%label(64), self%set(position)%line_number(64))
+    allocate (self%set(position)%source(0))
   end subroutine find_set
+
+  !> Return the position of a set; 0 if there is none of this name.
+  pure integer function position_of_set(self, name, of_elements) result(position)
+    type(inp_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: of_elements
+
+    do position = self%n_set, 1, -1
+      if (self%set(position)%of_elements .neqv. of_elements) cycle
+      if (same_name(self%set(position)%name, name)) return
+    end do
+  end function position_of_set
 
   !> Move a set without copying its members.
   pure subroutine move_set(from, to)
@@ -119,6 +143,7 @@ contains
     call move_alloc(from%name, to%name)
     call move_alloc(from%label, to%label)
     call move_alloc(from%line_number, to%line_number)
+    call move_alloc(from%source, to%source)
     to%of_elements = from%of_elements
     to%opened = from%opened
     to%n = from%n

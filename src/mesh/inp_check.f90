@@ -1,16 +1,17 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Checks of the elements of an `.inp` file: order of the nodes, shape, nodes at the same place,
-!> neighbours. Every error names the element and shows its line.
+!> neighbours, hanging nodes. Every error names the element and shows its line.
 module dd3_mesh_inp_check
   use dd3_base_kinds, only : wp
   use dd3_base_near_points, only : near_pairs
   use dd3_base_text, only : to_text
+  use dd3_mesh_hanging, only : find_hanging
   use dd3_mesh_hexahedra, only : corner_shape, neighbours_t
   use dd3_mesh_inp, only : inp_t
   use dd3_mesh_layers, only : layers_t, layers_ambiguous, layers_none
   implicit none
   private
-  public :: check_shapes, check_places, check_neighbours, check_layers
+  public :: check_shapes, check_places, check_neighbours, check_hanging, check_layers
 
   !> Scaled Jacobian at or below which a corner has no volume.
   real(wp), parameter :: least_shape = 1.0e-6_wp
@@ -136,19 +137,78 @@ contains
     integer, intent(in) :: corner(:, :)
     integer, intent(in) :: first, second
 
-    character(len=:), allocatable :: owner
-    integer :: e
-
-    owner = ""
-    do e = 1, size(corner, 2)
-      if (all(corner(:, e) /= second)) cycle
-      owner = " of element "//to_text(inp%element_label(e))
-      exit
-    end do
-    call inp%report(inp%node_line(second), "node "//to_text(inp%node_label(second))//owner// &
+    call inp%report(inp%node_line(second), node_of_element(inp, corner, second)// &
         " is at the place of node "//to_text(inp%node_label(first)), &
         "one node at each place, or the elements are not connected")
   end subroutine report_places
+
+  !> Return a node and the first element that has it in words.
+  function node_of_element(inp, corner, node) result(text)
+    type(inp_t), intent(in) :: inp
+    integer, intent(in) :: corner(:, :), node
+    character(len=:), allocatable :: text
+
+    integer :: e
+
+    text = "node "//to_text(inp%node_label(node))
+    do e = 1, size(corner, 2)
+      if (all(corner(:, e) /= node)) cycle
+      text = text//" of element "//to_text(inp%element_label(e))
+      exit
+    end do
+  end function node_of_element
+
+  !> Report nodes on an edge or a face of an element to which they do not belong.
+  subroutine check_hanging(inp, node, neighbours)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes of the elements, their corners first.
+    integer, intent(in) :: node(:, :)
+    type(neighbours_t), intent(in) :: neighbours
+
+    character(len=:), allocatable :: others
+    integer, allocatable :: found(:, :)
+    integer :: i
+
+    call check_roles(inp, node)
+    call find_hanging(inp%x(:, :inp%n_node), node, neighbours, most_pairs, found)
+    do i = 1, min(most_named, size(found, 2))
+      others = ""
+      if (i == most_named .and. size(found, 2) > i) others = "; "// &
+          to_text(size(found, 2) - i)//" others do"
+      associate (x => inp%x(:, found(1, i)))
+        call inp%report(inp%node_line(found(1, i)), node_of_element(inp, node, found(1, i))// &
+            " lies on an edge or a face of element "//to_text(inp%element_label(found(2, i)))// &
+            ", which does not have it, at "//to_text(x(1))//" "//to_text(x(2))//" "// &
+            to_text(x(3))//": the sheet would tear there"//others, &
+            "elements with whole faces in common")
+      end associate
+    end do
+  end subroutine check_hanging
+
+  !> Report the first node that is at a corner of an element and between the corners of another.
+  subroutine check_roles(inp, node)
+    type(inp_t), intent(inout) :: inp
+    !> Nodes of the elements, their corners first.
+    integer, intent(in) :: node(:, :)
+
+    integer :: with_corner(inp%n_node), e, a
+
+    with_corner = 0
+    do e = 1, size(node, 2)
+      with_corner(node(:8, e)) = e
+    end do
+    do e = 1, size(node, 2)
+      do a = 9, size(node, 1)
+        associate (other => with_corner(node(a, e)))
+          if (other == 0) cycle
+          call report_element(inp, e, "has node "//to_text(inp%node_label(node(a, e)))// &
+              " between its corners, and element "//to_text(inp%element_label(other))// &
+              " at a corner: the sheet would tear there", "elements with whole faces in common")
+        end associate
+        return
+      end do
+    end do
+  end subroutine check_roles
 
   !> Return the length of the shortest edge that is not zero, mm.
   pure real(wp) function shortest_edge(x, corner) result(shortest)

@@ -9,7 +9,7 @@ module dd3_mesh_inp_file
   use dd3_input_number, only : parse_real
   use dd3_input_number_check, only : not_a_number
   use dd3_input_text_file, only : read_lines
-  use dd3_mesh_inp, only : add_member, find_set, inp_t, make_room_for_elements, &
+  use dd3_mesh_inp, only : add_member, find_set, inp_source_t, inp_t, make_room_for_elements, &
       make_room_for_nodes, new_inp
   use dd3_mesh_inp_element, only : inp_type_names, nodes_of_type
   use dd3_mesh_inp_line, only : field_integer, fields_t, is_comment, parameter_list_t, &
@@ -97,85 +97,174 @@ contains
     case ("*heading")
       at%section = heading
     case ("*node")
-      call read_parameters(self, at, text, word, "nset")
+      call take_set(self, at, text, word, "nset")
       at%section = node
     case ("*element")
-      call read_parameters(self, at, text, word, "type elset")
+      call take_set(self, at, text, word, "elset")
       call set_type(self, at, text, word)
     case ("*nset")
-      call read_parameters(self, at, text, word, "nset generate")
-      call need_set(self, at, "nset")
+      call begin_set(self, at, text, word, "nset")
+      call take_elements(self, at, text, word)
     case ("*elset")
-      call read_parameters(self, at, text, word, "elset generate")
-      call need_set(self, at, "elset")
+      call begin_set(self, at, text, word, "elset")
     case default
       call self%report(number, "the keyword "//upper_case(trim(word%name(1)))//" is not read", &
           keywords//"; a model is turned into such a file by dd3 mesh", 1, &
           len_trim(word%name(1)))
+      return
     end select
+    call report_untaken(self, at, word)
+    call check_end(self, at, word)
   end subroutine begin_section
 
-  !> Read the parameters of a keyword; those not among the known ones are reported.
-  subroutine read_parameters(self, at, text, word, known)
+  !> Report the parameters of a keyword that nobody took.
+  subroutine report_untaken(self, at, word)
     type(inp_t), intent(inout) :: self
-    type(reading_t), intent(inout) :: at
-    character(len=*), intent(in) :: text
+    type(reading_t), intent(in) :: at
     type(parameter_list_t), intent(in) :: word
-    !> Names separated by blanks.
-    character(len=*), intent(in) :: known
 
+    character(len=:), allocatable :: what
     integer :: i
 
     do i = 2, word%n
-      if (index(" "//known//" ", " "//trim(word%name(i))//" ") == 0) then
-        call self%report(at%number, "the parameter "//upper_case(trim(word%name(i)))//" of "// &
-            upper_case(trim(word%name(1)))//" is not read", upper_case(known), word%column(i), &
-            word%column(i) + len_trim(word%name(i)) - 1)
-      else if (word%name(i) == "generate") then
-        at%generate = .true.
-      else if (word%last(i) < word%first(i)) then
-        call self%report(at%number, upper_case(trim(word%name(i)))//" has no value", &
-            upper_case(trim(word%name(i)))//"=name", word%column(i), &
-            word%column(i) + len_trim(word%name(i)) - 1)
-      else if (word%name(i) /= "type") then
-        call find_set(self, text(word%first(i):word%last(i)), word%name(i) == "elset", &
-            at%number, at%set)
-      end if
+      if (word%taken(i) .or. word%name(i) == "") cycle
+      what = " is not read"
+      if (any(word%name(2:i - 1) == word%name(i))) what = " is given twice"
+      call self%report(at%number, "the parameter "//upper_case(trim(word%name(i)))//" of "// &
+          upper_case(trim(word%name(1)))//what, known_parameters(word%name(1)), &
+          word%column(i), word%column(i) + len_trim(word%name(i)) - 1)
     end do
-  end subroutine read_parameters
+  end subroutine report_untaken
 
-  !> Begin the members of a set; without a name they are reported.
-  subroutine need_set(self, at, parameter)
+  !> Return the parameters of a keyword as an expectation.
+  pure function known_parameters(keyword) result(text)
+    character(len=*), intent(in) :: keyword
+    character(len=:), allocatable :: text
+
+    select case (keyword)
+    case ("*node")
+      text = "NSET"
+    case ("*element")
+      text = "TYPE ELSET"
+    case ("*nset")
+      text = "NSET GENERATE ELSET"
+    case ("*elset")
+      text = "ELSET GENERATE"
+    case default
+      text = "no parameters"
+    end select
+  end function known_parameters
+
+  !> Report a keyword line that goes on in the next line.
+  subroutine check_end(self, at, word)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(in) :: at
+    type(parameter_list_t), intent(in) :: word
+
+    if (.not. word%open .or. at%number == size(self%line)) return
+    if (.not. is_name(adjustl(self%line(at%number + 1)%s))) return
+    call self%report(at%number + 1, "the keyword line above ends with a comma and goes on here", &
+        "all parameters in one line")
+  end subroutine check_end
+
+  !> Take a parameter whose value is a name; 0 if it is not given, or has no value.
+  subroutine take_name(self, at, word, name, position)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(in) :: at
+    type(parameter_list_t), intent(inout) :: word
+    character(len=*), intent(in) :: name
+    integer, intent(out) :: position
+
+    call word%take(name, position)
+    if (position == 0) return
+    if (word%last(position) >= word%first(position)) return
+    call self%report(at%number, upper_case(name)//" has no value", upper_case(name)//"=name", &
+        word%column(position), word%column(position) + len(name) - 1)
+    position = 0
+  end subroutine take_name
+
+  !> Take the name of a set that gets the nodes or elements of a section.
+  subroutine take_set(self, at, text, word, name)
     type(inp_t), intent(inout) :: self
     type(reading_t), intent(inout) :: at
-    character(len=*), intent(in) :: parameter
+    character(len=*), intent(in) :: text
+    type(parameter_list_t), intent(inout) :: word
+    !> "nset" or "elset".
+    character(len=*), intent(in) :: name
 
+    integer :: i
+
+    call take_name(self, at, word, name, i)
+    if (i > 0) call find_set(self, text(word%first(i):word%last(i)), name == "elset", &
+        at%number, at%set)
+  end subroutine take_set
+
+  !> Begin the members of a set; without a name they are reported.
+  subroutine begin_set(self, at, text, word, name)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(inout) :: at
+    character(len=*), intent(in) :: text
+    type(parameter_list_t), intent(inout) :: word
+    !> "nset" or "elset".
+    character(len=*), intent(in) :: name
+
+    integer :: i
+
+    call word%take("generate", i)
+    at%generate = i > 0
+    call take_set(self, at, text, word, name)
     if (at%set > 0) then
       at%section = set
-    else if (index(upper_case(self%line(at%number)%s), ","//upper_case(parameter)) == 0) then
-      call self%report(at%number, "the set has no name", "*"//upper_case(parameter)//", "// &
-          upper_case(parameter)//"=name")
+    else if (all(word%name(2:word%n) /= name)) then
+      call self%report(at%number, "the set has no name", "*"//upper_case(name)//", "// &
+          upper_case(name)//"=name")
     end if
-  end subroutine need_set
+  end subroutine begin_set
+
+  !> Take the set of elements whose nodes a set of nodes has.
+  subroutine take_elements(self, at, text, word)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(in) :: at
+    character(len=*), intent(in) :: text
+    type(parameter_list_t), intent(inout) :: word
+
+    integer :: i
+
+    call take_name(self, at, word, "elset", i)
+    if (i > 0 .and. at%set > 0) call add_source(self, at, text(word%first(i):word%last(i)), .true.)
+  end subroutine take_elements
+
+  !> Add a set whose members the set of the section has too.
+  subroutine add_source(self, at, name, of_elements)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(in) :: at
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: of_elements
+
+    type(inp_source_t) :: source
+
+    source%name = name
+    source%of_elements = of_elements
+    source%line_number = at%number
+    self%set(at%set)%source = [self%set(at%set)%source, source]
+  end subroutine add_source
 
   !> Read the type of the elements of a section; all sections have the same.
   subroutine set_type(self, at, text, word)
     type(inp_t), intent(inout) :: self
     type(reading_t), intent(inout) :: at
     character(len=*), intent(in) :: text
-    type(parameter_list_t), intent(in) :: word
+    type(parameter_list_t), intent(inout) :: word
 
     character(len=:), allocatable :: name
     integer :: i
 
-    i = findloc(word%name(:word%n), "type", dim=1)
-    if (i == 0) then
-      call self%report(at%number, "the type of the elements is missing", &
-          "*ELEMENT, TYPE="//join(inp_type_names, " or "))
-      return
-    end if
+    call take_name(self, at, word, "type", i)
+    if (i == 0 .and. all(word%name(2:word%n) /= "type")) &
+        call self%report(at%number, "the type of the elements is missing", &
+        "*ELEMENT, TYPE="//join(inp_type_names, " or "))
+    if (i == 0) return
     name = upper_case(text(word%first(i):word%last(i)))
-    if (len(name) == 0) return
     if (nodes_of_type(name) == 0) then
       call self%report(at%number, "elements of type "//name//" are not read", "TYPE="// &
           join(inp_type_names, " or ")//", hexahedra; their integration is chosen by `element` "// &
@@ -309,7 +398,8 @@ contains
     character(len=*), intent(in) :: text
     type(fields_t), intent(in) :: fields
 
-    character(len=*), parameter :: form = "labels, or with GENERATE: first, last, increment"
+    character(len=*), parameter :: form = "labels, names of sets, or with GENERATE: first, "// &
+        "last, increment"
     integer :: i, value(3), label, before
 
     before = self%errors%count
@@ -319,6 +409,11 @@ contains
       return
     end if
     do i = 1, fields%n
+      if (.not. at%generate .and. is_name(text(fields%first(i):fields%last(i)))) then
+        call add_source(self, at, text(fields%first(i):fields%last(i)), &
+            self%set(at%set)%of_elements)
+        cycle
+      end if
       call read_label(self, at, text, fields, i, form, label)
       if (at%generate) value(i) = label
       if (.not. at%generate) call add_member(self%set(at%set), label, at%number)
@@ -333,6 +428,14 @@ contains
       call add_member(self%set(at%set), label, at%number)
     end do
   end subroutine read_members
+
+  !> Whether a word is the name of a set: it begins with a letter.
+  pure logical function is_name(word)
+    character(len=*), intent(in) :: word
+
+    is_name = len(word) > 0
+    if (is_name) is_name = scan(upper_case(word(1:1)), "ABCDEFGHIJKLMNOPQRSTUVWXYZ") > 0
+  end function is_name
 
   !> Read a label; 0 if it is not one.
   subroutine read_label(self, at, text, fields, i, form, label)

@@ -32,6 +32,12 @@ module dd3_mesh_inp_line
     integer :: column(most_fields) = 1
     !> Columns of the values; last < first if there is none.
     integer :: first(most_fields) = 1, last(most_fields) = 0
+    !> Whether a parameter was taken: what nobody took is not read.
+    logical :: taken(most_fields) = .false.
+    !> Whether the line ends with a comma.
+    logical :: open = .false.
+  contains
+    procedure :: take
   end type parameter_list_t
 
 contains
@@ -97,6 +103,7 @@ contains
 
     call split_fields(text, fields)
     list%n = fields%n
+    list%open = fields%open
     do i = 1, fields%n
       equals = index(text(fields%first(i):fields%last(i)), "=")
       list%column(i) = fields%first(i)
@@ -109,6 +116,21 @@ contains
       list%name(i) = lower_case(text(fields%first(i):last))
     end do
   end subroutine split_keyword
+
+  !> Take a parameter; return its position, 0 if it is not given.
+  pure subroutine take(self, name, position)
+    class(parameter_list_t), intent(inout) :: self
+    !> In lower case.
+    character(len=*), intent(in) :: name
+    integer, intent(out) :: position
+
+    do position = 2, self%n
+      if (self%name(position) /= name) cycle
+      self%taken(position) = .true.
+      return
+    end do
+    position = 0
+  end subroutine take
 
   !> Exclude the quotes around a value.
   pure subroutine unquote(text, first, last)

@@ -5,14 +5,16 @@ module dd3_mesh_inp_mesh
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
   use dd3_base_number_index, only : new_number_index, number_index_t
-  use dd3_base_text, only : lower_case, to_text
+  use dd3_base_text, only : to_text
   use dd3_input_bezier_file, only : push_file_errors
   use dd3_input_case, only : mesh_spec_t
   use dd3_mesh_hexahedra, only : find_neighbours, neighbours_t
-  use dd3_mesh_inp, only : inp_t, inp_set_t
-  use dd3_mesh_inp_check, only : check_layers, check_neighbours, check_places, check_shapes
+  use dd3_mesh_inp, only : inp_t
+  use dd3_mesh_inp_check, only : check_hanging, check_layers, check_neighbours, &
+      check_places, check_shapes
   use dd3_mesh_inp_element, only : node_order
   use dd3_mesh_inp_file, only : read_inp
+  use dd3_mesh_inp_sets, only : resolve_sets
   use dd3_mesh_layers, only : find_layers, layers_t, turn_of
   use dd3_mesh_mesh, only : mesh_t, mesh_set_t
   implicit none
@@ -45,7 +47,7 @@ contains
       return
     end if
     if (inp%errors%count == 0) call resolve(mesh, inp, node)
-    if (inp%errors%count == 0) call check_geometry(inp, node(:8, :), layers)
+    if (inp%errors%count == 0) call check_geometry(inp, node, layers)
     call push_file_errors(errors, inp%errors, spec%source%at("file"))
     if (inp%errors%count > 0) return
     mesh%x = inp%x(:, :inp%n_node)
@@ -81,7 +83,7 @@ contains
     call index_labels(elements, inp, "element", inp%element_label, inp%element_line)
     call resolve_elements(inp, nodes, node)
     if (inp%errors%count == 0) call report_unused(inp, node)
-    call resolve_sets(mesh, inp, nodes, elements)
+    call resolve_sets(mesh, inp, nodes, elements, node)
     mesh%node_label = inp%node_label
   end subroutine resolve
 
@@ -159,20 +161,24 @@ contains
   end subroutine report_unused
 
   !> Check shapes and neighbours, and find the thickness direction.
-  subroutine check_geometry(inp, corner, layers)
+  subroutine check_geometry(inp, node, layers)
     type(inp_t), intent(inout) :: inp
-    !> Nodes at the corners, `(8, n_element)`.
-    integer, intent(in) :: corner(:, :)
+    !> Nodes of the elements, their corners first, `(n_element_node, n_element)`.
+    integer, intent(in) :: node(:, :)
     type(layers_t), intent(out) :: layers
 
     type(neighbours_t) :: neighbours
 
-    call check_shapes(inp, corner)
-    call check_places(inp, corner)
-    call find_neighbours(neighbours, corner, inp%n_node)
-    call check_neighbours(inp, neighbours)
-    if (inp%errors%count > 0) return
-    call find_layers(layers, neighbours, corner, inp%x)
+    associate (corner => node(:8, :))
+      call check_shapes(inp, corner)
+      call check_places(inp, corner)
+      call find_neighbours(neighbours, corner, inp%n_node)
+      call check_neighbours(inp, neighbours)
+      if (inp%errors%count > 0) return
+      call check_hanging(inp, node, neighbours)
+      if (inp%errors%count > 0) return
+      call find_layers(layers, neighbours, corner, inp%x)
+    end associate
     call check_layers(inp, layers)
   end subroutine check_geometry
 
@@ -262,63 +268,6 @@ contains
       text = "the whole mesh"
     end select
   end function meaning
-
-  !> Make the sets: those of nodes as they are, those of elements with their nodes as well.
-  subroutine resolve_sets(mesh, inp, nodes, elements)
-    type(mesh_t), intent(inout) :: mesh
-    type(inp_t), intent(inout) :: inp
-    type(number_index_t), intent(in) :: nodes, elements
-
-    integer, allocatable :: member(:)
-    integer :: s, n, k, n_set
-
-    n_set = inp%n_set
-    n = count(inp%set(:n_set)%of_elements)
-    allocate (mesh%set(n_set - n), mesh%element_set(n))
-    n = 0
-    k = 0
-    do s = 1, n_set
-      if (inp%set(s)%of_elements) then
-        call members_of(inp, inp%set(s), elements, inp%n_element, member)
-        k = k + 1
-        mesh%element_set(k)%name = lower_case(inp%set(s)%name)
-        call move_alloc(member, mesh%element_set(k)%element)
-      else
-        call members_of(inp, inp%set(s), nodes, inp%n_node, member)
-        n = n + 1
-        mesh%set(n)%name = lower_case(inp%set(s)%name)
-        call move_alloc(member, mesh%set(n)%node)
-      end if
-    end do
-  end subroutine resolve_sets
-
-  !> Return the members of a set in ascending order; report those that the file does not have.
-  subroutine members_of(inp, set, numbers, n, member)
-    type(inp_t), intent(inout) :: inp
-    type(inp_set_t), intent(in) :: set
-    type(number_index_t), intent(in) :: numbers
-    !> Number of all nodes or elements.
-    integer, intent(in) :: n
-    integer, allocatable, intent(out) :: member(:)
-
-    character(len=:), allocatable :: what
-    logical, allocatable :: named(:)
-    integer :: i, k, before
-
-    what = trim(merge("element", "node   ", set%of_elements))
-    before = inp%errors%count
-    allocate (named(n), source=.false.)
-    do i = 1, set%n
-      k = numbers%find(set%label(i))
-      if (k > 0) named(k) = .true.
-      if (k == 0 .and. inp%errors%count == before) call inp%report(set%line_number(i), "set '"// &
-          set%name//"' names "//what//" "//to_text(set%label(i))// &
-          ", which the file does not have", "labels of "//what//"s")
-    end do
-    member = pack([(i, i=1, n)], named)
-    if (set%n == 0) call inp%report(set%opened, "set '"//set%name//"' is empty", &
-        "labels of "//what//"s")
-  end subroutine members_of
 
   !> Set the material of all elements, and make the sets of elements sets of nodes.
   subroutine set_materials(mesh, inp, spec, errors)

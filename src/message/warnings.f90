@@ -57,7 +57,21 @@ contains
       row("W014", "too little memory", &
           "The job needs more memory than the machine has left: it would be slow, or be ended "// &
           "by "// &
-          "the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`.")]
+          "the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`."), &
+      row("W020", "axes of the material out of the sheet", &
+          "`normal_direction` is not the normal of the sheet, the sheet is curved at the "// &
+          "start, or `rolling_direction` does not lie in it: an orthotropic law takes other "// &
+          "directions.", "`normal_direction` left out, for the normal of the sheet; "// &
+          "`rolling_direction` in its plane."), &
+      row("W021", "unusual r-value", &
+          "It lies outside 0.05 to 25: most often per cent, or parameters in a wrong order.", &
+          "Ratios of strains, such as r0=1.79; the convention of the criterion's parameters."), &
+      row("W022", "unusual density", &
+          "It lies outside 1e-10 to 3e-8 t/mm3: most often another unit.", &
+          "`density` in t/mm3: 7.85e-9 for steel, 2.7e-9 for aluminium."), &
+      row("W023", "unusual gravity", &
+          "It lies outside a tenth to ten times that of the earth: most often another unit.", &
+          "`gravity` in mm/s2: 9810 on the earth.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -32,6 +32,7 @@ module dd3_model_build
   use dd3_model_rim, only : set_rim
   use dd3_model_sheet_element, only : set_element, set_element_of_mesh
   use dd3_model_sheet_faces, only : new_sheet_faces
+  use dd3_model_sheet_normal, only : set_axes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
   use dd3_model_tool_surface, only : read_tool_surface
@@ -104,6 +105,8 @@ contains
     call add_sets(mesh, case, errors)
     if (errors%count > 0) return
     call set_mesh(model, case, mesh, errors)
+    if (errors%count > 0) return
+    call set_axes(model, case, errors)
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)
     if (errors%count > 0) return

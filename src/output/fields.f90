@@ -416,7 +416,7 @@ contains
 
     self%file = -1
     call self%guard%refuse("cannot write '"//self%guard%path &
-        //"': the disk is full or cannot be reached", error)
+        //"': the library HDF5 refuses, most often as the disk is full or cannot be reached", error)
   end subroutine give_up
 
   !> Close the file.

@@ -2,7 +2,7 @@
 !> Growing datasets of an HDF5 file. Its files remain readable after a kill only with the default
 !> version of the library's format, and if data, flush, number of steps, flush follow in this order.
 module dd3_output_hdf5
-  use, intrinsic :: iso_c_binding, only : c_int, c_loc, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_null_char, c_ptr
   use dd3_base_kinds, only : wp, i8
   use dd3_base_posix, only : posix_setenv
   use hdf5, only : hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5screate_simple_f, &
@@ -10,8 +10,9 @@ module dd3_output_hdf5
       h5dset_extent_f, h5dget_space_f, h5pcreate_f, h5pset_chunk_f, h5pclose_f, h5acreate_f, &
       h5awrite_f, h5aclose_f, h5tcopy_f, h5tset_size_f, h5tclose_f, h5gcreate_f, h5fflush_f, &
       h5iget_name_f, H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5S_SCALAR_F, H5P_DATASET_CREATE_F, &
-      H5T_FORTRAN_S1, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, H5T_STD_I64LE, &
-      H5T_STD_I32LE, H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, H5_INTEGER_KIND
+      H5T_FORTRAN_S1, H5T_STRING, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_IEEE_F64LE, &
+      H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_U8LE, H5F_SCOPE_GLOBAL_F, h5kind_to_type, &
+      H5_INTEGER_KIND
   implicit none
   private
   public :: series_t, start_hdf5, make_group, flush_hdf5
@@ -22,6 +23,8 @@ module dd3_output_hdf5
   integer, parameter :: kind_real = 1, kind_long = 2, kind_int = 3, kind_byte = 4
   !> Largest number of rows in a chunk.
   integer, parameter :: largest_chunk = 32768
+  !> Largest number of characters of a text attribute in the header of an object, which has 64 kB.
+  integer, parameter :: longest_attribute = 60000
 
   !> Dataset that grows by rows.
   type :: series_t
@@ -294,6 +297,10 @@ contains
     integer :: status, ignored
 
     if (.not. ok) return
+    if (len(text) > longest_attribute) then
+      call long_text_attribute(object, name, text, ok)
+      return
+    end if
     call h5tcopy_f(H5T_FORTRAN_S1, type, status)
     ok = status >= 0
     if (ok) call h5tset_size_f(type, max(1_size_t, len(text, kind=size_t)), status)
@@ -310,6 +317,32 @@ contains
     call h5sclose_f(space, ignored)
     call h5tclose_f(type, ignored)
   end subroutine text_attribute
+
+  !> Make an attribute of a text that the header of an object cannot hold, as a string of variable
+  !> length, which is stored elsewhere in the file.
+  subroutine long_text_attribute(object, name, text, ok)
+    integer(hid_t), intent(in) :: object
+    character(len=*), intent(in) :: name, text
+    !> Success flag.
+    logical, intent(inout) :: ok
+
+    character(len=1, kind=c_char), allocatable, target :: copy(:)
+    type(c_ptr), target :: address(1)
+    integer(hid_t) :: space, attribute
+    integer :: status, ignored, i
+
+    copy = [(text(i:i), i=1, len(text)), c_null_char]
+    address(1) = c_loc(copy)
+    call h5screate_f(H5S_SCALAR_F, space, status)
+    ok = status >= 0
+    if (ok) call h5acreate_f(object, name, H5T_STRING, space, attribute, status)
+    ok = ok .and. status >= 0
+    if (ok) call h5awrite_f(attribute, H5T_STRING, c_loc(address), status)
+    ok = ok .and. status >= 0
+    if (.not. ok) return
+    call h5aclose_f(attribute, ignored)
+    call h5sclose_f(space, ignored)
+  end subroutine long_text_attribute
 
   !> Make an attribute of integers: one as a scalar, several as a list.
   subroutine integer_attribute(object, name, values, attribute, ok)

@@ -118,7 +118,8 @@ contains
         call sync_file(guard)
         call replace_file(path, guard, error)
       else
-        call guard%refuse("cannot write '"//path//"': the disk is full or cannot be reached", error)
+        call guard%refuse("cannot write '"//path//"': the library HDF5 refuses, most often as "// &
+            "the disk is full or cannot be reached", error)
       end if
     end if
     call guard%release()
@@ -336,7 +337,7 @@ contains
     end if
   end subroutine read_restart
 
-  !> Check that a file is a restart file of this version of the format.
+  !> Check that a file is a restart file of this version.
   subroutine check_origin(path, file, error)
     character(len=*), intent(in) :: path
     integer(hid_t), intent(in) :: file
@@ -354,6 +355,10 @@ contains
       call fatal_error(error, "'"//path//"' has restart format "//to_text(found)// &
           ", written by dd3imp "//version//"; this version reads format "// &
           to_text(format_version), "E204")
+    else if (version /= program_version) then
+      call fatal_error(error, "'"//path//"' was written by dd3imp "//version//"; this is "// &
+          program_version//", and a restart file belongs to one version: continue with that "// &
+          "version, or start the run again", "E204")
     end if
   end subroutine check_origin
 

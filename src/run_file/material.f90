@@ -41,8 +41,8 @@ contains
               call add_law(json, "", law_backstress, material%backstress(i))
         end do
         call json%end_array()
-        call json%add("rolling_direction", material%frame(:, 1))
-        call json%add("normal_direction", material%frame(:, 3))
+        call json%add("rolling_direction", model%axes(:, 1, m))
+        call json%add("normal_direction", model%axes(:, 3, m))
         n = 0
         if (allocated(model%material_of)) n = count(model%material_of == m)
         call json%add("elements", n)

@@ -147,7 +147,7 @@ def test_model(program, tmp_path):
     (tmp_path / "part.dat").write_text(DECK.format(file="part.inp", fixed="fixed", tip="tip"))
     launch(program, tmp_path / "part.dat", tmp_path / "part.out")
     for wrong, text in (("*Element, type=C3D8\n1, 1, 2, 3\n", "an element with 3 nodes"),
-                        ("*Node\n1, a, b\n", "cannot be read"),
+                        ("*Node\n1, a, b\n", "wrong.inp:2: error: *NODE: expected a number, got 'a'"),
                         ("*Node\n1, 0, 0, 0\n", "expected one part with hexahedra")):
         (tmp_path / "wrong.inp").write_text(wrong)
         assert text in call("mesh", "wrong.inp", "part.inp", expect=2)

@@ -7,11 +7,13 @@
 
 Elements other than hexahedra, such as the faces and edges of a Gmsh mesh, and nodes without elements are left out;
 nodes and elements are numbered from 1. Physical groups of volumes become element sets, those of surfaces, curves and
-points node sets. Mirrored elements are turned.
+points node sets. Mirrored elements are turned. Of a model of Abaqus or CalculiX the mesh is read in the place of its
+instance, with local axes, generated and copied nodes and elements; what is left out is listed with its line. A node on
+an edge or a face of an element that does not have it is refused.
 """
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,10 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
 from dd3.gmsh_session import session
+from dd3.hanging import TOLERANCE, hanging, outer_faces
+from dd3.inp.blocks import refuse
+from dd3.inp.model import Model, set_members
+from dd3.inp.scope import Element, Scope
 
 # Natural coordinates of the nodes in the order of Abaqus: corners, edges, centre, faces.
 NATURAL = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1),
@@ -44,6 +50,7 @@ class Mesh:
     node_sets: dict[str, Any] = field(default_factory=dict)
     element_sets: dict[str, Any] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)  # kind: number
+    model: Model | None = None  # of an .inp file
 
 
 # ---- readers ---------------------------------------------------------------------------------------------------------
@@ -100,112 +107,71 @@ def read_run(path: Path, step: int = 0) -> Mesh:
     return mesh
 
 
-def inp_lines(path: Path, depth: int = 0) -> Iterator[tuple[Path, int, str]]:
-    """Yield the lines of an .inp file as (file, number, text), with those of included files."""
-    if depth > 10:
-        raise Problem(f"{path}: includes nest too deeply")
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
-        text = line.strip()
-        if not text or text.startswith("**"):
-            continue
-        include = re.match(r"\*INCLUDE\s*,\s*INPUT\s*=\s*(.+)", text, re.IGNORECASE)
-        if include:
-            yield from inp_lines(path.parent / include[1].strip().strip('"'), depth + 1)
-        else:
-            yield path, number, text
-
-
-def inp_blocks(path: Path) -> Iterator[list[Any]]:
-    """Yield keyword, parameters, place and lists of words of the data lines; `part` is a parameter."""
-    block: list[Any] = []
-    part, instances = "", dict[str, str]()
-    for file, number, text in inp_lines(path):
-        if not text.startswith("*"):
-            if block:
-                block[3].append([word.strip() for word in text.rstrip(",").split(",")] + [text.endswith(",")])
-            continue
-        if block:
-            yield block
-        words = [word.strip() for word in text[1:].split(",")]
-        options = {}
-        for word in words[1:]:
-            name, _, value = word.partition("=")
-            options[name.strip().upper()] = value.strip().strip('"')
-        keyword = " ".join(words[0].upper().split())
-        if keyword == "PART":
-            part = options.get("NAME", "")
-        elif keyword == "END PART":
-            part = ""
-        elif keyword == "INSTANCE":
-            instances[options.get("NAME", "").lower()] = part = options.get("PART", "")
-        elif keyword == "END INSTANCE":
-            part = ""
-        options["part"] = (instances.get(options["INSTANCE"].lower(), "") if "INSTANCE" in options else part).lower()
-        block = [keyword, options, f"{file}:{number}", []]
-    if block:
-        yield block
-
-
-def inp_members(rows: list[Any], generate: bool, known: dict[str, set[int]]) -> set[int]:
-    """Return the members of a set; names stand for sets above."""
-    members: set[int] = set()
-    for *words, _ in rows:
-        if generate:
-            first, last, *step = (int(word) for word in words)
-            members.update(range(first, last + 1, *step))
-            continue
-        for word in words:
-            members.update([int(word)] if word.isdigit() else known.get(word.strip('"').lower(), ()))
-    return members
-
-
-def inp_elements(rows: list[Any], count: int, place: str) -> Iterator[tuple[int, list[int]]]:
-    """Yield label and nodes of the elements of a block; a line that ends with a comma goes on in the next one."""
-    waiting = []
-    for *words, goes_on in rows:
-        waiting += [int(word) for word in words if word]
-        if len(waiting) <= count and goes_on:
-            continue
-        if len(waiting) != count + 1:
-            raise Problem(f"{place}: error: an element with {len(waiting) - 1} nodes, expected {count}")
-        yield waiting[0], waiting[1:]
-        waiting = []
-
-
 def read_inp(path: Path, wanted: str | None) -> Mesh:
-    """Read the mesh of a model of Abaqus or CalculiX; of several parts the one wanted."""
-    parts: dict[str, Mesh] = {}
-    for keyword, options, place, rows in inp_blocks(path):
-        mesh = parts.setdefault(options["part"], Mesh())
-        try:
-            if keyword == "NODE":
-                labels = [int(row[0]) for row in rows]
-                for *words, _ in rows:
-                    mesh.nodes[int(words[0])] = tuple(float(word) for word in (words[1:] + ["0"] * 3)[:3])
-                if "NSET" in options:
-                    mesh.node_sets.setdefault(options["NSET"].lower(), set()).update(labels)
-            elif keyword == "ELEMENT":
-                kind = options.get("TYPE", "").upper()
-                if not INP_HEXAHEDRA.match(kind):
-                    mesh.left_out[kind] = mesh.left_out.get(kind, 0) + len(rows)
-                    continue
-                count = next(size for size in (20, 27, 8) if str(size) in kind)
-                elements = dict(inp_elements(rows, count, place))
-                mesh.elements.update(elements)
-                if "ELSET" in options:
-                    mesh.element_sets.setdefault(options["ELSET"].lower(), set()).update(elements)
-            elif keyword in ("NSET", "ELSET"):
-                sets = mesh.node_sets if keyword == "NSET" else mesh.element_sets
-                sets.setdefault(options[keyword].lower(), set()).update(inp_members(rows, "GENERATE" in options, sets))
-        except (ValueError, KeyError) as error:
-            raise Problem(f"{place}: error: *{keyword} cannot be read: {error}") from None
-    found = {name: mesh for name, mesh in parts.items() if mesh.elements}
-    if wanted is not None:
-        found = {name: mesh for name, mesh in found.items() if name == wanted.lower()}
+    """Read the mesh of a model of Abaqus or CalculiX in its place; of several parts or instances the one wanted."""
+    model = Model(path)
+    solids = {}
+    for solid in model.solids():
+        if any(INP_HEXAHEDRA.match(element.kind) for element in solid.scope.elements.values()):
+            solids[solid.name] = solid
+    found = [solid for solid in solids.values() if wanted is None or wanted.lower() in (solid.name, solid.part)]
     if len(found) != 1:
-        names = ", ".join(name or "(outside parts)" for name, mesh in parts.items() if mesh.elements)
-        raise Problem(f"{path}: expected one part with hexahedra, see --part; there are: {names or 'none'}")
-    return next(iter(found.values()))
+        names = ", ".join(solid.name or "(outside parts)" for solid in solids.values())
+        others = sorted({element.kind for solid in model.solids() for element in solid.scope.elements.values()})
+        raise Problem(f"{path}: expected one part with hexahedra, see --part; there are: {names or 'none'}"
+                      + (f", but elements of {', '.join(others)}" if others and not names else ""))
+    for solid in model.solids():
+        if solid.name != found[0].name:
+            model.account.enter(solid.scope.place, solid.name or "elements outside parts").leave("not the part wanted")
+    return mesh_of(model, found[0].scope)
+
+
+def mesh_of(model: Model, scope: Scope) -> Mesh:
+    """Return the hexahedra of a mesh with their nodes and sets; what is left out is entered in the account."""
+    mesh = Mesh(model=model)
+    others: dict[str, list[Element]] = {}
+    for label, element in sorted(scope.elements.items()):
+        if INP_HEXAHEDRA.match(element.kind):
+            mesh.elements[label] = hexahedron(label, element)
+        else:
+            others.setdefault(element.kind, []).append(element)
+    for kind, elements in others.items():
+        entry = model.account.enter(elements[0].place, f"*ELEMENT, TYPE={kind}: {len(elements)}")
+        entry.leave("no hexahedra" if kind[:3] != "C3D" else "other solids than hexahedra")
+    used = set(itertools.chain.from_iterable(mesh.elements.values()))
+    for label in sorted(used - scope.nodes.keys())[:1]:
+        owner = next(element for element in scope.elements.values() if label in element.nodes)
+        refuse(owner.place, f"node {label} of an element has no coordinates")
+    mesh.nodes = {label: scope.nodes[label] for label in sorted(used)}
+    unused = [label for label in scope.nodes if label not in used]
+    if unused:
+        model.account.enter(scope.node_places[unused[0]], f"nodes without hexahedra: {len(unused)}").leave(
+            f"the first is node {unused[0]}")
+    mesh.node_sets = sets_of(model, scope, True, mesh.nodes)
+    mesh.element_sets = sets_of(model, scope, False, mesh.elements)
+    return mesh
+
+
+def hexahedron(label: int, element: Element) -> list[int]:
+    """Return the nodes of a hexahedron."""
+    nodes = element.counted(label, next(size for size in (20, 27, 8) if str(size) in element.kind))
+    if len(set(nodes)) < len(nodes):
+        refuse(element.place, f"element {label} names a node twice; wedges and pyramids are not read")
+    return nodes
+
+
+def sets_of(model: Model, scope: Scope, of_nodes: bool, there: Container[int]) -> dict[str, set[int]]:
+    """Return sets of what belongs to the mesh."""
+    result, what = {}, "nodes without hexahedra" if of_nodes else "elements that are no hexahedra"
+    for name, members in set_members(model, scope, of_nodes).items():
+        result[name] = {label for label in members if label in there}
+        lost = len(members) - len(result[name])
+        place = (scope.node_sets if of_nodes else scope.element_sets)[name].place
+        if lost:
+            model.account.enter(place, f"{'*NSET' if of_nodes else '*ELSET'} {name}").leave(f"{lost} {what}")
+        if not result[name] and not lost:
+            model.account.enter(place, f"{'*NSET' if of_nodes else '*ELSET'} {name}").leave("empty")
+    return result
 
 
 # ---- repair and output -----------------------------------------------------------------------------------------------
@@ -241,12 +207,46 @@ def merge_nodes(mesh: Mesh, tolerance: float) -> int:
     return len(same)
 
 
-def renumber(mesh: Mesh) -> None:
-    """Number nodes and elements from 1; nodes without elements are left out, and empty sets."""
+def check_nodes(mesh: Mesh) -> set[int]:
+    """Return the nodes of the elements, which must be there."""
     used = set(itertools.chain.from_iterable(mesh.elements.values()))
     unknown = used - mesh.nodes.keys()
     if unknown:
         raise Problem(f"node {min(unknown)} of an element has no coordinates")
+    return used
+
+
+def check_joints(mesh: Mesh, path: Path) -> int:
+    """Refuse nodes on an edge or a face of an element to which they do not belong; return the number of nodes at the
+    place of another one."""
+    labels, elements = list(mesh.nodes), list(mesh.elements)
+    number_of = {label: i for i, label in enumerate(labels)}
+    points = np.array(list(mesh.nodes.values()), float).reshape(-1, 3)
+    members = [[number_of[node] for node in nodes] for nodes in mesh.elements.values()]
+    corners = np.array([nodes[:8] for nodes in members], int).reshape(-1, 8)
+    at_corner = set(corners.ravel().tolist())
+    for element, nodes in zip(elements, members):
+        for node in at_corner.intersection(nodes[8:]):
+            raise Problem(f"{path}: error: node {labels[node]} is between the corners of element {element} and at a "
+                          "corner of another: the sheet would tear there; expected elements with whole faces in common")
+    faces, owners = outer_faces(corners)
+    found = hanging(points, faces, owners, members)
+    if found:
+        node, element = found[0]
+        place = " ".join(f"{value:.9g}" for value in points[node])
+        raise Problem(f"{path}: error: node {labels[node]} at {place} lies on an edge or a face of element "
+                      f"{elements[element]}, which does not have it: the sheet would tear there"
+                      + (f"; {len(found) - 1} more are so" if found[1:] else "")
+                      + "; expected elements with whole faces in common")
+    outer = np.unique(faces)
+    edges = np.linalg.norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
+    edges = edges[edges > 0.0]
+    return len(cKDTree(points[outer]).query_pairs(TOLERANCE * float(edges.min()))) if len(edges) else 0
+
+
+def renumber(mesh: Mesh) -> None:
+    """Number nodes and elements from 1; nodes without elements are left out, and empty sets."""
+    used = check_nodes(mesh)
     node_of = {label: i for i, label in enumerate((label for label in mesh.nodes if label in used), 1)}
     element_of = {label: i for i, label in enumerate(mesh.elements, 1)}
     if len(node_of) < len(mesh.nodes):
@@ -297,6 +297,8 @@ def report(path: Path, mesh: Mesh, merged: int, mirrored: int) -> None:
         print(f"mirrored elements turned: {mirrored}")
     for kind, count in mesh.left_out.items():
         print(f"left out: {kind}: {count}")
+    for item in mesh.model.left_out() if mesh.model else ():
+        print(f"left out: {item}")
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -306,7 +308,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("target", type=Path, help=".inp file to write")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the coordinates, 1000 for metres")
     parser.add_argument("--merge", type=float, metavar="mm", help="merge nodes nearer than this, after --scale")
-    parser.add_argument("--part", help="part of a model with several")
+    parser.add_argument("--part", help="part or instance of a model with several")
     options = parser.parse_args(words)
     if not options.source.is_file():
         raise Problem(f"{options.source}: no such file")
@@ -324,7 +326,11 @@ def main(words: Sequence[str] | None = None) -> None:
     if options.scale != 1.0:
         mesh.nodes = {label: tuple(options.scale * value for value in point) for label, point in mesh.nodes.items()}
     merged = merge_nodes(mesh, options.merge) if options.merge else 0
+    check_nodes(mesh)
+    doubled = check_joints(mesh, options.source)
     renumber(mesh)
     mirrored = turn_mirrored(mesh)
     write_inp(options.target, mesh, options.source)
     report(options.target, mesh, merged, mirrored)
+    if doubled:
+        print(f"warning: {doubled} nodes at the place of another one do not join the elements there; see --merge")

@@ -2,7 +2,7 @@
 """Readers of facets: STL, Gmsh, Abaqus, LS-DYNA and VTK files as nodes and triangles or quadrilaterals."""
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ import numpy as np
 from dd3.account import Account
 from dd3.errors import Problem
 from dd3.gmsh_session import session
-from dd3.mesh import inp_blocks, inp_elements
+from dd3.inp.model import Model
+from dd3.inp.scope import Element
 
 SUFFIXES = (".stl", ".msh", ".inp", ".k", ".key", ".dyn", ".vtk", ".vtu", ".vtp", ".ply", ".obj")
 # Faces of solids by their number of corners: of a tetrahedron, a pyramid, a wedge, a hexahedron.
@@ -204,30 +205,41 @@ def from_cells(path: Path, nodes: Mapping[int, Sequence[float]],
 
 
 def read_inp(path: Path) -> Facets:
-    """Read the shells and solids of a model of Abaqus or CalculiX; parts are its *PARTs or element sets."""
-    nodes, cells = {}, []
-    base: dict[str, int] = {}
-    for keyword, options, place, rows in inp_blocks(path):
-        # Labels are unique within a *PART only.
-        first = base.setdefault(options["part"], len(base) * 10**9)
-        try:
-            if keyword == "NODE":
-                for *words, _ in rows:
-                    nodes[first + int(words[0])] = tuple(float(word) for word in (words[1:] + ["0"] * 3)[:3])
-            elif keyword == "ELEMENT":
-                kind = options.get("TYPE", "")
-                shell = INP_FACETS.match(kind)
-                kind_of = shell or INP_SOLIDS.match(kind)
-                if not kind_of:
-                    continue
-                count = int(kind_of[1])
-                corners = (3 if count in (3, 6) else 4) if shell else CORNERS.get(count, count)
-                name = options["part"] or options.get("ELSET", "part").lower()
-                cells += [(name, 2 if shell else 3, tuple(first + label for label in members[:corners]))
-                          for _, members in inp_elements(rows, count, place)]
-        except (ValueError, KeyError, IndexError) as error:
-            raise Problem(f"{place}: error: *{keyword} cannot be read: {error}") from None
-    return from_cells(path, nodes, cells)
+    """Read the shells and solids of a model of Abaqus or CalculiX in their places; parts are its *PARTs, or their
+    instances where there are several of one, or element sets."""
+    model = Model(path)
+    nodes: dict[int, tuple[float, float, float]] = {}
+    cells = []
+    others: dict[str, list[Element]] = {}
+    solids = list(model.solids())
+    for number, solid in enumerate(solids):
+        # Labels are unique within a part only.
+        base = number * 10**9
+        nodes |= {base + label: point for label, point in solid.scope.nodes.items()}
+        several = sum(other.part == solid.part for other in solids) > 1
+        name = solid.name if several else solid.part or solid.name
+        for label, element in solid.scope.elements.items():
+            corners, dimension = corners_and_dimension(label, element)
+            if not dimension:
+                others.setdefault(element.kind, []).append(element)
+                continue
+            cells.append((name or element.group or "part", dimension, tuple(base + node for node in corners)))
+    for kind, elements in others.items():
+        entry = model.account.enter(elements[0].place, f"*ELEMENT, TYPE={kind}: {len(elements)}")
+        entry.leave("neither shells nor solids")
+    result = from_cells(path, nodes, cells)
+    return replace(result, notes=[*result.notes, *(f"left out: {item}" for item in model.left_out())])
+
+
+def corners_and_dimension(label: int, element: Element) -> tuple[list[int], int]:
+    """Return the corners of an element and 2 for a shell, 3 for a solid, 0 for others."""
+    shell = INP_FACETS.match(element.kind)
+    kind_of = shell or INP_SOLIDS.match(element.kind)
+    if not kind_of:
+        return [], 0
+    count = int(kind_of[1])
+    corners = (3 if count in (3, 6) else 4) if shell else CORNERS.get(count, count)
+    return element.counted(label, count)[:corners], 2 if shell else 3
 
 
 def dyna_lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hanging nodes: nodes on an edge or a face of an element to which they do not belong, where the sheet would tear."""
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+TOLERANCE = 1e-3  # distance from a face, and of nodes at the same place, over the shortest edge of the face
+FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)])
+CHUNK = 100_000  # faces at a time
+
+
+def outer_faces(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the faces (m, 4) that belong to one hexahedron only, and their elements, of corners (n, 8)."""
+    faces = corners[:, FACES].reshape(-1, 4)
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    alone = np.sort(first[count == 1])
+    return faces[alone], alone // len(FACES)
+
+
+def hanging(points: np.ndarray, faces: np.ndarray, owners: np.ndarray,
+            members: Sequence[Iterable[int]]) -> list[tuple[int, int]]:
+    """Return pairs of a node and an element on whose face or edge it lies.
+
+    `points` (n, 3); `faces` (m, 4) node numbers around faces, of the elements `owners` (m); `members`: all nodes of
+    each element. Nodes at the corners of a face are none.
+    """
+    candidates = np.unique(faces)
+    if not len(candidates):
+        return []
+    tree = cKDTree(points[candidates])
+    found = []
+    for start in range(0, len(faces), CHUNK):
+        part = slice(start, start + CHUNK)
+        corners = points[faces[part]]
+        centre = corners.mean(axis=1)
+        radius = 1.01 * np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+        near = tree.query_ball_point(centre, radius)
+        face = np.repeat(np.arange(len(near)), [len(nodes) for nodes in near])
+        node = candidates[np.concatenate([np.asarray(nodes, int) for nodes in near])]
+        # Most are corners of the face.
+        other = (faces[part][face] != node[:, None]).all(axis=1)
+        face, node = face[other], node[other]
+        on = on_face(points[node], corners[face])
+        found += [(int(n), int(owners[start + f])) for n, f in zip(node[on], face[on])
+                  if int(n) not in members[owners[start + f]]]
+    return sorted(set(found))
+
+
+def on_face(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Check which points (n, 3) lie on bilinear faces with corners (n, 4, 3), away from these."""
+    edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    tolerance = TOLERANCE * edges.min(axis=1)
+    sign = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
+    at = np.zeros((len(points), 2))
+    for _ in range(8):  # Newton's method for the nearest point, in the natural coordinates
+        shape = 0.25 * (1 + at[:, None, 0] * sign[:, 0]) * (1 + at[:, None, 1] * sign[:, 1])
+        slope = 0.25 * np.stack([sign[:, 0] * (1 + at[:, None, 1] * sign[:, 1]),
+                                 sign[:, 1] * (1 + at[:, None, 0] * sign[:, 0])], axis=1)
+        gap = points - np.einsum("ni,nij->nj", shape, corners)
+        tangent = np.einsum("nki,nij->nkj", slope, corners)
+        metric = np.einsum("nki,nli->nkl", tangent, tangent)
+        metric[:, [0, 1], [0, 1]] += 1e-300
+        right = np.einsum("nki,ni->nk", tangent, gap)
+        determinant = metric[:, 0, 0] * metric[:, 1, 1] - metric[:, 0, 1] ** 2
+        step = np.stack([metric[:, 1, 1] * right[:, 0] - metric[:, 0, 1] * right[:, 1],
+                         metric[:, 0, 0] * right[:, 1] - metric[:, 0, 1] * right[:, 0]], axis=1)
+        at = np.clip(at + step / np.maximum(determinant, 1e-300)[:, None], -1, 1)
+    shape = 0.25 * (1 + at[:, None, 0] * sign[:, 0]) * (1 + at[:, None, 1] * sign[:, 1])
+    distance = np.linalg.norm(points - np.einsum("ni,nij->nj", shape, corners), axis=1)
+    to_corner = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
+    return (distance <= tolerance) & (to_corner > tolerance)
