@@ -17,7 +17,7 @@ from dd3.errors import Problem
 
 STANDARD, I10, LONG = 0, 10, 20  # least width of a field
 SUFFIXES = {"-": STANDARD, "%": I10, "+": LONG}
-COLUMNS = 80  # of a line in standard format: what is behind them is a comment
+LINE = 80  # of a line in standard format: what is behind them is a comment
 DEEPEST = 10  # of files that include others
 TITLED = ("*MAT", "*SECTION", "*DEFINE", "*SET", "*HOURGLASS")
 
@@ -31,10 +31,10 @@ def columns(widths: tuple[int, ...], least: int) -> tuple[tuple[int, int], ...]:
 def split(text: str, widths: tuple[int, ...], least: int = STANDARD) -> list[str]:
     """Return the words of a line, of fixed columns, or separated by commas."""
     places = columns(widths, least)
-    if "," in text[:max(COLUMNS, places[-1][1])]:
+    if "," in text[:max(LINE, places[-1][1])]:
         words = [word.strip() for word in text.split(",")]
         return words + [""] * (len(widths) - len(words))
-    text = text[:max(COLUMNS, places[-1][1])]
+    text = text[:max(LINE, places[-1][1])]
     words = [text[begin:end].strip() for begin, end in places]
     return words if not (rest := text[places[-1][1]:].split()) else words + rest
 

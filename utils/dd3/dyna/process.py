@@ -34,6 +34,7 @@ class Stage:
     forces: dict[int, "History"] = field(default_factory=dict)
     loads: dict[int, "History"] = field(default_factory=dict)
     gravity: "History | None" = None
+    clock: "History | None" = None  # the time
 
     @property
     def moving(self) -> set[int]:
@@ -157,16 +158,19 @@ def corners(times: np.ndarray, moved: dict[Key, np.ndarray], acting: dict[Key, n
     else:
         rests = np.ones(last, bool)
     for a, b in pairs_of(sorted(found)):
-        if rests[a]:
-            for history in acting.values():
-                value = history / max(float(np.abs(history).max()), 1e-300)
-                found |= turning_points(np.column_stack((value, np.linspace(0, 1, len(value)) * 0)), a, b)
+        if rests[a] and acting:
+            found |= turning_points(scaled(acting), a, b)
     result: list[int] = []
     for i in sorted(found):
         if result and times[i] - times[result[-1]] <= SAME * times[-1] and i != last:
             continue
         result.append(i)
     return result
+
+
+def scaled(acting: dict[Key, np.ndarray]) -> np.ndarray:
+    """Return forces and gravity over the largest value of each, in columns."""
+    return np.hstack([history / max(float(np.abs(history).max()), 1e-300) for history in acting.values()])
 
 
 def turning_points(path: np.ndarray, first: int, last: int) -> set[int]:
@@ -207,8 +211,11 @@ def stage_of(times: np.ndarray, first: int, last: int, moved: dict[Key, np.ndarr
         if np.abs(change).max() > STILL * extent:
             (stage.turns if kind == "turn" else stage.moves)[target] = change
             along = along + np.linalg.norm(path[first:last + 1] - path[first], axis=1) / extent
-    if not stage.moving:
+    if not stage.moving and acting:  # the time says nothing, only how far the forces have come
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(scaled(acting)[first:last + 1], axis=0), axis=1))])
+    if not along[-1] > 0:
         along = times[first:last + 1] - times[first]
+    stage.clock = History(along / along[-1], times[first:last + 1, None])
     progress = np.maximum.accumulate(along / along[-1])
     for (kind, target), history in acting.items():
         found = history_of(progress, history[first:last + 1], float(np.abs(history).max()))
@@ -244,15 +251,15 @@ def part_of(stage: Stage, first: float, last: float) -> Stage:
         values = np.column_stack([np.interp(at, history.progress, column) for column in history.values.T])
         return History((at - first) / (last - first), values)
 
-    width = stage.ends - stage.begins
-    result = Stage(stage.begins + first * width, stage.begins + last * width,
+    clock = cut(stage.clock or History(np.array([0.0, 1.0]), np.array([[stage.begins], [stage.ends]])))
+    result = Stage(float(clock.values[0, 0]), float(clock.values[-1, 0]),
                    {tool: (last - first) * move for tool, move in stage.moves.items()},
                    {tool: (last - first) * turn for tool, turn in stage.turns.items()})
     for target, source in (result.forces, stage.forces), (result.loads, stage.loads):
         for key, history in source.items():
             if (one := cut(history)).values.any():
                 target[key] = one
-    result.gravity = cut(stage.gravity) if stage.gravity else None
+    result.gravity, result.clock = cut(stage.gravity) if stage.gravity else None, clock
     return result
 
 
