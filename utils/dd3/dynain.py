@@ -234,6 +234,9 @@ def account_of(reader: Reader) -> list[str]:
     for card in reader.cards:
         if card.keyword in ("*KEYWORD", "*TITLE", "*COMMENT", "*CONSTRAINED_ADAPTIVITY"):
             card.ignore()
+        elif card.keyword.startswith("*PART"):
+            for row in filter(None, card.rows.values()):
+                row.drop("the thicknesses are those of the shells, the material that of --material")
         elif card.keyword.startswith("*INITIAL_STRAIN"):
             card.leave("strains count from the formed sheet")
         elif card.keyword.startswith("*INITIAL_STRESS"):

@@ -324,9 +324,9 @@ def define(card: Card, parameters: Parameters) -> None:
     begun: list[tuple[str, str, str]] = []
     for i in card.filled():
         text = card.lines[i][1]
-        name, comma, rest = text.partition(",")
-        if not comma or len(name.strip()) > width:
-            name, rest = text[:width], text[width:]
+        name, rest = text[:width], text[width:]
+        if apart := re.match(r"\s*([RIC]\s*\w+)\s*,(.*)", text, re.IGNORECASE):
+            name, rest = apart.groups()
         if name.strip() or not begun:
             begun.append((card.place_of(i), name.strip(), rest))
         else:

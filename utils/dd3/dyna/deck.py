@@ -12,7 +12,8 @@ import numpy as np
 from dd3.account import LeftOut
 from dd3.dyna.cards import Card, Reader, Row
 from dd3.dyna.curves import Curves
-from dd3.dyna.mesh import NODE, DynaMesh, Part
+from dd3.dyna.mesh import Part
+from dd3.dyna.positions import AUTO, placed_mesh
 from dd3.dyna.sets import Sets
 from dd3.errors import Problem
 
@@ -42,7 +43,6 @@ REASONS = (
     ("*EOS", "equations of state are not available"),
     ("*ELEMENT", "elements other than shells and solids"),
 )
-MISSING_SET = "there is no *SET_{} {}"
 SHELL = ("SECID ELFORM SHRF NIP PROPT QR ICOMP SETYP", "T1 T2 T3 T4 NLOC MAREA IDOF EDGSET")
 CONTACT = ("SURFA SURFB SURFATYP SURFBTYP SABOXID SBBOXID SAPR SBPR", "FS FD DC VC VDC PENCHK BT DT",
            "SFSA SFSB SAST SBST SFSAT SFSBT FSF VSF")
@@ -123,7 +123,7 @@ class Deck:
         self.reader = reader = Reader(path)
         if not reader.cards:
             raise Problem(f"{path}: no keyword: expected a keyword file of LS-DYNA")
-        self.mesh = DynaMesh(reader)
+        self.mesh, moves = placed_mesh(reader)
         self.nodes, self.parts = self.mesh.nodes, self.mesh.parts
         self.sets, self.curves = Sets(self.mesh), Curves(path)
         self.sections: dict[int, tuple[Card, int]] = {}
@@ -137,15 +137,14 @@ class Deck:
         self.gravity: list[Gravity] = []
         self.heavy: list[Row] = []  # of *LOAD_BODY_PARTS
         self.hung: list[tuple[str, list[int]]] = []
-        self.notes = [f"{place}: a second *PARAMETER {name}; the first holds, as in LS-DYNA"
-                      for place, name in reader.parameters.twice]
+        self.notes = [*moves, *(f"{place}: a second *PARAMETER {name}; the first holds, as in LS-DYNA"
+                      for place, name in reader.parameters.twice)]
         self.title, self.end_time, self.springback = "", 0.0, False
         for card in reader.cards:
             self.take(card)
         if not self.mesh.cells:
             raise Problem(f"{path}: no shells and no solids" + self.unread("*ELEMENT"))
         self.mesh.fill_parts()
-        self.move_parts()
 
     def left_out(self) -> list[LeftOut]:
         """Return what nothing has used."""
@@ -292,21 +291,6 @@ class Deck:
     def take_mesh(self, card: Card) -> None:
         """Leave to the mesh what it reads."""
 
-    def move_parts(self) -> None:
-        """Displace parts (*PART_MOVE)."""
-        for card in self.mesh.moved:
-            for i in card.filled():
-                row = card.row(i, "PID XMOV YMOV ZMOV CID IFSET", NODE)
-                number = row.label("PID")
-                if row.label("CID"):
-                    raise Problem(f"{row.place}: error: *PART_MOVE in axes of its own is not read; write the deck with "
-                                  "the nodes in their places")
-                found = self.of_parts(number, 2 if row.label("IFSET") else 3, row.place)
-                if not found or found - self.parts.keys():
-                    raise Problem(f"{row.place}: error: there is no *PART {number}")
-                for part in found:
-                    self.mesh.shift(part, np.array(row.numbers("XMOV YMOV ZMOV")))
-
     # ---- what is asked for ---------------------------------------------------------------------------------------------
 
     def section(self, part: Part, keyword: str, names: tuple[str, ...]) -> list[Row]:
@@ -330,7 +314,7 @@ class Deck:
     def of_set(self, kind: str, number: int, place: str) -> list[int]:
         """Return the labels of a set of a kind."""
         if not self.sets.has(kind, number):
-            raise Problem(f"{place}: error: {MISSING_SET.format(kind, number)}" + self.unread(f"*SET_{kind}"))
+            raise self.sets.missing(kind, number, place)
         return self.sets.get(kind, number)
 
     def of_parts(self, number: int, kind: int, place: str) -> set[int]:
@@ -440,4 +424,5 @@ KNOWN: dict[str, Callable[[Deck, Card], None]] = {
     "*BOUNDARY_SPC_SET": lambda deck, card: deck.supports.append(card),
     "*CONTACT_DRAWBEAD": lambda deck, card: deck.beads.append(card)}
 BEGINNINGS: tuple[tuple[str, Callable[[Deck, Card], None]], ...] = (
-    ("*INTERFACE_SPRINGBACK", Deck.take_springback),)
+    ("*INTERFACE_SPRINGBACK", Deck.take_springback),
+    (AUTO, Deck.take_mesh))

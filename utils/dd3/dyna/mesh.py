@@ -215,6 +215,8 @@ class DynaMesh:
 
     def fill_parts(self) -> None:
         """Give the parts their cells."""
+        for part in self.parts.values():
+            part.cells.clear()
         for cell in self.cells:
             if cell.part not in self.parts:
                 raise Problem(f"{cell.place}: error: an element of part {cell.part}, but no *PART of this number")

@@ -14,6 +14,7 @@ from dd3.dyna.deck import Deck, Drive
 from dd3.errors import Problem
 
 STILL = 1e-6  # displacement in a stage over that of the whole process that counts as none
+REST = 1e-9  # the same between two samples, where nothing moves
 STRAIGHT = 2e-3  # distance of the path from a straight line, over the extent of the path
 EVEN = 2e-3  # the same of a force over its largest value
 SAME = 1e-4  # distance of times, over the time of the whole process, that count as one
@@ -149,7 +150,7 @@ def corners(times: np.ndarray, moved: dict[Key, np.ndarray], acting: dict[Key, n
     if columns:
         path = np.hstack(columns)
         length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
-        rests = np.diff(length) <= STILL * max(length[-1], 1e-300)
+        rests = np.diff(length) <= REST * max(length[-1], 1e-300)
         change = np.flatnonzero(np.diff(rests.astype(int))) + 1
         found |= set(change.tolist())
         for a, b in pairs_of(sorted(found)):

@@ -21,11 +21,14 @@ class Sets:
     def __init__(self, mesh: DynaMesh) -> None:
         self.mesh = mesh
         self.cards: dict[tuple[str, int], list[Card]] = {}
+        self.others: list[Card] = []  # of kinds that are not read
 
     def take(self, card: Card) -> bool:
         """Take a card of a set that is read; check whether it is one."""
         found = KEYWORD.match(card.keyword)
         if not found or not card.lines:
+            if card.keyword.startswith("*SET"):
+                self.others.append(card)
             return False
         key = found[1], card.first(0)
         if key in self.cards and not found[3]:
@@ -34,6 +37,12 @@ class Sets:
         self.cards.setdefault(key, []).append(card)
         card.leave("nothing here uses it")
         return True
+
+    def missing(self, kind: str, number: int, place: str) -> Problem:
+        """Return the message on a set that is not there, with those that are not read."""
+        other = [card for card in self.others if card.keyword.startswith(f"*SET_{kind}")]
+        return Problem(f"{place}: error: there is no *SET_{kind} {number}"
+                       + "".join(f"; {card.keyword} at {card.place} is not read" for card in other[:3]))
 
     def has(self, kind: str, number: int) -> bool:
         """Check whether there is a set."""
@@ -77,7 +86,7 @@ class Sets:
     def one_of(self, card: Card, kind: str, number: int, depth: int) -> list[int]:
         """Return the labels of a set that another names."""
         if not self.has(kind, number):
-            raise Problem(f"{card.place}: error: there is no *SET_{kind} {number}")
+            raise self.missing(kind, number, card.place)
         return self.get(kind, number, depth + 1)
 
     def general(self, card: Card, kind: str, depth: int) -> list[int]:

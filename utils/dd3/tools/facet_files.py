@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dd3.dyna.cards import Reader
-from dd3.dyna.mesh import DynaMesh
+from dd3.dyna.positions import placed_mesh
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.mesh import inp_blocks, inp_elements
@@ -164,10 +164,11 @@ def read_inp(path: Path) -> Facets:
 
 def read_dyna(path: Path) -> Facets:
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
-    mesh = DynaMesh(Reader(path))
+    mesh, notes = placed_mesh(Reader(path))
     result = from_cells(path, mesh.nodes, [(cell.part, cell.dimension, cell.nodes) for cell in mesh.cells])
     titles = {number: part.title for number, part in mesh.parts.items()}
     result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
+    result.notes += notes
     return result
 
 
