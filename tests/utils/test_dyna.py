@@ -396,8 +396,8 @@ def test_tables():
 @pytest.mark.parametrize("cards, expected", [
     ({"contact": ["*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE", row(1, 2, 3, 3), row(0.2, 0.08, 0.001, "", 20.0, 1, 0.003,
                                                                                    0.004),
-                  row(1.0, 1.0, 0.9), row(2), row("", 1), "*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE", row(1, 3, 3, 3)]},
-     ["FD = 0.08", "DC = 0.001", "VDC = 20.0", "PENCHK = 1", "BT = 0.003", "DT = 0.004", "SFSA = 1.0", "SFSB = 1.0", "SAST = 0.9",
+                  row(1.5, 1.0, 0.9), row(2), row("", 1), "*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE", row(1, 3, 3, 3)]},
+     ["FD = 0.08", "DC = 0.001", "VDC = 20.0", "PENCHK = 1", "BT = 0.003", "DT = 0.004", "SFSA = 1.5", "SAST = 0.9",
       "SOFT = 2", "THKOPT = 1"]),
     ({"material": ["*MAT_024", row(1, "7.85E-9", "2.1E5", 0.3, 200.0, 500.0, 0.4), row(40.0, 5.0, "", "", 1.0), "", ""]},
      ["FAIL = 0.4", "C = 40.0", "P = 5.0", "VP = 1.0"]),

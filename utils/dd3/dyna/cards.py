@@ -45,16 +45,20 @@ def says_something(word: str) -> bool:
 
 
 class Row:
-    """A row of a card: its fields by name."""
+    """A row of a card: its fields by name. A name with a value, SF=1, gives the default of LS-DYNA: a field that has it
+    says nothing."""
 
     __slots__ = ("entry", "names", "place", "text", "values", "words")
 
     def __init__(self, card: "Card", i: int, names: Sequence[str], widths: tuple[int, ...]) -> None:
         self.place, self.text, self.values = card.place_of(i), card.lines[i][1], card.values
         self.words = split(self.text, widths, card.least)
-        self.names = [*names, *(f"field {k + 1}" for k in range(len(names), len(self.words)))]
+        apart = [name.partition("=") for name in names]
+        self.names = [*(name for name, _, _ in apart), *(f"field {k + 1}" for k in range(len(names), len(self.words)))]
+        defaults = {name: as_number(value) for name, _, value in apart if value}
         self.entry: Entry = card.account.enter(self.place, card.keyword, {
-            name: word for name, word in zip(self.names, self.words) if says_something(word)})
+            name: word for name, word in zip(self.names, self.words)
+            if says_something(word) and as_number(word) != defaults.get(name, 0.0)})
         self.entry.used = True
 
     def word(self, name: str) -> str:

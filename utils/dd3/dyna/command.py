@@ -35,6 +35,7 @@ from dd3.progress import each
 from dd3.tools.surface import write
 
 RIGID = 20
+SEW = 2e-3  # distance up to which free edges of a tool are joined, mm: deck writers round coordinates
 BENT = 2.0  # angle between first edges of elements, degrees, from which a note tells of it
 
 
@@ -221,6 +222,7 @@ class Import:
                      "--toward", *numbers(toward).split()]
             for number in tool.parts:
                 words += ["--part", str(number)]
+            words += ["--sew", f"{SEW:g}"]
             options = tools.arguments([*words, "--tolerance", "1000"])
             surface, _, result = tools.made(options)
             if result.errors:
