@@ -3,13 +3,17 @@
 
     dd3 dynain dynain op10.out
     dd3 dynain dynain op10.out --material dp600 --points 9 --rolling 0 1 0
+    dd3 dynain dynain op10.out --units "mm GPa"
 
-Shells of four nodes become elements solid_shell around their mid-surface. The folder that is written stands for that
-of a run: *START takes the sheet from it (from = op10.out), so that it is released, or formed further. Stresses and
-plastic strains at heights between those of the file are interpolated; --points gives the points through the thickness
-(those of the file). Back-stresses start at zero. The initial blank is not known: strains and thinning count from the
-formed sheet, and *TRIM does not cut it. Node sets are z_min and z_max, the faces against and along the normals of the
-shells, for tools that touch them from below and from above, rim, and all.
+Shells of four nodes become elements solid_shell around their mid-surface; those that are numbered the other way round
+than the others are turned over. A node of one shell on the edge of another is refused: it would hang there, and the
+sheet tear. The folder that is written stands for that of a run: *START takes the sheet from it (from = op10.out), so
+that it is released, or formed further. Stresses and plastic strains at heights between those of the file are
+interpolated; --points gives the points through the thickness (those of the file). Stresses are in MPa, or as --units
+says, which is asked for where they are hardly those of a metal in MPa. Back-stresses start at zero. The initial blank
+is not known: strains and thinning count from the formed sheet, and *TRIM does not cut it. Node sets are z_min and
+z_max, the faces against and along the normals of the shells, for tools that touch them from below and from above, rim,
+and all. What of the file is not used is listed with its line.
 
 The rolling direction is the one given (--rolling, x), turned into the sheet.
 """
@@ -81,8 +85,8 @@ class Stresses:
         at += thermal * -(-more // (5 if large else 8)) if thermal else 0
         rows = np.array(points)
         if np.abs(rows[:, 0]).max() > 1 + 1e-3:
-            raise Problem(f"{head.place}: error: a height of {rows[np.abs(rows[:, 0]).argmax(), 0]:g} of shell {label}; "
-                          "expected -1 to 1")
+            raise Problem(f"{head.place}: error: a height of {rows[np.abs(rows[:, 0]).argmax(), 0]:g} of shell "
+                          f"{label}; expected -1 to 1")
         heights = np.unique(np.round(rows[:, 0] / SAME)) * SAME
         self.rows[label] = np.array([rows[abs(rows[:, 0] - height) < 2 * SAME].mean(axis=0) for height in heights])
         return at
@@ -105,7 +109,7 @@ class Stresses:
             values.append(value)
         after = last + 1 + -(-history // width) + -(-tensors // width)
         for i in range(at, min(after, len(card))):
-            card.rows[i] = None  # type: ignore[assignment]
+            card.rows.setdefault(i)
         return values, after
 
 
@@ -141,8 +145,8 @@ def thicknesses(cells: list[Cell]) -> np.ndarray:
     """Return the thicknesses at the corners of shells (m, 4)."""
     missing = [cell for cell in cells if not cell.thickness]
     if missing:
-        raise Problem(f"{missing[0].place}: error: {len(cells) - len(missing)} thicknesses for {len(cells)} shells, none of "
-                      f"shell {missing[0].label}; expected *ELEMENT_SHELL_THICKNESS")
+        raise Problem(f"{missing[0].place}: error: {len(cells) - len(missing)} thicknesses for {len(cells)} shells, "
+                      f"none of shell {missing[0].label}; expected *ELEMENT_SHELL_THICKNESS")
     found = np.array([(*cell.thickness, 0.0, 0.0, 0.0, 0.0)[:4] for cell in cells])
     found = np.where(found == 0, found[:, :1], found)  # left out: that of the first corner
     if not (found > 0).all():
@@ -158,21 +162,22 @@ def conforming(reader: Reader, cells: list[Cell], middle: np.ndarray, quads: np.
         if card.keyword == "*CONSTRAINED_ADAPTIVITY":
             for i, words in card.words(0):
                 label, *ends = (card.whole(i, word) for word in words[:3])
-                raise Problem(f"{card.place_of(i)}: error: node {label} hangs between the nodes {ends[0]} and {ends[-1]}, "
-                              "and hanging nodes are not bound here: write the file of a mesh without "
+                raise Problem(f"{card.place_of(i)}: error: node {label} hangs between the nodes {ends[0]} and "
+                              f"{ends[-1]}, and hanging nodes are not bound here: write the file of a mesh without "
                               "*CONSTRAINED_ADAPTIVITY")
     found = hanging_nodes(middle, quads.tolist())
     if found:
         cell = cells[found[0][1]]
-        raise Problem(f"{cell.place}: error: node {used[found[0][0]]} lies on an edge of shell {cell.label} that does not "
-                      f"have it ({len(found)} such nodes): the sheet would tear there; hanging nodes are not bound here")
+        raise Problem(f"{cell.place}: error: node {used[found[0][0]]} lies on an edge of shell {cell.label} that does "
+                      f"not have it ({len(found)} such nodes): the sheet would tear there; hanging nodes are not "
+                      "bound here")
 
 
 def check_units(path: Path, units: str | None, largest: float) -> None:
     """Raise a Problem if the stresses are hardly those of a metal in MPa, and no units are given."""
     if units is None and largest > 0 and not ODD_STRESS[0] <= largest <= ODD_STRESS[1]:
-        raise Problem(f"{path}: error: stresses up to {largest:.4g} MPa, if they are in MPa; say by --units what they are "
-                      'in: "mm MPa", "mm GPa" or "m Pa"')
+        raise Problem(f"{path}: error: stresses up to {largest:.4g} MPa, if they are in MPa; say by --units what they "
+                      'are in: "mm MPa", "mm GPa" or "m Pa"')
 
 
 def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], units: str | None = None

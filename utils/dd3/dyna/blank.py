@@ -21,8 +21,8 @@ MOST_POINTS = 15
 class Blank:
     """The mesh with the labels of the deck, its mean normal, thickness, points, and the element.
 
-    upper: the label of the node above each node of a shell; empty for solids. axes: the first edge and the normal of the
-    first element; bent: the largest angle from it to the first edge of another, degrees.
+    upper: the label of the node above each node of a shell; empty for solids. axes: the first edge and the normal of
+    the first element; bent: the largest angle from it to the first edge of another, degrees.
     """
 
     mesh: Mesh
@@ -69,12 +69,13 @@ def check_hanging(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> None:
         if label in nodes:
             raise Problem(f"{place}: error: node {label} hangs between the nodes {ends[0]} and {ends[-1]}, and hanging "
                           "nodes are not bound here; mesh the blank with elements that share all their nodes")
-    found = hanging_nodes(np.array(list(nodes.values())), [[index[label] for label in cell.nodes] for cell in part.cells])
+    found = hanging_nodes(np.array(list(nodes.values())),
+                          [[index[label] for label in cell.nodes] for cell in part.cells])
     if found:
         node, cell = labels[found[0][0]], part.cells[found[0][1]]
-        raise Problem(f"{cell.place}: error: node {node} lies on an edge or a face of element {cell.label} that does not "
-                      f"have it ({len(found)} such nodes): the sheet would tear there; mesh the blank with elements that "
-                      "share all their nodes")
+        raise Problem(f"{cell.place}: error: node {node} lies on an edge or a face of element {cell.label} that does "
+                      f"not have it ({len(found)} such nodes): the sheet would tear there; mesh the blank with "
+                      "elements that share all their nodes")
 
 
 def face_normals(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray]) -> np.ndarray:
@@ -129,9 +130,11 @@ def use_section(row: Row) -> None:
 def uniform_thickness(row: Row, cells: list[Cell]) -> float:
     """Return the thickness of shells by their section, or the one that all of them have by *ELEMENT_SHELL_THICKNESS."""
     first, *others = row.numbers("T1 T2 T3 T4")
-    given = {value for cell in cells for value in cell.thickness if value} or {value for value in (first, *others) if value}
+    given = ({value for cell in cells for value in cell.thickness if value}
+             or {value for value in (first, *others) if value})
     if len(given) > 1 and max(given) - min(given) > 1e-6 * max(given):
-        raise Problem(f"{row.place}: error: shells of {min(given):g} to {max(given):g} thick; the blank has one thickness")
+        raise Problem(f"{row.place}: error: shells of {min(given):g} to {max(given):g} thick; the blank has one "
+                      "thickness")
     return next(iter(given), 0.0)
 
 

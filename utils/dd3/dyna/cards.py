@@ -113,7 +113,7 @@ class Card:
     lines: list[tuple[int, str]] = field(default_factory=list, repr=False)
     title: str = ""
     options: frozenset[str] = frozenset()
-    rows: dict[int, Row] = field(default_factory=dict, repr=False)
+    rows: dict[int, Row | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         self.entry = self.account.enter(self.place, self.keyword)
@@ -152,9 +152,10 @@ class Card:
         if i >= len(self.lines):
             raise Problem(f"{self.place}: error: {self.keyword} has {len(self.lines)} rows, expected {i + 1}")
         self.use()
-        if i not in self.rows:
-            self.rows[i] = Row(self, i, names.split(), widths)
-        return self.rows[i]
+        row = self.rows.get(i)
+        if row is None:
+            row = self.rows[i] = Row(self, i, names.split(), widths)
+        return row
 
     def optional(self, i: int, names: str) -> Row:
         """Return a row, one of defaults where the card ends before."""
@@ -167,7 +168,7 @@ class Card:
         self.use()
         for i in self.filled():
             if i >= first:
-                self.rows.setdefault(i, None)  # type: ignore[arg-type]
+                self.rows.setdefault(i)
                 yield i, split(self.lines[i][1], widths, self.least)
 
     def labels(self, first: int) -> list[int]:

@@ -7,8 +7,9 @@
 
 The blank is the part that deforms, of quadrilateral shells, which are extruded about their mid-surface, or hexahedra;
 the tools are rigid parts in contact with it. Materials: *MAT_003, 018, 024, 036, 037, 122, 133. Motions and forces by
-curves become phases, each with the displacements of the tools between the times at which one starts or stops. What
-cannot be carried over is listed with its reason, here and in the input file.
+curves become phases: a phase ends where a tool starts, stops or turns back, or where tools go on in other proportions;
+a force that changes meanwhile gets a press_table. Each keyword and each field that is not used is listed with its line
+and the reason, here and in the input file.
 """
 
 import argparse
@@ -61,8 +62,8 @@ class Import:
         self.law: Law = law_of(deck, self.material, self.units, self.blank.axes)
         self.notes = [*deck.notes, *self.law.notes]
         if self.blank.bent > BENT and any("AOPT = 0" in note for note in self.law.notes):
-            self.notes.append(f"rolling direction: the first edges of the elements differ by up to {self.blank.bent:.3g} "
-                              "degrees; LS-DYNA follows each, here it is that of the first element")
+            self.notes.append(f"rolling direction: the first edges of the elements differ by up to "
+                              f"{self.blank.bent:.3g} degrees; LS-DYNA follows each, here the first one counts")
         self.nodes = {label for cell in self.part.cells for label in cell.nodes}  # of the blank
         self.tools = self.find_tools()
         self.stages: list[Stage] = self.find_stages()
@@ -88,8 +89,10 @@ class Import:
         pairs, friction = self.deck.pairs(), dict[int, float]()
         for pair in pairs:
             for one, other in (pair.sides, pair.sides[::-1]):
-                if self.part.number in one:
-                    friction.update(dict.fromkeys(other, pair.friction))
+                for number in other if self.part.number in one else ():
+                    if friction.setdefault(number, pair.friction) != pair.friction:
+                        self.notes.append(f"{pair.place}: another friction of part {number}; the larger one is taken")
+                        friction[number] = max(friction[number], pair.friction)
         groups: dict[int, list[Part]] = {}
         for part in self.deck.parts.values():
             if part.number == self.part.number or not part.cells:
@@ -127,7 +130,7 @@ class Import:
         return number
 
     def use_section(self, part: Part) -> None:
-        """Take the section of a tool, of which nothing is needed: a sheet touches its elements where their nodes are."""
+        """Take the section of a tool, of which nothing is needed: a sheet touches its elements at their nodes."""
         if part.section in self.deck.sections:
             card, i = self.deck.sections[part.section]
             for k in range(i, min(len(card), i + (1 if card.keyword == "*SECTION_SOLID" else 2))):
@@ -172,16 +175,17 @@ class Import:
         """Leave out gravity that does not act on the blank; tell of one that is not that of the earth."""
         for row in self.deck.heavy:
             if self.part.number not in self.deck.of_set("PART", row.label("PSID"), row.place):
-                self.notes += [f"{one.place}: gravity of other parts than the blank; left out" for one in self.deck.gravity]
+                self.notes += [f"{one.place}: gravity of other parts than the blank; left out"
+                               for one in self.deck.gravity]
                 self.deck.gravity = []
         if self.deck.gravity and not self.law.density:
-            raise Problem(f"{self.material.place}: error: gravity acts, but the material of the blank has no density RO")
+            raise Problem(f"{self.material.place}: error: gravity acts, but the blank's material has no density RO")
         for one in self.deck.gravity:
             curve = self.deck.curves.get(one.curve, one.place)
             value = float(np.abs(one.scale * curve.y).max()) * self.units.acceleration
             if value and not 0.9 < value / EARTH < 1.1:
-                self.notes.append(f"{one.place}: gravity of {value:.4g} mm/s2 in the units {self.units.name}; that of the "
-                                  f"earth is {EARTH:g}: another unit of time?")
+                self.notes.append(f"{one.place}: gravity of {value:.4g} mm/s2 in the units {self.units.name}; that of "
+                                  f"the earth is {EARTH:g}: another unit of time?")
 
     def members(self, number: int) -> set[int]:
         """Return the nodes of the blank in a set."""
@@ -211,8 +215,8 @@ class Import:
                 other = "xyz".replace(normal, "").replace(axis, "")
                 free = [label for label, axes in turns.items() if axis in axes and other not in held.get(label, ())]
                 if free:
-                    self.notes.append(f"the rotation about {axis} of {len(free)} nodes is held, the first {min(free)}, but "
-                                      f"not their displacement along {other}; left out")
+                    self.notes.append(f"the rotation about {axis} of {len(free)} nodes is held, the first "
+                                      f"{min(free)}, but not their displacement along {other}; left out")
 
     def write_tools(self, folder: Path) -> None:
         """Write the surfaces of the tools."""

@@ -89,7 +89,7 @@ class Curves:
             rates.append((row.number("VALUE"), row.label("LCID"), row))
         if card.keyword == "*DEFINE_TABLE" and not any(label for _, label, _ in rates):
             if len(behind) < len(rates):
-                raise Problem(f"{card.place}: error: a table of {len(rates)} values with {len(behind)} curves behind it")
+                raise Problem(f"{card.place}: error: a table of {len(rates)} values and {len(behind)} curves behind it")
             rates = [(value, curve.first(0), row) for (value, _, row), curve in zip(rates, behind)]
         least = min(rates, key=lambda rate: rate[0])
         for _, label, row in rates:

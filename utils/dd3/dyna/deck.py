@@ -47,7 +47,8 @@ SHELL = ("SECID ELFORM SHRF=1 NIP PROPT=1 QR ICOMP SETYP=1", "T1 T2 T3 T4 NLOC M
 CONTACT = ("SURFA SURFB SURFATYP SURFBTYP SABOXID SBBOXID SAPR SBPR", "FS FD DC VC VDC PENCHK BT DT=1E20",
            "SFSA=1 SFSB=1 SAST SBST SFSAT=1 SFSBT=1 FSF=1 VSF=1")
 CONTACT_MORE = ("SOFT SOFSCL=0.1 LCIDAB MAXPAR=1.025 SBOPT=2 DEPTH=2 BSORT FRCFRQ=1",
-                "PENMAX THKOPT SHLTHK SNLOG ISYM I2D3D SLDTHK SLDSTF", "IGAP=1 IGNORE DPRFAC DTSTIF EDGEK unused FLANGL CID_RCF",
+                "PENMAX THKOPT SHLTHK SNLOG ISYM I2D3D SLDTHK SLDSTF",
+                "IGAP=1 IGNORE DPRFAC DTSTIF EDGEK unused FLANGL CID_RCF",
                 "Q2TRI DTPCHK SFNBR FNLSCL DNLSCL TCSO TIEDID SHLEDG")
 BEAD = "LCIDRF LCIDNF DBDTH DFSCL NUMINT DBPID ELOFF NBEAD"
 MOTION = "PID DOF VAD LCID SF VID DEATH BIRTH"
@@ -175,7 +176,7 @@ class Deck:
         elif not self.sets.take(card) and not self.curves.take(card):
             card.leave(next((why for beginning, why in REASONS if word.startswith(beginning)), "not read"))
 
-    # ---- what cards say ------------------------------------------------------------------------------------------------
+    # ---- what cards say ---------------------------------------------------------------------------------------------
 
     def take_title(self, card: Card) -> None:
         """Take the title."""
@@ -257,7 +258,7 @@ class Deck:
             self.drives.append(Drive(row.label("PID"), direction, kind, row.label("LCID"), row.number("SF", 1.0) or 1.0,
                                      row.place, row.number("BIRTH"), row.number("DEATH") or np.inf, of_set, dof > 4))
             if "ID" in card.options:
-                card.rows.update({k: None for k in rows[1::2]})  # type: ignore[dict-item]
+                card.rows |= dict.fromkeys(rows[1::2])
 
     def take_force(self, card: Card) -> None:
         """Take forces on rigid bodies and on the nodes of sets."""
@@ -275,7 +276,8 @@ class Deck:
         row = card.row(0, "LCID SF LCIDDR XC YC ZC CID")
         row.leave("the relaxation before the start", "LCIDDR")
         name = card.keyword.rpartition("_")[2]
-        direction = np.eye(3)["XYZ".index(name)] if name in "XYZ" else np.array(card.row(1, "V1 V2 V3").numbers("V1 V2 V3"))
+        direction = np.eye(3)["XYZ".index(name)] if name in "XYZ" else np.array(
+            card.row(1, "V1 V2 V3").numbers("V1 V2 V3"))
         if not np.linalg.norm(direction) > 0 or row.label("CID"):
             raise Problem(f"{row.place}: error: {card.keyword} in axes of its own, or without a direction")
         self.gravity.append(Gravity(-direction / np.linalg.norm(direction), row.label("LCID"),
@@ -292,7 +294,7 @@ class Deck:
     def take_mesh(self, card: Card) -> None:
         """Leave to the mesh what it reads."""
 
-    # ---- what is asked for ---------------------------------------------------------------------------------------------
+    # ---- what is asked for ------------------------------------------------------------------------------------------
 
     def section(self, part: Part, keyword: str, names: tuple[str, ...]) -> list[Row]:
         """Return the rows of the section of a part."""

@@ -37,8 +37,8 @@ FAILURE = "failure is not available"
 HEAT = "temperatures and heat treatment are not available"
 METAL = 5e-10, 2.5e-8  # densities, t/mm3
 LARGEST_R = 10.0
-SOFT_STRAINS = (0.0, 0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2,
-                0.3, 0.4, 0.6, 0.8, 1.0)  # of a table that replaces a law
+SOFT_STRAINS = (0.0, 0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15,
+                0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # of a table that replaces a law
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def linear(units: Units, law: Law, stress: float, tangent: float, place: str, pa
     """Return linear hardening, a part of it, by yield stress and tangent modulus, in units of the deck."""
     stress = positive(stress, "yield stress", place) * units.stress
     if not 0 <= tangent * units.stress < law.young:
-        raise Problem(f"{place}: error: a tangent modulus of {tangent * units.stress:g} MPa; expected 0 to Young's modulus")
+        raise Problem(f"{place}: error: a tangent modulus of {tangent * units.stress:g} MPa; expected 0 to E")
     return f"linear Y0={stress:.8g} H={part * slope(units, law, tangent):.8g}"
 
 
@@ -280,10 +280,11 @@ def r_values(row: Row) -> tuple[float, float, float]:
     for name in ("R00", "R45", "R90"):
         value = row.number(name)
         if value < 0:
-            raise Problem(f"{row.place}: error: {name} = {value:g} is a curve of r-values, which is not read; expected a "
-                          "number > 0")
+            raise Problem(f"{row.place}: error: {name} = {value:g} is a curve of r-values, which is not read; "
+                          "expected a number > 0")
         if positive(value, name, row.place) > LARGEST_R:
-            raise Problem(f"{row.place}: error: {name} = {value:g}; expected an r-value up to {LARGEST_R:g}, not in per cent")
+            raise Problem(f"{row.place}: error: {name} = {value:g}; expected an r-value up to {LARGEST_R:g}, "
+                          "not in per cent")
         found.append(value)
     return found[0], found[1], found[2]
 
@@ -327,15 +328,16 @@ def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> int:
         a, c, h = second.numbers("R00 R45 R90")
         found = [barlat89_at((a, c, h, pb), abs(exponent), np.radians(angle))[1] for angle in (0, 45, 90)]
         if not np.all(np.isfinite(found)) or min(found) <= 0:
-            raise Problem(f"{second.place}: error: the coefficients a = {a:g}, c = {c:g}, h = {h:g}, p = {pb:g} of Barlat "
-                          "and Lian give no positive r-values")
+            raise Problem(f"{second.place}: error: the coefficients a = {a:g}, c = {c:g}, h = {h:g}, p = {pb:g} of "
+                          "Barlat and Lian give no positive r-values")
         r = (found[0], found[1], found[2])
     else:
         r = r_values(second)
     law.criterion = hill48(r)
     if abs(abs(exponent) - 2) > 1e-6:
         law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
-                         f"{abs(exponent):g}; nearer: dd3 identify blank --criterion yld91 --fix m={abs(exponent):g} --r "
+                         f"{abs(exponent):g}; nearer: dd3 identify blank --criterion yld91 --fix m={abs(exponent):g} "
+                         "--r "
                          + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r)))
     law.hardening = by_rule(deck, card, units, law)
     if exponent < 0:
@@ -344,8 +346,8 @@ def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def chaboche(row: Row, units: Units, law: Law) -> None:
-    """Take the back-stresses of *MAT_036 with M < 0, dX = C (a s/Y - X) dp. The curve of the card is that of tension, so
-    that the isotropic part is the curve less the sum of a (1 - exp(-C p))."""
+    """Take the back-stresses of *MAT_036 with M < 0, dX = C (a s/Y - X) dp. The curve of the card is that of tension:
+    the isotropic part is the curve less the sum of a (1 - exp(-C p))."""
     terms = [(rate, limit * units.stress) for k in "1234"
              if (limit := row.number(f"CRA{k}")) and (rate := row.number(f"CRC{k}"))]
     if any(rate <= 0 or limit <= 0 for rate, limit in terms):

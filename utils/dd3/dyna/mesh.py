@@ -76,7 +76,7 @@ class DynaMesh:
                 self.take_nodes(card)
             elif word.startswith("*ELEMENT_SHELL") and "SOURCE" not in word:
                 self.take_shells(card)
-            elif word.startswith("*ELEMENT_SOLID") or word == "*ELEMENT_TSHELL" or word.startswith("*ELEMENT_TSHELL_B"):
+            elif word.startswith("*ELEMENT_SOLID") or word in ("*ELEMENT_TSHELL", "*ELEMENT_TSHELL_BETA"):
                 self.take_solids(card)
             elif word == "*PART" or (word.startswith("*PART_") and all(
                     any(name.startswith(option) for option, _ in PART_ROWS) or name == "NODES"
@@ -195,7 +195,7 @@ class DynaMesh:
             title, number = card.lines[i][1].strip()[:80], row.label("PID")
             self.once("*PART", number, row.place)
             self.parts[number] = Part(number, title, row.label("SECID"), row.label("MID"), row.place)
-            card.rows.setdefault(i, None)  # type: ignore[arg-type]
+            card.rows.setdefault(i)
             i += 2
             for option, names in rows:
                 i = self.take_options(card, i, option, names)

@@ -116,7 +116,7 @@ def evaluate(text: str, values: Mapping[str, Value | str], place: str) -> Value:
 
 def node_value(node: ast.expr, values: Mapping[str, Value | str], place: str) -> Value:
     """Return the value of a part of an expression."""
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
         return node.value if abs(node.value) < LARGEST else math.inf
     if isinstance(node, ast.Name):
         name = node.id.upper()
@@ -147,7 +147,7 @@ def binary(kind: type, left: Value, right: Value) -> Value:
         value = OPERATORS[kind](left, right)
         return value if abs(value) < LARGEST else math.inf
     if kind is ast.Div:
-        return int(math.trunc(left / right)) if whole else left / right
+        return math.trunc(left / right) if whole else left / right
     if kind is ast.Pow:
         value = float(left)**float(right)
         return int(value) if whole and right >= 0 and abs(value) < 1e15 else value

@@ -20,8 +20,8 @@ def numbers(values: Iterable[float]) -> str:
 
 @dataclass
 class Names:
-    """What the phases need of tools and blank: names of the tools, their nodes and centres (mm) by number, the number of
-    the blank's nodes in a set, the size of its elements (mm), notes for the user."""
+    """What the phases need of tools and blank: names of the tools, their nodes and centres (mm) by number, the number
+    of the blank's nodes in a set, the size of its elements (mm), notes for the user."""
 
     tools: list[str]
     points: Callable[[int], tuple[np.ndarray, np.ndarray]]
@@ -46,8 +46,8 @@ class Phases:
         for stage in stages:
             for tool in stage.moving & stage.forces.keys():
                 if tool in stage.moves:
-                    self.names.notes.append(f"tool {self.names.tools[tool]} is moved and pressed from {stage.begins:g} to "
-                                            f"{stage.ends:g}; its motion goes before")
+                    self.names.notes.append(f"tool {self.names.tools[tool]} is moved and pressed from "
+                                            f"{stage.begins:g} to {stage.ends:g}; its motion goes before")
                     del stage.forces[tool]
             for part in divided(stage, self.divisions(stage)):
                 self.start(part)
@@ -57,9 +57,10 @@ class Phases:
         """Return the points of the progress at which a stage is divided: a tool that is pressed anew later than the
         start, and where the histories are not those of one table."""
         points: list[float] = []
-        others = [history for history in (*stage.loads.values(), stage.gravity) if history and len(history.progress) > 2]
+        others = [history for history in (*stage.loads.values(), stage.gravity)
+                  if history and len(history.progress) > 2]
         for tool, history in stage.forces.items():
-            zero = ~history.values.any(axis=1)
+            zero = np.abs(history.values).max(axis=1) == 0
             if tool not in self.pressed and len(zero) > 2 and zero[0] and zero[1]:
                 points.append(float(history.progress[int(np.flatnonzero(~zero)[0]) - 1]))
         changing = [history for history in stage.forces.values() if np.ptp(history.values, axis=0).any()]
@@ -107,7 +108,8 @@ class Phases:
         kind = "move" if stage.moving else "press" if any("press" in line for line in lines) else (
             "load" if any("load =" in line for line in lines) else "gravity")
         self.head(kind, f"From {stage.begins:g} to {stage.ends:g}.")
-        self.lines += [*(self.motion_lines(stage) if stage.moving else ["  control = load", "  trial = 0.1"]), *lines, ""]
+        self.lines += self.motion_lines(stage) if stage.moving else ["  control = load", "  trial = 0.1"]
+        self.lines += [*lines, ""]
 
     def force_lines(self, stage: Stage) -> list[str]:
         """Return the lines with the forces on tools that change, and their table."""
@@ -173,8 +175,8 @@ class Phases:
 
 
 def table_of(history: History) -> tuple[np.ndarray, list[float]] | None:
-    """Return the largest force of a history and pairs of progress and factor behind the start; None if it is not that of
-    one table: its direction changes."""
+    """Return the largest force of a history and pairs of progress and factor behind the start; None if it is not
+    that of one table: its direction changes."""
     largest = history.values[int(np.linalg.norm(history.values, axis=1).argmax())]
     factors = history.values @ largest / max(float(largest @ largest), 1e-300)
     if factors.min() < -1e-9 or not np.allclose(np.outer(factors, largest), history.values,

@@ -2,7 +2,7 @@
 """Places of parts that a deck of LS-DYNA moves before the start: *PART_MOVE, *CONTROL_FORMING_AUTOPOSITION_PARAMETER.
 
 The latter puts a part above or below another one, along an axis, at the distance THICK where they come nearest, and
-gives the displacement to a parameter, by which *PART_MOVE displaces parts. Where none does the part itself is displaced.
+gives the displacement to a parameter, by which *PART_MOVE displaces parts. Where none does it is displaced itself.
 """
 from collections.abc import Callable, Iterable
 

@@ -2,11 +2,12 @@
 """Phases from the motions, forces and gravity of an LS-DYNA deck, which are functions of time.
 
 The displacements and turns of all tools together are a path. It is divided where it turns: where a tool starts, stops,
-reverses, or where tools go on in other proportions. Within a stage the path is straight, so that only its length, not its
-velocity, tells; a force that changes meanwhile becomes a table over the fraction of that length.
+reverses, or where tools go on in other proportions. Within a stage the path is straight, so that only its length, not
+its velocity, tells; a force that changes meanwhile becomes a table over the fraction of that length.
 """
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,8 +26,8 @@ LEAST_PROGRESS = 1e-3  # between the points of a table
 
 @dataclass
 class Stage:
-    """A part of the process: displacement and turn (rad) of each tool over it; forces on tools and on each node of sets,
-    and gravity, at points of its progress (0 to 1), in units of the deck."""
+    """A part of the process: displacement and turn (rad) of each tool over it; forces on tools and on each node of
+    sets, and gravity, at points of its progress (0 to 1), in units of the deck."""
 
     begins: float
     ends: float
@@ -133,7 +134,7 @@ def sample_times(deck: Deck, drives: list[Drive], end: float) -> np.ndarray:
     points = [np.linspace(0, end, SAMPLES)]
     for curve, shift, ends in [(deck.curves.get(one.curve, one.place), one.begins, one.ends) for one in drives] + [
             (deck.curves.get(one.curve, one.place), 0.0, np.inf) for one in deck.gravity]:
-        inner = np.concatenate([np.linspace(a, b, 9) for a, b in zip(curve.x, curve.x[1:])]) if len(curve.x) < 60 else (
+        inner = np.concatenate([np.linspace(a, b, 9) for a, b in pairwise(curve.x)]) if len(curve.x) < 60 else (
             curve.x)
         points.append(np.append(inner + shift, [shift, ends]))
     times = np.unique(np.concatenate(points))
@@ -199,7 +200,7 @@ def turning_points(path: np.ndarray, first: int, last: int) -> set[int]:
 
 def pairs_of(numbers: list[int]) -> list[tuple[int, int]]:
     """Return neighbours."""
-    return list(zip(numbers, numbers[1:]))
+    return list(pairwise(numbers))
 
 
 def stage_of(times: np.ndarray, first: int, last: int, moved: dict[Key, np.ndarray],
@@ -213,7 +214,8 @@ def stage_of(times: np.ndarray, first: int, last: int, moved: dict[Key, np.ndarr
             (stage.turns if kind == "turn" else stage.moves)[target] = change
             along = along + np.linalg.norm(path[first:last + 1] - path[first], axis=1) / extent
     if not stage.moving and acting:  # the time says nothing, only how far the forces have come
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(scaled(acting)[first:last + 1], axis=0), axis=1))])
+        steps = np.diff(scaled(acting)[first:last + 1], axis=0)
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     if not along[-1] > 0:
         along = times[first:last + 1] - times[first]
     stage.clock = History(along / along[-1], times[first:last + 1, None])
@@ -242,7 +244,7 @@ def history_of(progress: np.ndarray, values: np.ndarray, largest: float) -> Hist
 def divided(stage: Stage, points: Iterable[float]) -> list[Stage]:
     """Return a stage divided at points of its progress."""
     borders = [0.0, *(point for point in sorted(set(points)) if LEAST_PROGRESS < point < 1 - LEAST_PROGRESS), 1.0]
-    return [part_of(stage, a, b) for a, b in zip(borders, borders[1:])]
+    return [part_of(stage, a, b) for a, b in pairwise(borders)]
 
 
 def part_of(stage: Stage, first: float, last: float) -> Stage:

@@ -69,7 +69,7 @@ class Sets:
         """Return the labels in the rows of a set."""
         if option.endswith("INCREMENT"):
             return [label for i, words in card.words(1) for label in ranged(card, i, *(
-                card.whole(i, word) for word in (words + ["", ""])[:3]))]
+                card.whole(i, word) for word in [*words, "", ""][:3]))]
         if option.endswith("GENERATE"):
             return [label for i, words in card.words(1) for a, b in zip(words[::2], words[1::2]) if a or b
                     for label in ranged(card, i, card.whole(i, a), card.whole(i, b), 1)]
@@ -98,8 +98,8 @@ class Sets:
             name = option.removeprefix("D")
             found = self.by_option(card, kind, name, numbers, depth)
             if found is None:
-                raise Problem(f"{card.place_of(i)}: error: {option} of {card.keyword} is not read; expected ALL, {kind}, "
-                              f"PART or SET_{kind}")
+                raise Problem(f"{card.place_of(i)}: error: {option} of {card.keyword} is not read; expected ALL, "
+                              f"{kind}, PART or SET_{kind}")
             for label in found:
                 if drop:
                     labels.pop(label, None)

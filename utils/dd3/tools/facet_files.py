@@ -164,7 +164,10 @@ def read_inp(path: Path) -> Facets:
 
 def read_dyna(path: Path) -> Facets:
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
-    mesh, notes = placed_mesh(Reader(path))
+    reader = Reader(path)
+    mesh, notes = placed_mesh(reader)
+    notes += [f"left out: {card.place}: {card.keyword}: not read" for card in reader.cards
+              if card.keyword.startswith(("*ELEMENT", "*NODE")) and not card.entry.used]
     result = from_cells(path, mesh.nodes, [(cell.part, cell.dimension, cell.nodes) for cell in mesh.cells])
     titles = {number: part.title for number, part in mesh.parts.items()}
     result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
