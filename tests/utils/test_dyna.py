@@ -208,6 +208,32 @@ def test_force_over_travel():
     assert np.allclose(3000 * table[:, 1], np.where(time < 0.5, 1000, 1000 + 4000 * (time - 0.5)), atol=15)
 
 
+def test_random_motions():
+    """Check that positions and force stay on the path of the deck, within 1 % of their ranges, and end where it ends."""
+    chance = np.random.default_rng(5)
+    for _ in range(10):
+        times = np.array([0, *np.sort(chance.uniform(0.001, 0.009, 3)), 0.01])
+        down, along = np.append(0, chance.uniform(-6, 2, 4)), np.append(0, chance.uniform(-1, 4, 4))
+        force = chance.uniform(0, 3000, 5)
+        lines = [line for k, values in enumerate((down, along, -force), 1) for line in curve(k, *zip(times, values))]
+        motion = ["*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 1, 1.0), row(2, 1, 2, 2, 1.0), "*LOAD_RIGID_BODY",
+                  row(3, 3, 3, -1.0)]
+        fine = np.concatenate([np.linspace(a, b, 400) for a, b in zip(times, times[1:])])
+        path = np.column_stack([np.interp(fine, times, values) for values in (along / 5, down / 8, force / 3000)])
+        place, acting = np.zeros(2), 0.0
+        for phase in phases(imported(flat_deck(curve=lines, motion=motion))[1]):
+            found = {line.split()[0]: np.array(line.split("= ")[1].split()[line.startswith(("move =", "press =")):], float)
+                     for line in phase}
+            way = found.get("move", np.zeros(3))[[0, 2]]
+            table = found.get("press_table", np.ones(2)).reshape(-1, 2)
+            end = found["press"][2] * table[:, 1] if "press" in found else np.array([acting])
+            for part in np.linspace(0, 1, 11) if way.any() else ():
+                now = np.append((place + part * way) / (5, 8), np.interp(part, [0, *table[:, 0]], [acting, *end]) / 3000)
+                assert np.linalg.norm(path - now, axis=1).min() < 0.01
+            place, acting = place + way, end[-1]
+        assert np.allclose(place, (along[-1], down[-1]), atol=1e-3) and abs(acting - force[-1]) < 15
+
+
 def test_two_tools():
     """Check two tools that move in other proportions, and gravity at the start."""
     lines = curve(1, (0, 0), (0.01, -4)) + curve(2, (0, 0), (0.005, 0), (0.01, 2)) + curve(3, (0, 9810.0), (1, 9810.0))

@@ -21,7 +21,7 @@ EVEN = 2e-3  # the same of a force over its largest value
 SAME = 1e-4  # distance of times, over the time of the whole process, that count as one
 SAMPLES = 400  # of a curve between its points
 MOST_STAGES = 200
-LEAST_PROGRESS = 1e-3  # between the points of a table
+LEAST_PROGRESS = 2e-4  # between the points of a table
 
 
 @dataclass
@@ -233,12 +233,14 @@ def history_of(progress: np.ndarray, values: np.ndarray, largest: float) -> Hist
     """Return values over the progress, at the points at which they turn."""
     scaled = np.column_stack((progress, values / max(largest, 1e-300)))
     keep = sorted({0, len(progress) - 1} | upright_points(scaled))
-    result = [keep[0]]
-    for i in keep[1:-1]:
-        if progress[i] - progress[result[-1]] > LEAST_PROGRESS and 1 - progress[i] > LEAST_PROGRESS:
-            result.append(i)
-    result.append(keep[-1])
-    return History(progress[result], values[result])
+    at = [float(progress[keep[0]])]  # apart by LEAST_PROGRESS, where a tool hardly moves while a force changes
+    for k, i in enumerate(keep[1:-1], 1):
+        room = (len(keep) - 1 - k) * LEAST_PROGRESS
+        at.append(float(np.clip(progress[i], at[-1] + LEAST_PROGRESS, max(1 - room, at[-1] + LEAST_PROGRESS))))
+    at.append(1.0)
+    if at[-2] >= 1:
+        return History(np.array([0.0, 1.0]), values[[0, -1]])
+    return History(np.array(at), values[keep])
 
 
 def divided(stage: Stage, points: Iterable[float]) -> list[Stage]:
