@@ -15,6 +15,7 @@ from helpers import call
 from dd3.dyna.command import Import
 from dd3.dyna.planar import barlat89_at
 from dd3.errors import Problem
+from dd3.hanging import hanging_nodes
 
 
 def imported(text, **options):
@@ -471,3 +472,37 @@ def test_hanging_nodes():
     assert "node 902 lies on an edge or a face of element 2" in said and "deck.k:" in said
     said = refused(flat_deck(mesh=mesh, more=["*CONSTRAINED_ADAPTIVITY", row(902, 2, 11)]))
     assert "node 902 hangs between the nodes 2 and 11" in said
+
+
+def test_hanging_nodes_of_hexahedra():
+    """Check nodes of smaller hexahedra on the edges and the face of a larger one, and a conforming mesh."""
+    def brick(x, y, z, size, label):
+        corners = [(x + size[0] * a, y + size[1] * b, z + size[2] * c)
+                   for a, b, c in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
+        return [label.setdefault(corner, len(label)) for corner in corners]
+
+    label = {}
+    cells = [brick(0.0, 0.0, 0.0, (2.0, 2.0, 2.0), label)]
+    cells += [brick(2.0, y, z, (1.0, 1.0, 1.0), label) for y in (0.0, 1.0) for z in (0.0, 1.0)]
+    found = hanging_nodes(np.array(list(label), float), cells)
+    assert {tuple(list(label)[node]) for node, _ in found} == {(2, 1, 0), (2, 0, 1), (2, 1, 1), (2, 2, 1), (2, 1, 2)}
+    assert {cell for _, cell in found} == {0}
+    label = {}
+    cells = [brick(float(x), float(y), 0.0, (1.0, 1.0, 1.0), label) for x in range(3) for y in range(3)]
+    assert hanging_nodes(np.array(list(label), float), cells) == []
+
+
+def test_messages():
+    """Check that a message on what is missing names the keywords that are not read."""
+    for cards, said in (
+            ({"curve": ["*DEFINE_CURVE_FUNCTION", row(1), "time*2"]},
+             "there is no *DEFINE_CURVE 1; *DEFINE_CURVE_FUNCTION at deck.k:"),
+            ({"tools": ["*PART_STACKED_ELEMENTS", "x", row(2, 2, 2)]},
+             "but no *PART of this number; *PART_STACKED_ELEMENTS at deck.k:"),
+            ({"section": ["*SECTION_SHELL_EFG", row(1, 16), row(1.0)]}, "has no *SECTION_SHELL 1; *SECTION_SHELL_EFG at"),
+            ({"contact": ["*SET_PART_TREE", row(9), "*CONTACT_SURFACE_TO_SURFACE", row(1, 9, 3, 2), row(0.1)]},
+             "there is no *SET_PART 9; *SET_PART_TREE at deck.k:"),
+            ({"motion": ["*BOUNDARY_PRESCRIBED_MOTION_RIGID_LOCAL", row(2, 3, 2, 1)]},
+             "; *BOUNDARY_PRESCRIBED_MOTION_RIGID_LOCAL at deck.k:")):
+        message = refused(flat_deck(**cards))
+        assert said in message, message

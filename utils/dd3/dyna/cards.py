@@ -259,10 +259,11 @@ class Reader:
 
     def found(self, name: str, beside: Path, place: str) -> Path:
         """Return the path of an included file: in the folder of the file that includes it, or those of the deck."""
-        for folder in (beside.parent, *self.folders):
+        names = (name, name.replace("\\", "/"))
+        for path in (folder / one for folder in (beside.parent, *self.folders) for one in names):
             try:
-                if (folder / name).is_file():
-                    return folder / name
+                if path.is_file():
+                    return path
             except (OSError, ValueError):
                 break
         raise Problem(f"{place}: error: no such included file: {name[:200]!r}")
@@ -279,6 +280,11 @@ class Reader:
 
         self.account.entries.sort(key=key)
         return self.account.left_out()
+
+
+def unread(cards: Sequence[Card]) -> str:
+    """Return a text on keywords that are not read, for a message on what is missing."""
+    return "".join(f"; {card.keyword} at {card.place} is not read" for card in cards[:3])
 
 
 def keyword_of(line: str, least: int) -> tuple[str, int, str]:

@@ -104,7 +104,8 @@ class Import:
             else:
                 groups.setdefault(self.root(part.number), []).append(part)
         if not groups:
-            raise Problem(f"{self.deck.path}: no rigid part in contact with the blank, part {self.part.number}")
+            raise Problem(f"{self.deck.path}: no rigid part in contact with the blank, part {self.part.number}"
+                          + self.deck.unread("*CONTACT"))
         if not pairs:
             self.notes.append("no contact is defined: all rigid parts are tools, without friction")
         found, names = [], set[str]()
@@ -168,7 +169,8 @@ class Import:
         found = stages(self.deck, drives)
         if not any(stage.moving or stage.forces or stage.gravity for stage in found):
             raise Problem(f"{self.deck.path}: no tool moves and none is pressed: expected "
-                          "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool")
+                          "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool"
+                          + self.deck.unread("*BOUNDARY_PRESCRIBED") + self.deck.unread("*LOAD"))
         return found
 
     def check_gravity(self) -> None:

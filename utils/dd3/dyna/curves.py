@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dd3.dyna.cards import LONG, Card, Row
+from dd3.dyna.cards import LONG, Card, Row, unread
 from dd3.errors import Problem
 
 HEAD = "LCID SIDR SFA SFO OFFA OFFO DATTYP LCINT"
@@ -30,6 +30,7 @@ class Curves:
         self.path = path
         self.cards: dict[int, Card] = {}
         self.tables: dict[int, tuple[Card, list[Card]]] = {}  # those of *DEFINE_TABLE with the curves behind it
+        self.others: list[Card] = []  # of kinds that are not read
         self.waiting: list[Card] | None = None
         self.left = 0
         self.found: dict[int, Curve] = {}
@@ -55,6 +56,8 @@ class Curves:
                 self.waiting.append(card)
                 self.left -= 1
         else:
+            if card.keyword.startswith(("*DEFINE_CURVE", "*DEFINE_TABLE", "*DEFINE_FUNCTION")):
+                self.others.append(card)
             return False
         card.leave("nothing here uses it")
         return True
@@ -70,7 +73,7 @@ class Curves:
         if number in self.tables:
             number = self.lowest(number)
         if number not in self.cards:
-            raise Problem(f"{place}: error: there is no *DEFINE_CURVE {number}")
+            raise Problem(f"{place}: error: there is no *DEFINE_CURVE {number}" + unread(self.others))
         if number not in self.found:
             card = self.cards[number]
             self.found[number] = smooth(card) if card.keyword.endswith("SMOOTH") else polygon(card)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from dd3.account import LeftOut
-from dd3.dyna.cards import Card, Reader, Row
+from dd3.dyna.cards import Card, Reader, Row, unread
 from dd3.dyna.curves import Curves
 from dd3.dyna.mesh import Part
 from dd3.dyna.positions import AUTO, placed_mesh
@@ -156,7 +156,7 @@ class Deck:
         """Return a text on the keywords with a beginning that are not read, for a message on what is missing."""
         found = [card for card in self.reader.cards if card.keyword.startswith(beginning) and not card.entry.used
                  and not KNOWN.get(card.keyword) and not self.known(card)]
-        return "".join(f"; {card.keyword} at {card.place} is not read" for card in found[:3])
+        return unread(found)
 
     def known(self, card: Card) -> bool:
         """Check whether a card is read where something uses it."""

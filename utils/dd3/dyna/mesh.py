@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dd3.dyna.cards import Card, Reader, split
+from dd3.dyna.cards import Card, Reader, split, unread
 from dd3.dyna.parameters import plain
 from dd3.errors import Problem
 
@@ -61,6 +61,7 @@ class DynaMesh:
         self.cells: list[Cell] = []
         self.parts: dict[int, Part] = {}
         self.moved: list[Card] = []
+        self.others: list[Card] = []  # parts of kinds that are not read
         self.seen: dict[tuple[str, int], str] = {}
         for card in reader.cards:
             self.take(card)
@@ -84,6 +85,8 @@ class DynaMesh:
                 self.take_parts(card)
             elif word == "*PART_MOVE":
                 self.moved.append(card)
+            elif word.startswith("*PART"):
+                self.others.append(card)
         except (IndexError, ValueError, OverflowError):
             raise Problem(f"{card.place}: error: {word} cannot be read") from None
 
@@ -219,7 +222,8 @@ class DynaMesh:
             part.cells.clear()
         for cell in self.cells:
             if cell.part not in self.parts:
-                raise Problem(f"{cell.place}: error: an element of part {cell.part}, but no *PART of this number")
+                raise Problem(f"{cell.place}: error: an element of part {cell.part}, but no *PART of this number"
+                              + unread(self.others))
             if missing := [label for label in cell.nodes if label not in self.nodes]:
                 raise Problem(f"{cell.place}: error: node {missing[0]} of element {cell.label} has no coordinates")
             self.parts[cell.part].cells.append(cell)

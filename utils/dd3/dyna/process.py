@@ -21,6 +21,7 @@ EVEN = 2e-3  # the same of a force over its largest value
 SAME = 1e-4  # distance of times, over the time of the whole process, that count as one
 SAMPLES = 400  # of a curve between its points
 MOST_STAGES = 200
+NEAR = 2e-3  # progress between points of a table that counts as little
 LEAST_PROGRESS = 2e-4  # between the points of a table
 
 
@@ -279,6 +280,8 @@ def upright_points(table: np.ndarray) -> set[int]:
             continue
         part = ((table[a + 1:b, 0] - table[a, 0]) / width)[:, None]
         away = np.abs(table[a + 1:b, 1:] - table[a, 1:] - part * (table[b, 1:] - table[a, 1:])).max(axis=1)
+        inside = table[a + 1:b, 0]  # points near others cost increments: they are taken where much is lost without them
+        away = np.where(np.minimum(inside - table[a, 0], table[b, 0] - inside) < NEAR, away / 10, away)
         if away.max() > EVEN:
             k = a + 1 + int(away.argmax())
             found.add(k)

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from dd3.dyna.cards import Card
+from dd3.dyna.cards import Card, unread
 from dd3.dyna.mesh import DynaMesh
 from dd3.errors import Problem
 
@@ -41,8 +41,7 @@ class Sets:
     def missing(self, kind: str, number: int, place: str) -> Problem:
         """Return the message on a set that is not there, with those that are not read."""
         other = [card for card in self.others if card.keyword.startswith(f"*SET_{kind}")]
-        return Problem(f"{place}: error: there is no *SET_{kind} {number}"
-                       + "".join(f"; {card.keyword} at {card.place} is not read" for card in other[:3]))
+        return Problem(f"{place}: error: there is no *SET_{kind} {number}" + unread(other))
 
     def has(self, kind: str, number: int) -> bool:
         """Check whether there is a set."""
