@@ -442,6 +442,9 @@ def test_tables():
     ({"head": ["$ a comment", "stray", "*KEYWORD"]}, ["text before the first keyword"]),
     ({"end": ["*END", "$ more", "*NODE"]}, ["lines behind *END"]),
     ({"motion": ["*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 1, 1.0), row(3, 9, 2, 1)]}, ["motion of kind DOF = 9"]),
+    ({"motion": ["*BOUNDARY_PRESCRIBED_MOTION_RIGID_ID", row(1) + "down", row(2, 3, 2, 1, 1.0), row(7) + "fold",
+                 row(3, 10, 2, 1), row(1.0, 2.0), row(8) + "also down", row(2, 3, 2, 1, 1.0)]},
+     ["motion of kind DOF = 10"]),
     ({"mesh": [line + (row(3).rjust(24) if k == 3 else "") for k, line in enumerate(flat_mesh())]}, ["*NODE, field"]),
 ])
 def test_named(cards, expected):

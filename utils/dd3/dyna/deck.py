@@ -243,12 +243,15 @@ class Deck:
             self.master[row.label("PIDC")] = row.label("PIDL")
 
     def take_motion(self, card: Card) -> None:
-        """Take prescribed motions of rigid bodies and node sets; with ID each has a row of its own before it."""
+        """Take prescribed motions of rigid bodies and node sets; with ID each has a row of its own before it, of some
+        kinds a row behind it."""
         of_set = card.keyword.endswith("_SET")
-        rows = card.filled()
-        for i in rows[::2] if "ID" in card.options else rows:
+        rows = iter(card.filled())
+        for i in rows:
             row = card.row(i, MOTION)
             dof, vad = row.label("DOF"), row.label("VAD")
+            more = [next(rows, None)] if abs(dof) in (9, 10, 11) or vad == 4 else []
+            card.rows |= {k: None for k in (*more, next(rows, None) if "ID" in card.options else None) if k is not None}
             if dof not in (1, 2, 3, 4, 5, 6, 7, 8) or vad not in (0, 2):
                 row.drop(f"motion of kind DOF = {dof}, VAD = {vad}")
                 continue
@@ -257,8 +260,6 @@ class Deck:
             kind = "displacement" if vad == 2 else "velocity"
             self.drives.append(Drive(row.label("PID"), direction, kind, row.label("LCID"), row.number("SF", 1.0) or 1.0,
                                      row.place, row.number("BIRTH"), row.number("DEATH") or np.inf, of_set, dof > 4))
-            if "ID" in card.options:
-                card.rows |= dict.fromkeys(rows[1::2])
 
     def take_force(self, card: Card) -> None:
         """Take forces on rigid bodies and on the nodes of sets."""
