@@ -187,3 +187,53 @@ def cup_deck(folder, elements, depth):
              "*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 12, -1.0), "*LOAD_RIGID_BODY", row(4, 3, 11, -4900.0),
              "*BOUNDARY_SPC_SET", row(1, 0, 1, 0, 0, 0, 1, 1), row(2, 0, 0, 1, 0, 1, 0, 1), *contacts(names, 0.144)]
     return "\n".join(lines) + "\n" + writer.text() + "*END\n"
+
+
+FLAT = {  # cards of flat_deck by name, in their order
+    "head": ["*KEYWORD"],
+    "control": ["*TITLE", "flat tools", "*CONTROL_TERMINATION", row(0.01)],
+    "parameter": [],
+    "material": ["*MAT_024", row(1, "7.85E-9", "2.1E5", 0.3, 200.0, 500.0), "", "", ""],
+    "rigid": ["*MAT_RIGID", row(2, "7.85E-9", "2.1E5", 0.3), row(1, 4, 7), ""],
+    "section": ["*SECTION_SHELL", row(1, 16, 0.833, 5), row(1.0, 1.0, 1.0, 1.0),
+                "*SECTION_SHELL", row(2, 2), row(1.0, 1.0, 1.0, 1.0)],
+    "blank": ["*PART", "blank", row(1, 1, 1)],
+    "tools": ["*PART", "punch", row(2, 2, 2), "*PART", "die", row(3, 2, 2)],
+    "curve": curve(1, (0.0, 0.0), (0.01, -5.0)),
+    "motion": ["*BOUNDARY_PRESCRIBED_MOTION_RIGID", row(2, 3, 2, 1, 1.0)],
+    "contact": ["*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE", row(1, 2, 3, 3), row(0.11), "",
+                "*CONTACT_FORMING_ONE_WAY_SURFACE_TO_SURFACE", row(1, 3, 3, 3), row(0.12), ""],
+    "more": [],
+    "mesh": None,
+    "end": ["*END"]}
+
+
+def flat_mesh(constraint=lambda x, y: (), format_of=None):
+    """Return the nodes and shells of a flat sheet of 8 x 4 elements between flat tools; `constraint` gives TC and RC,
+    `format_of` nodes and labels as lines."""
+    node = format_of or (lambda label, point, held: f"{label:8d}" + "".join(f"{value:16.6f}" for value in point)
+                         + "".join(f"{value:8d}" for value in held))
+    shell = (lambda labels: node(labels, (), ())) if format_of else (lambda labels: "".join(f"{v:8d}" for v in labels))
+    nodes, shells, first = ["*NODE"], ["*ELEMENT_SHELL"], 1
+    for part, (nx, ny, x0, y0, step, z) in enumerate(((8, 4, 0, 0, 5.0, 0.0), (4, 4, 10, -10, 5.0, 0.5),
+                                                      (6, 6, -10, -20, 10.0, -0.5)), 1):
+        grid = [[first + (nx + 1) * j + i for i in range(nx + 1)] for j in range(ny + 1)]
+        for j, line in enumerate(grid):
+            for i, label in enumerate(line):
+                x, y = x0 + step * i, y0 + step * j
+                nodes.append(node(label, (x, y, z), constraint(x, y) if part == 1 else ()))
+        for j in range(ny):
+            for i in range(nx):
+                shells.append(shell((len(shells), part, grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i])))
+        first += 1000
+    return [*nodes, *shells]
+
+
+def flat_deck(**cards):
+    """Return a deck of a sheet of 40 x 20 x 1 mm between a flat punch and a flat die; `cards` replace those of FLAT."""
+    lines = []
+    for name, there in FLAT.items():
+        found = cards.pop(name, there)
+        lines += flat_mesh() if found is None else found
+    assert not cards, cards
+    return "\n".join(lines) + "\n"

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helpers import call
+from mutations import mutants
 
 from dd3.sheet_state import read_state
 
@@ -46,7 +47,23 @@ def large(label):
     return text
 
 
-@pytest.mark.parametrize("rows", [short, large])
+def large_in_20(label, place=5):
+    """Return them in one column of points in fields of 20 columns, LARGE in its own place or in that of NTENSR."""
+    head = [label, 1, 3, 0, 0, 0, 0, 0]
+    head[place] = 1
+    text = "".join(f"{value:10d}" for value in head[:max(6, place + 1) if place == 5 else 5]) + "\n"
+    for height in (-0.7745967, 0, 0.7745967):
+        values = (height, 100 + 50 * height, 20, 0, 5, 0, 0, 0.1 + 0.02 * height)
+        text += wide(values[:5], 20) + wide(values[5:], 20)
+    return text
+
+
+def large_in_the_place_of_tensors(label):
+    """Return the rows of LARGE = 1 below a head that ends with it."""
+    return large_in_20(label, 4)
+
+
+@pytest.mark.parametrize("rows", [short, large, large_in_20, large_in_the_place_of_tensors])
 def test_dynain(rows):
     """Place, stresses in global axes, strains, axes and sets; heights between those of the file are interpolated."""
     Path("dynain").write_text(dynain("".join(rows(label) for label in SHELLS)))
@@ -87,3 +104,103 @@ def test_refused():
     Path("run.out/job.log").write_text("")
     assert "results of a run" in call("dynain", "dynain", "run.out", expect=2)
     assert "No such file" in call("dynain", "nothing", "x.out", expect=2)
+
+
+def whole_file():
+    """Return a file of two shells."""
+    return dynain("".join(short(label) for label in SHELLS))
+
+
+def test_turned_shells():
+    """Check that shells numbered the other way round are turned over with their heights: the sheet is the same."""
+    Path("dynain").write_text(whole_file())
+    call("dynain", "dynain", "plain.out")
+    nodes = "".join(f"{value:8d}" for value in SHELLS[9][0])
+    back = "".join(f"{value:8d}" for value in SHELLS[9][0][::-1])
+    rows = "".join(wide((height, 100 - 50 * height, 20, 0, 5, 0, 0, 0.1 - 0.02 * height))
+                   for height in (-0.7745967, 0, 0.7745967))
+    text = whole_file().replace(nodes, back).replace(short(9), f"{9:10d}{1:10d}{3:10d}\n" + rows)
+    Path("turned").write_text(text)
+    said = call("dynain", "turned", "turned.out")
+    assert "note: 1 shells are numbered the other way round than the others, the first" in said
+    plain, turned = read_state(Path("plain.out")), read_state(Path("turned.out"))
+    if np.allclose(plain.points, turned.points):
+        assert np.allclose(plain.stress, turned.stress) and np.allclose(plain.strain, turned.strain)
+    else:  # all turned over: upper and lower face exchanged
+        assert np.allclose(plain.points[::2], turned.points[1::2])
+        assert np.allclose(plain.stress[:, :3], turned.stress[:, 2::-1], atol=1e-9)
+
+
+def test_units():
+    """Check that stresses in GPa or Pa are asked for, taken with --units, and that zero stresses need none."""
+    def file(factor, length=1.0):
+        text = "*KEYWORD\n*NODE\n" + "".join(
+            f"{i:8d}" + wide((length * value for value in point), 16) for i, point in enumerate(POINTS, 1))
+        text += "*ELEMENT_SHELL_THICKNESS\n"
+        for label, (nodes, thickness) in SHELLS.items():
+            text += "".join(f"{value:8d}" for value in (label, 1, *nodes)) + "\n" + wide([length * thickness] * 4, 16)
+        text += "*INITIAL_STRESS_SHELL\n"
+        for label in SHELLS:
+            text += f"{label:10d}{1:10d}{2:10d}\n" + "".join(
+                wide((height, *(factor * value for value in (100, 20, 0, 5, 0, 0)), 0.1)) for height in (-0.577, 0.577))
+        return text + "*END\n"
+
+    Path("mpa").write_text(file(1.0))
+    call("dynain", "mpa", "mpa.out")
+    for name, factor, length in (("mm GPa", 1e-3, 1.0), ("m Pa", 1e6, 1e-3)):
+        Path("other").write_text(file(factor, length))
+        assert "say by --units what they are in" in call("dynain", "other", "other.out", expect=2)
+        call("dynain", "other", "other.out", "--units", name)
+        expected, found = read_state(Path("mpa.out")), read_state(Path("other.out"))
+        assert np.allclose(found.stress, expected.stress, rtol=1e-3, atol=1e-6)
+        assert np.allclose(found.points, expected.points, atol=1e-5)
+    Path("free").write_text(file(0.0))
+    call("dynain", "free", "free.out")
+
+
+def test_hanging_nodes():
+    """Check that a hanging node is refused, with and without *CONSTRAINED_ADAPTIVITY."""
+    points = [(0, 0), (10, 0), (10, 10), (0, 10), (15, 0), (15, 5), (10, 5), (15, 10)]
+    cells = {1: (1, 2, 3, 4), 2: (2, 5, 6, 7), 3: (7, 6, 8, 3)}
+    text = "*KEYWORD\n*NODE\n" + "".join(f"{i:8d}" + wide((*point, 0), 16) for i, point in enumerate(points, 1))
+    text += "*ELEMENT_SHELL_THICKNESS\n"
+    for label, nodes in cells.items():
+        text += "".join(f"{value:8d}" for value in (label, 1, *nodes)) + "\n" + wide([1.0] * 4, 16)
+    text += "*INITIAL_STRESS_SHELL\n" + "".join(short(label) for label in cells)
+    Path("adaptive").write_text(text)
+    assert "node 7 lies on an edge of shell 1 that does not have it" in call("dynain", "adaptive", "x.out", expect=2)
+    Path("adaptive").write_text(text + f"*CONSTRAINED_ADAPTIVITY\n{7:10d}{2:10d}{3:10d}\n")
+    assert "node 7 hangs between the nodes 2 and 3" in call("dynain", "adaptive", "x.out", expect=2)
+
+
+def test_named():
+    """Check that each thing that is not used is named with its place."""
+    text = whole_file().replace("*KEYWORD\n", "*KEYWORD\n*ELEMENT_BEAM\n1\n*INITIAL_STRAIN_SHELL\n1\n*MADE_UP\n1\n"
+                                "*PART\nsheet\n" + "".join(f"{value:10d}" for value in (1, 4, 5)) + "\n*MAT_024\n1\n")
+    text = text.replace(f"{5:10d}{1:10d}{3:10d}\n", f"{5:10d}{1:10d}{3:10d}{0:10d}{0:10d}{0:10d}{0:10d}{3:10d}\n")
+    text = text.replace(wide([1.2] * 4, 16), wide([1.2] * 4, 16)[:-1] + f"{30.0:16.3f}\n")
+    Path("dynain").write_text(text.replace("THICKNESS", "THICKNESS_BETA") + "behind\n")
+    said = call("dynain", "dynain", "x.out")
+    left = [line for line in said.splitlines() if line.startswith("left out: dynain:")]
+    for name in ("*ELEMENT_BEAM", "*INITIAL_STRAIN_SHELL", "*MADE_UP", "*PART: the thick", "*MAT_024", "BETA = 30",
+                 "lines behind *END"):
+        assert any(name in line for line in left), (name, left)
+    assert len(left) == 7, left
+    Path("dynain").write_text(whole_file())
+    assert "left out" not in call("dynain", "dynain", "y.out")
+
+
+def test_mutated_files():
+    """Check that damaged files are taken or refused by a message."""
+    from dd3.dynain import sheet_of
+    from dd3.errors import Problem
+    taken = 0
+    for data in mutants(whole_file().encode(), 1000, 3):
+        Path("damaged").write_bytes(data)
+        try:
+            state, _ = sheet_of(Path("damaged"), "steel", 0, (1, 0, 0))
+            assert all(np.isfinite(values).all() for values in (state.points, state.stress, state.strain, state.axes))
+            taken += 1
+        except Problem as problem:
+            assert "damaged" in str(problem) or "--rolling" in str(problem), problem
+    assert 20 < taken < 950, taken

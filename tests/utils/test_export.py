@@ -11,8 +11,9 @@ from helpers import call
 from test_study import DECK
 
 import dd3
+from dd3.dyna.cards import Reader
+from dd3.dyna.mesh import DynaMesh
 from dd3.mesh import read_inp
-from dd3.tools.facet_files import dyna_mesh
 
 
 @pytest.fixture
@@ -29,6 +30,12 @@ def cards(path, keyword):
     return text.split(f"*{keyword}\n")[1].split("\n*")[0].splitlines()
 
 
+def dyna_mesh(name):
+    """Return nodes and cells of a keyword file."""
+    mesh = DynaMesh(Reader(Path(name)))
+    return mesh.nodes, mesh.cells
+
+
 def test_export(bar):
     """Check the files against the last step of the run."""
     call("export", "bar.out", "last.inp")
@@ -42,7 +49,7 @@ def test_export(bar):
     assert np.allclose(grid.points, bar.points) and np.allclose(grid.cell_data["stress"], bar.cell_data["stress"])
     said = call("export", "bar.out", "solids.k")
     assert "pull" in said and "2 elements" in said
-    nodes, cells, _ = dyna_mesh(Path("solids.k"))
+    nodes, cells = dyna_mesh("solids.k")
     assert np.allclose([nodes[i] for i in sorted(nodes)], bar.points) and len(cells) == 2
     rows = cards("solids.k", "INITIAL_STRESS_SOLID")
     values = np.array([[float(line[10 * k:10 * k + 10]) for k in range(7)] for line in rows[1::2]])
@@ -53,7 +60,7 @@ def test_export(bar):
 def test_shells(bar):
     """Check the mid-surface: its place, and the thickness that the fields have."""
     call("export", "bar.out", "shells.k", "--shells")
-    nodes, cells, _ = dyna_mesh(Path("shells.k"))
+    nodes, cells = dyna_mesh("shells.k")
     place = np.array([nodes[i] for i in sorted(nodes)])
     assert len(nodes) == 6 and len(cells) == 2
     assert np.allclose(place[:, 2], bar.points[:, 2].max() / 2) and np.isclose(place[:, 0].max(), bar.points[:, 0].max())

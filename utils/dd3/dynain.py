@@ -3,13 +3,17 @@
 
     dd3 dynain dynain op10.out
     dd3 dynain dynain op10.out --material dp600 --points 9 --rolling 0 1 0
+    dd3 dynain dynain op10.out --units "mm GPa"
 
-Shells of four nodes become elements solid_shell around their mid-surface. The folder that is written stands for that
-of a run: *START takes the sheet from it (from = op10.out), so that it is released, or formed further. Stresses and
-plastic strains at heights between those of the file are interpolated; --points gives the points through the thickness
-(those of the file). Back-stresses start at zero. The initial blank is not known: strains and thinning count from the
-formed sheet, and *TRIM does not cut it. Node sets are z_min and z_max, the faces against and along the normals of the
-shells, for tools that touch them from below and from above, rim, and all.
+Shells of four nodes become elements solid_shell around their mid-surface; those that are numbered the other way round
+than the others are turned over. A node of one shell on the edge of another is refused: it would hang there, and the
+sheet tear. The folder that is written stands for that of a run: *START takes the sheet from it (from = op10.out), so
+that it is released, or formed further. Stresses and plastic strains at heights between those of the file are
+interpolated; --points gives the points through the thickness (those of the file). Stresses are in MPa, or as --units
+says, which is asked for where they are hardly those of a metal in MPa. Back-stresses start at zero. The initial blank
+is not known: strains and thinning count from the formed sheet, and *TRIM does not cut it. Node sets are z_min and
+z_max, the faces against and along the normals of the shells, for tools that touch them from below and from above, rim,
+and all. What of the file is not used is listed with its line.
 
 The rolling direction is the one given (--rolling, x), turned into the sheet.
 """
@@ -20,106 +24,231 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from dd3.command import new_parser
-from dd3.dyna.cards import Card, Row, read_cards
+from dd3.dyna.cards import LINE, TEN, Card, Reader, split
+from dd3.dyna.laws import UNITS
+from dd3.dyna.mesh import Cell, DynaMesh
+from dd3.dyna.parameters import as_number
 from dd3.errors import Problem
+from dd3.hanging import hanging_nodes
 from dd3.programs import made_folder
 from dd3.sheet_state import COLUMNS, NAME, SheetState, write_state
-from dd3.tools.facet_files import dyna_lines, dyna_mesh, fields
 
 STRESS = "*INITIAL_STRESS_SHELL"
+HEAD = "EID NPLANE NTHICK NHISV NTENSR LARGE NTHINT NTHHSV"
+LARGEST = 1e30  # of a number that is read
+MOST_VALUES = 10_000  # points, or variables at a point
+MOST_POINTS = 15  # through the thickness
 SAME = 1e-6  # difference of heights that are one
+NARROW, WIDE = (16,) * 5, (20,) * 5  # columns of a row with LARGE = 1; some writers use 16
+HISTORY = "history variables of LS-DYNA's material are not taken over"
+ODD_STRESS = 5.0, 1e4  # largest stress, MPa, outside of which another unit is likely
 
 
-def read_thickness(path: Path) -> dict[int, np.ndarray]:
-    """Return the thicknesses at the corners of the shells by their labels, mm."""
-    found: dict[int, np.ndarray] = {}
-    label, inside = 0, False
-    for place, line in dyna_lines(path):
-        if line.startswith("*"):
-            inside, label = line.strip().upper().startswith("*ELEMENT_SHELL_THICKNESS"), 0
-        elif inside:
-            try:
-                if label:
-                    words = fields(line, [16] * 4, 4)
-                    found[label] = np.array([float(word or 0) for word in [*words, "", "", ""][:4]])
-                    label = 0
-                else:
-                    label = int(fields(line, [8], 1)[0])
-            except (ValueError, IndexError):
-                raise Problem(f"{place}: error: a line of *ELEMENT_SHELL_THICKNESS cannot be read") from None
-    return found
+class Stresses:
+    """The stresses of the shells by label: rows of height (-1 to 1), xx yy zz xy yz zx and the plastic strain, one for
+    each height, the means of the points at it; in units of the file."""
 
+    def __init__(self, mesh: DynaMesh, cards: list[Card]) -> None:
+        self.mesh = mesh
+        self.labels = {cell.label for cell in mesh.cells if cell.dimension == 2}
+        self.rows: dict[int, np.ndarray] = {}
+        for card in cards:
+            if card.keyword == STRESS:
+                at = 0
+                while at < len(card):
+                    at = self.take(card, at)
 
-def read_stress(path: Path) -> dict[int, np.ndarray]:
-    """Return, by the labels of the shells, rows of height (-1 to 1), the stresses xx yy zz xy yz zx, MPa, and the
-    plastic strain, one for each height, the means of the points at it."""
-    found: dict[int, np.ndarray] = {}
-    for card in read_cards(path):
-        if card.keyword.startswith(STRESS):
-            at = 0
-            while at < len(card.rows):
-                label, rows, at = shell_stress(card, at)
-                heights = np.unique(np.round(rows[:, 0] / SAME)) * SAME
-                found[label] = np.array([rows[abs(rows[:, 0] - height) < 2 * SAME].mean(axis=0) for height in heights])
-    return found
+    def take(self, card: Card, at: int) -> int:
+        """Take the shell whose entry begins in a row of a card; return the row after it."""
+        head = card.row(at, HEAD)
+        label, plane, through, history, tensors, large, thermal, more = (
+            head.label(name) for name in HEAD.split())
+        counts = [min(max(value, 0), MOST_VALUES) for value in (plane, through, history, tensors, thermal, more)]
+        if label not in self.labels:
+            raise Problem(f"{head.place}: error: stresses of shell {label}, which the file does not have: a row of "
+                          f"{STRESS} before does not have the form that its numbers tell")
+        if label in self.rows:
+            raise Problem(f"{head.place}: error: a second {STRESS} of shell {label}")
+        plane, through, history, tensors, thermal, more = counts
+        at += 1
+        # Some files have LARGE in the place of NTENSR: only rows of LARGE = 1 are wider than 80 columns.
+        if not large and tensors == 1 and at < len(card) and len(card.lines[at][1].rstrip()) > LINE:
+            large, tensors = 1, 0
+        for name, value in (("NHISV", history), ("NTENSR", tensors), ("NTHINT", thermal)):
+            if value:
+                head.entry.read.discard(name)
+                head.leave(HISTORY, name)
+        points = []
+        for _ in range(max(1, plane) * max(1, through)):
+            values, at = self.point(card, at, large, history, tensors)
+            points.append(values)
+        at += thermal * -(-more // (5 if large else 8)) if thermal else 0
+        rows = np.array(points)
+        if np.abs(rows[:, 0]).max() > 1 + 1e-3:
+            raise Problem(f"{head.place}: error: a height of {rows[np.abs(rows[:, 0]).argmax(), 0]:g} of shell "
+                          f"{label}; expected -1 to 1")
+        heights = np.unique(np.round(rows[:, 0] / SAME)) * SAME
+        self.rows[label] = np.array([rows[abs(rows[:, 0] - height) < 2 * SAME].mean(axis=0) for height in heights])
+        return at
 
-
-def shell_stress(card: Card, at: int) -> tuple[int, np.ndarray, int]:
-    """Return label and rows of the shell whose entry begins in a row of a card, and the row after it."""
-    head = card.row(at)
-    label, plane, through, history, tensors, large = (head.label(i) for i in range(6))
-    at += 1
-    rows = []
-    for _ in range(max(1, plane) * max(1, through)):
+    def point(self, card: Card, at: int, large: int, history: int, tensors: int) -> tuple[list[float], int]:
+        """Return height, stresses and strain of a point, and the row after it."""
+        width = 5 if large else 8
+        last = at + (2 if large else 1) - 1
+        if last >= len(card):
+            raise Problem(f"{card.place}: error: {card.keyword} has {len(card)} rows, expected {last + 1}")
+        columns = TEN if not large else WIDE if len(card.lines[at][1].rstrip()) > LINE else NARROW
+        words = split(card.lines[at][1], columns, card.least)[:width]
         if large:
-            values = numbers(card.row(at), 5, 16) + numbers(card.row(at + 1), 3, 16)
-            at += 2 + -(-history // 5) + -(-tensors // 5)
-        else:
-            values = numbers(card.row(at), 8, 10)
-            at += 1 + -(-history // 8) + -(-tensors // 8)
-        rows.append(values)
-    return label, np.array(rows), at
+            words += split(card.lines[last][1], columns, card.least)[:3]
+        values = []
+        for word in words:
+            value = as_number(word or "0")
+            if value is None or abs(value) > LARGEST:
+                raise Problem(f"{card.place_of(at)}: error: expected a number, got '{word}'")
+            values.append(value)
+        after = last + 1 + -(-history // width) + -(-tensors // width)
+        for i in range(at, min(after, len(card))):
+            card.rows.setdefault(i)
+        return values, after
 
 
-def numbers(row: Row, count: int, width: int) -> list[float]:
-    """Return the first numbers of a row."""
-    return [row.number(i, width=width) for i in range(count)]
+def ordered(quads: np.ndarray) -> np.ndarray:
+    """Return whether each quadrilateral is turned over against the greater part of those that it is joined with."""
+    edges: dict[tuple[int, int], list[tuple[int, bool]]] = {}
+    for i, quad in enumerate(quads.tolist()):
+        for k in range(4):
+            a, b = quad[k - 1], quad[k]
+            edges.setdefault((min(a, b), max(a, b)), []).append((i, a < b))
+    neighbours: list[list[tuple[int, bool]]] = [[] for _ in quads]
+    for sides in edges.values():
+        if len(sides) == 2:
+            (i, one), (j, other) = sides
+            neighbours[i].append((j, one == other))
+            neighbours[j].append((i, one == other))
+    turned, seen = np.zeros(len(quads), bool), np.zeros(len(quads), bool)
+    for start in range(len(quads)):
+        if seen[start]:
+            continue
+        group, seen[start] = [start], True
+        for i in group:  # grows
+            for j, against in neighbours[i]:
+                if not seen[j]:
+                    seen[j], turned[j] = True, turned[i] != against
+                    group.append(j)
+        if 2 * turned[group].sum() > len(group):
+            turned[group] = ~turned[group]
+    return turned
 
 
-def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float]) -> SheetState:
-    """Return the sheet of a dynain file."""
-    nodes, cells, _ = dyna_mesh(path)
-    shells = [members for _, dim, members in cells if dim == 2]
-    if not shells:
-        raise Problem(f"{path}: no shells (*ELEMENT_SHELL_THICKNESS)")
-    if any(len(members) != 4 for members in shells):
-        raise Problem(f"{path}: {sum(len(members) != 4 for members in shells)} shells with three nodes; expected four")
-    thickness, stress = read_thickness(path), read_stress(path)
-    labels = list(thickness)
-    if len(labels) != len(shells):
-        raise Problem(f"{path}: {len(labels)} thicknesses for {len(shells)} shells")
-    missing = [label for label in labels if label not in stress]
+def thicknesses(cells: list[Cell]) -> np.ndarray:
+    """Return the thicknesses at the corners of shells (m, 4)."""
+    missing = [cell for cell in cells if not cell.thickness]
     if missing:
-        raise Problem(f"{path}: no {STRESS} for {len(missing)} shells, the first {missing[0]}")
-    used, corner = np.unique(np.array(shells), return_inverse=True)
+        raise Problem(f"{missing[0].place}: error: {len(cells) - len(missing)} thicknesses for {len(cells)} shells, "
+                      f"none of shell {missing[0].label}; expected *ELEMENT_SHELL_THICKNESS")
+    found = np.array([(*cell.thickness, 0.0, 0.0, 0.0, 0.0)[:4] for cell in cells])
+    found = np.where(found == 0, found[:, :1], found)  # left out: that of the first corner
+    if not (found > 0).all():
+        cell = cells[int(np.flatnonzero((found <= 0).any(axis=1))[0])]
+        raise Problem(f"{cell.place}: error: a thickness of {min(cell.thickness):g} of shell {cell.label}; expected a "
+                      "number > 0")
+    return found
+
+
+def conforming(reader: Reader, cells: list[Cell], middle: np.ndarray, quads: np.ndarray, used: np.ndarray) -> None:
+    """Raise a Problem at a hanging node."""
+    for card in reader.cards:
+        if card.keyword == "*CONSTRAINED_ADAPTIVITY":
+            for i, words in card.words(0):
+                label, *ends = (card.whole(i, word) for word in words[:3])
+                raise Problem(f"{card.place_of(i)}: error: node {label} hangs between the nodes {ends[0]} and "
+                              f"{ends[-1]}, and hanging nodes are not bound here: write the file of a mesh without "
+                              "*CONSTRAINED_ADAPTIVITY")
+    found = hanging_nodes(middle, quads.tolist())
+    if found:
+        cell = cells[found[0][1]]
+        raise Problem(f"{cell.place}: error: node {used[found[0][0]]} lies on an edge of shell {cell.label} that does "
+                      f"not have it ({len(found)} such nodes): the sheet would tear there; hanging nodes are not "
+                      "bound here")
+
+
+def check_units(path: Path, units: str | None, largest: float) -> None:
+    """Raise a Problem if the stresses are hardly those of a metal in MPa, and no units are given."""
+    if units is None and largest > 0 and not ODD_STRESS[0] <= largest <= ODD_STRESS[1]:
+        raise Problem(f"{path}: error: stresses up to {largest:.4g} MPa, if they are in MPa; say by --units what they "
+                      'are in: "mm MPa", "mm GPa" or "m Pa"')
+
+
+def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], units: str | None = None
+             ) -> tuple[SheetState, list[str]]:
+    """Return the sheet of a dynain file, and what is to be said of it: turned shells, what is left out."""
+    reader = Reader(path)
+    mesh = DynaMesh(reader)
+    said = []
+    cells = [cell for cell in mesh.cells if cell.dimension == 2]
+    if not cells:
+        raise Problem(f"{path}: no shells (*ELEMENT_SHELL_THICKNESS)")
+    if other := [cell for cell in cells if len(cell.nodes) != 4]:
+        raise Problem(f"{other[0].place}: error: {len(other)} shells with three nodes; expected four")
+    if len(cells) < len(mesh.cells):
+        said.append(f"left out: {len(mesh.cells) - len(cells)} solids")
+    stress = Stresses(mesh, reader.cards).rows
+    at_corner = thicknesses(cells)
+    missing = [cell for cell in cells if cell.label not in stress]
+    if missing:
+        raise Problem(f"{missing[0].place}: error: no {STRESS} for {len(missing)} shells, the first {missing[0].label}")
+    used, corner = np.unique(np.array([cell.nodes for cell in cells]), return_inverse=True)
     quads = corner.reshape(-1, 4)
-    if any(int(node) not in nodes for node in used):
-        raise Problem(f"{path}: shells name nodes that *NODE does not give")
-    middle = np.array([nodes[int(node)] for node in used])
-    at_corner = np.array([thickness[label] for label in labels])
-    upper, lower = offset(middle, quads, at_corner)
-    levels = column or max(2, max(len(rows) for rows in stress.values()))
+    if lost := [int(node) for node in used if int(node) not in mesh.nodes]:
+        raise Problem(f"{path}: shells name node {lost[0]}, which *NODE does not give")
+    _, _, length, factor = UNITS[units or "mm MPa"]
+    middle = length * np.array([mesh.nodes[int(node)] for node in used])
+    at_corner = length * at_corner
+    conforming(reader, cells, middle, quads, used)
+    check_units(path, units, max(float(np.abs(rows[:, 1:7]).max()) for rows in stress.values()))
+    turned = ordered(quads)
+    if turned.any():
+        said.append(f"note: {turned.sum()} shells are numbered the other way round than the others, the first "
+                    f"{cells[int(turned.argmax())].label}; they are turned over, with their heights")
+        quads[turned], at_corner[turned] = quads[turned][:, ::-1], at_corner[turned][:, ::-1]
+    upper, lower = offset(path, cells, middle, quads, at_corner)
+    levels = column or min(MOST_POINTS, max(2, max(len(rows) for rows in stress.values())))
     heights = leggauss(levels)[0]
-    values = np.array([between(stress[label], heights) for label in labels])  # (m, heights, 7)
-    values = np.tile(values, (1, COLUMNS, 1))
+    values = np.array([between(reversed_rows(stress[cell.label]) if back else stress[cell.label], heights)
+                       for cell, back in zip(cells, turned)])
+    values = np.tile(values, (1, COLUMNS, 1))  # (m, heights, 7)
     tensor = np.zeros((*values.shape[:2], 3, 3))
     for k, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
-        tensor[..., i, j] = tensor[..., j, i] = values[..., k]
+        tensor[..., i, j] = tensor[..., j, i] = factor * values[..., k]
     axes = np.repeat(sheet_axes(middle, quads, rolling)[:, None], values.shape[1], axis=1)
     points = np.stack((lower, upper), axis=1).reshape(-1, 3)
+    said += account_of(reader)
     return SheetState(points, points, np.hstack((2 * quads, 2 * quads + 1)), float(at_corner.mean()), tensor,
                       np.maximum(values[..., 6], 0.0), axes, [material], np.zeros(len(quads), int), levels,
-                      node_sets(quads, len(points)))
+                      node_sets(quads, len(points))), said
+
+
+def reversed_rows(rows: np.ndarray) -> np.ndarray:
+    """Return the rows of a shell that is turned over: the heights change sign, stresses are in global axes."""
+    return np.column_stack((-rows[:, 0], rows[:, 1:]))[::-1]
+
+
+def account_of(reader: Reader) -> list[str]:
+    """Return what of a file is not used."""
+    for card in reader.cards:
+        if card.keyword in ("*KEYWORD", "*TITLE", "*COMMENT", "*CONSTRAINED_ADAPTIVITY"):
+            card.ignore()
+        elif card.keyword.startswith("*PART"):
+            for row in filter(None, card.rows.values()):
+                row.drop("the thicknesses are those of the shells, the material that of --material")
+        elif card.keyword.startswith("*INITIAL_STRAIN"):
+            card.leave("strains count from the formed sheet")
+        elif card.keyword.startswith("*INITIAL_STRESS"):
+            card.leave("not read; *INITIAL_STRESS_SHELL is")
+        elif card.keyword.startswith("*NODE") or card.keyword.startswith("*PART_MOVE"):
+            card.leave("not read")
+    return [f"left out: {item}" for item in reader.left_out()]
 
 
 def node_sets(quads: np.ndarray, count: int) -> dict[str, np.ndarray]:
@@ -132,13 +261,22 @@ def node_sets(quads: np.ndarray, count: int) -> dict[str, np.ndarray]:
     return {"all": number, "z_min": number[::2], "z_max": number[1::2], "rim": np.sort(np.append(2 * rim, 2 * rim + 1))}
 
 
-def offset(middle: np.ndarray, quads: np.ndarray, thickness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def offset(path: Path, cells: list[Cell], middle: np.ndarray, quads: np.ndarray, thickness: np.ndarray
+           ) -> tuple[np.ndarray, np.ndarray]:
     """Return the nodes of the upper and the lower face of a sheet whose thicknesses (m, 4) lie across its elements."""
-    normal = element_normals(middle, quads)
+    with np.errstate(all="ignore"):
+        normal = element_normals(middle, quads)
+    if not (flat := np.isfinite(normal).all(axis=1)).all():
+        cell = cells[int(np.flatnonzero(~flat)[0])]
+        raise Problem(f"{cell.place}: error: shell {cell.label} has no area")
     director, share, weight = np.zeros_like(middle), np.zeros(len(middle)), np.zeros(len(middle))
     for k in range(4):
         np.add.at(director, quads[:, k], normal)
-    director /= np.linalg.norm(director, axis=1)[:, None]
+    length = np.linalg.norm(director, axis=1)
+    if not (length > 1e-6).all():
+        raise Problem(f"{path}: error: the normals of the shells at a node cancel each other: the sheet is folded, or "
+                      "three shells have one edge")
+    director /= length[:, None]
     for k in range(4):
         across = (director[quads[:, k]] * normal).sum(axis=1)
         np.add.at(share, quads[:, k], thickness[:, k] / np.maximum(across, 0.5))
@@ -184,6 +322,7 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="points through the thickness (as many as in the file)")
     parser.add_argument("--rolling", type=float, nargs=3, default=[1.0, 0.0, 0.0], metavar=("X", "Y", "Z"),
                         help="rolling direction (1 0 0)")
+    parser.add_argument("--units", choices=list(UNITS), help="units of lengths and stresses (mm MPa, if they fit)")
     options = parser.parse_args(words)
     if options.points and not 2 <= options.points <= 15:
         parser.error("--points: takes 2 to 15")
@@ -191,8 +330,10 @@ def main(words: Sequence[str] | None = None) -> None:
         parser.error("--rolling: takes a direction")
     if not options.file.is_file():
         raise Problem(f"{options.file}: No such file")
-    sheet = sheet_of(options.file, options.material, options.points, options.rolling)
+    sheet, said = sheet_of(options.file, options.material, options.points, options.rolling, options.units)
     if (options.folder / "job.log").exists():
         raise Problem(f"{options.folder}: holds the results of a run; name another folder")
     write_state(made_folder(options.folder), sheet)
     print(f"{options.folder / NAME}: {len(sheet.elements)} elements, {sheet.column} points through the thickness")
+    for line in said:
+        print(line)

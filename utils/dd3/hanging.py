@@ -8,6 +8,46 @@ from scipy.spatial import cKDTree
 TOLERANCE = 1e-3  # distance from a face, and of nodes at the same place, over the shortest edge of the face
 FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)])
 CHUNK = 100_000  # faces at a time
+NEAR = 0.01  # distance from the edge of a shell, and from its ends, over its length: sheets are curved
+
+
+def hanging_nodes(points: np.ndarray, cells: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
+    """Return the nodes that hang, each with one element on whose edge or face it lies.
+
+    points: (n, 3); cells: corners of quadrilaterals and triangles, or of hexahedra, indices of points.
+    """
+    if len(cells) == 0:
+        return []
+    if len(cells[0]) == 8:
+        return first_of_each(hanging(points, *outer_faces(np.array(cells)), cells))
+    edges = np.array([(cell[k - 1], cell[k]) for cell in cells for k in range(len(cell))])
+    owners = np.repeat(np.arange(len(cells)), [len(cell) for cell in cells])
+    _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    edges, owners = edges[first[count == 1]], owners[first[count == 1]]
+    return first_of_each(hanging_on_edges(points, edges, owners, cells)) if len(edges) else []
+
+
+def first_of_each(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return the pairs of nodes and elements with the first element of each node."""
+    return sorted(dict(sorted(pairs, reverse=True)).items())
+
+
+def hanging_on_edges(points: np.ndarray, edges: np.ndarray, owners: np.ndarray,
+                     members: Sequence[Iterable[int]]) -> list[tuple[int, int]]:
+    """Return pairs of a node and a shell on whose edge it lies, of edges (m, 2) that belong to one shell only."""
+    candidates = np.unique(edges)
+    ends = points[edges]
+    along = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    near = cKDTree(points[candidates]).query_ball_point(ends.mean(axis=1), 0.51 * length)
+    edge = np.repeat(np.arange(len(near)), [len(nodes) for nodes in near])
+    node = candidates[np.concatenate([np.asarray(nodes, int) for nodes in near])]
+    offset = points[node] - ends[edge, 0]
+    square = np.maximum(length[edge] ** 2, 1e-300)
+    part = (offset * along[edge]).sum(axis=1) / square
+    distance = np.linalg.norm(offset - part[:, None] * along[edge], axis=1)
+    on = (part > NEAR) & (part < 1 - NEAR) & (distance < NEAR * length[edge])
+    return [(int(n), int(owners[e])) for n, e in zip(node[on], edge[on]) if int(n) not in members[owners[e]]]
 
 
 def outer_faces(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -5,9 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dd3.dyna.deck import Deck, Part
+from dd3.dyna.cards import Row
+from dd3.dyna.deck import SHELL, Deck
 from dd3.dyna.laws import Units
+from dd3.dyna.mesh import Cell, Part
 from dd3.errors import Problem
+from dd3.hanging import hanging_nodes
 from dd3.mesh import Mesh, renumber, turn_mirrored
 
 POINTS = 7  # through the thickness, where the deck has fewer than 5
@@ -18,7 +21,8 @@ MOST_POINTS = 15
 class Blank:
     """The mesh with the labels of the deck, its mean normal, thickness, points, and the element.
 
-    upper: the label of the node above each node of a shell; empty for solids. edge: that of the first element.
+    upper: the label of the node above each node of a shell; empty for solids. axes: the first edge and the normal of
+    the first element; bent: the largest angle from it to the first edge of another, degrees.
     """
 
     mesh: Mesh
@@ -27,32 +31,51 @@ class Blank:
     points: int
     element: str
     upper: dict[int, int]
-    edge: np.ndarray
+    axes: np.ndarray
+    bent: float
 
     @property
     def size(self) -> float:
         """The length of an edge of the first element, mm."""
-        return float(np.linalg.norm(self.edge))
+        return float(np.linalg.norm(self.axes[0]))
 
 
 def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
     """Return the blank of a part: shells extruded about their mid-surface, hexahedra as they are."""
-    kinds = {dimension for dimension, _ in part.cells}
+    kinds = {cell.dimension for cell in part.cells}
     if len(kinds) != 1:
         raise Problem(f"{part.place}: error: the blank, part {part.number}, has shells and solids")
     corners = 4 if kinds == {2} else 8
-    other = sum(len(members) != corners for _, members in part.cells)
+    other = [cell for cell in part.cells if len(cell.nodes) != corners]
     if other:
-        raise Problem(f"{part.place}: error: {other} of the {len(part.cells)} elements of the blank "
+        raise Problem(f"{other[0].place}: error: {len(other)} of the {len(part.cells)} elements of the blank "
                       f"(part {part.number}) are no {'quadrilaterals' if corners == 4 else 'hexahedra'}; mesh it with "
                       "these alone")
-    nodes = {label: np.array(point) * units.length for label, point in deck.nodes.items()}
-    cells = [members for _, members in part.cells]
-    missing = {label for members in cells for label in members} - nodes.keys()
-    if missing:
-        raise Problem(f"{deck.path}: node {min(missing)} of an element has no coordinates")
-    edge = nodes[cells[0][1]] - nodes[cells[0][0]]
-    return of_shells(deck, part, cells, nodes, units, edge) if corners == 4 else of_solids(cells, nodes, edge)
+    nodes = {label: np.array(deck.nodes[label]) * units.length for cell in part.cells for label in cell.nodes}
+    check_hanging(deck, part, nodes)
+    blank = of_shells(deck, part, nodes, units) if corners == 4 else of_solids(deck, part, nodes)
+    edges = np.array([nodes[cell.nodes[1]] - nodes[cell.nodes[0]] for cell in part.cells])
+    edges /= np.maximum(np.linalg.norm(edges, axis=1), 1e-300)[:, None]
+    first = blank.axes[0] / max(float(np.linalg.norm(blank.axes[0])), 1e-300)
+    blank.bent = float(np.degrees(np.arccos(np.clip(np.abs(edges @ first).min(), 0.0, 1.0))))
+    return blank
+
+
+def check_hanging(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> None:
+    """Raise a Problem at a node of one element on the edge or the face of another: nothing would bind them."""
+    labels = list(nodes)
+    index = {label: i for i, label in enumerate(labels)}
+    for place, (label, *ends) in deck.hung:
+        if label in nodes:
+            raise Problem(f"{place}: error: node {label} hangs between the nodes {ends[0]} and {ends[-1]}, and hanging "
+                          "nodes are not bound here; mesh the blank with elements that share all their nodes")
+    found = hanging_nodes(np.array(list(nodes.values())),
+                          [[index[label] for label in cell.nodes] for cell in part.cells])
+    if found:
+        node, cell = labels[found[0][0]], part.cells[found[0][1]]
+        raise Problem(f"{cell.place}: error: node {node} lies on an edge or a face of element {cell.label} that does "
+                      f"not have it ({len(found)} such nodes): the sheet would tear there; mesh the blank with "
+                      "elements that share all their nodes")
 
 
 def face_normals(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray]) -> np.ndarray:
@@ -61,14 +84,12 @@ def face_normals(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray]) -> 
     return np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]) / 2
 
 
-def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray], units: Units,
-              edge: np.ndarray) -> Blank:
+def of_shells(deck: Deck, part: Part, nodes: dict[int, np.ndarray], units: Units) -> Blank:
     """Return the blank of shells."""
-    section = deck.sections.get(part.section)
-    if section is None or section.keyword != "*SECTION_SHELL":
-        raise Problem(f"{part.place}: error: the shells of part {part.number} have no *SECTION_SHELL {part.section}")
-    row = section.row(1)
-    thickness = row.number(0) * units.length
+    cells = [cell.nodes for cell in part.cells]
+    first_row, row = deck.section(part, "*SECTION_SHELL", SHELL)
+    use_section(first_row)
+    thickness = uniform_thickness(row, part.cells) * units.length
     if not thickness > 0:
         raise Problem(f"{row.place}: error: a shell thickness of {thickness:g} mm; expected a number > 0")
     normals = face_normals(cells, nodes)
@@ -78,6 +99,7 @@ def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[
     if not np.linalg.norm(mean) > 0:
         raise Problem(f"{part.place}: error: the normals of the shells of part {part.number} cancel each other")
     upward = upright(mean)
+    axes = np.array([nodes[cells[0][1]] - nodes[cells[0][0]], normals[0] / np.linalg.norm(normals[0])])
     turned = normals @ upward < 0
     normals[turned] *= -1
     sums: dict[int, np.ndarray] = {}
@@ -85,7 +107,7 @@ def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[
         for label in cell:
             sums[label] = sums.get(label, 0.0) + normal
     first, mesh = max(nodes), Mesh()
-    middle = -float(np.clip(row.number(4), -1, 1)) * thickness / 2  # of the shell, from its reference surface
+    middle = -float(np.clip(row.number("NLOC"), -1, 1)) * thickness / 2  # of the shell, from its reference surface
     for label, normal in sums.items():
         along = normal / np.linalg.norm(normal)
         for side, name in ((-0.5, label), (0.5, label + first)):
@@ -93,9 +115,27 @@ def of_shells(deck: Deck, part: Part, cells: list[tuple[int, ...]], nodes: dict[
     for i, (cell, back) in enumerate(zip(cells, turned), 1):
         ring = list(cell[::-1] if back else cell)
         mesh.elements[i] = ring + [label + first for label in ring]
-    points = section.row(0).label(3)
+    points = first_row.label("NIP")
     return Blank(mesh, upward, thickness, min(points, MOST_POINTS) if points >= 5 else POINTS,
-                 "solid_shell", {label: label + first for label in sums}, edge)
+                 "solid_shell", {label: label + first for label in sums}, axes, 0.0)
+
+
+def use_section(row: Row) -> None:
+    """Take the first row of a section of shells: what is not read belongs to LS-DYNA's elements."""
+    row.label("SECID")
+    row.leave("the element is solid_shell", "ELFORM SHRF QR ICOMP")
+    row.leave("output follows from *OUTPUT", "PROPT")
+
+
+def uniform_thickness(row: Row, cells: list[Cell]) -> float:
+    """Return the thickness of shells by their section, or the one that all of them have by *ELEMENT_SHELL_THICKNESS."""
+    first, *others = row.numbers("T1 T2 T3 T4")
+    given = ({value for cell in cells for value in cell.thickness if value}
+             or {value for value in (first, *others) if value})
+    if len(given) > 1 and max(given) - min(given) > 1e-6 * max(given):
+        raise Problem(f"{row.place}: error: shells of {min(given):g} to {max(given):g} thick; the blank has one "
+                      "thickness")
+    return next(iter(given), 0.0)
 
 
 def upright(vector: np.ndarray) -> np.ndarray:
@@ -104,17 +144,23 @@ def upright(vector: np.ndarray) -> np.ndarray:
     return -unit if unit[2] < -1e-6 else unit
 
 
-def of_solids(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray], edge: np.ndarray) -> Blank:
+def of_solids(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> Blank:
     """Return the blank of hexahedra, a flat sheet: its normal is the direction in which the nodes vary least."""
-    mesh = Mesh({label: tuple(nodes[label].tolist()) for cell in cells for label in cell},
-                {i: list(cell) for i, cell in enumerate(cells, 1)})
+    if part.section in deck.sections:
+        row = deck.section(part, deck.sections[part.section][0].keyword, ("SECID ELFORM AET",))[0]
+        row.label("SECID")
+        row.leave("the element is solid_shell, or hex8 for several layers", "ELFORM")
+    mesh = Mesh({label: tuple(point.tolist()) for label, point in nodes.items()},
+                {i: list(cell.nodes) for i, cell in enumerate(part.cells, 1)})
     turn_mirrored(mesh)
     points = np.array(list(mesh.nodes.values()))
     normal = upright(np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][-1])
     heights = points @ normal
     thickness = float(np.ptp(heights))
     one_layer = len(np.unique(np.round(heights / max(thickness, 1e-300), 3))) == 2
-    return Blank(mesh, normal, thickness, POINTS, "solid_shell" if one_layer else "hex8", {}, edge)
+    first = part.cells[0].nodes
+    return Blank(mesh, normal, thickness, POINTS, "solid_shell" if one_layer else "hex8", {},
+                 np.array([nodes[first[1]] - nodes[first[0]], normal]), 0.0)
 
 
 def with_sets(blank: Blank, sets: dict[str, set[int]]) -> Mesh:

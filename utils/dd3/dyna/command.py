@@ -7,23 +7,27 @@
 
 The blank is the part that deforms, of quadrilateral shells, which are extruded about their mid-surface, or hexahedra;
 the tools are rigid parts in contact with it. Materials: *MAT_003, 018, 024, 036, 037, 122, 133. Motions and forces by
-curves become phases, each with the displacements of the tools between the times at which one starts or stops. What
-cannot be carried over is listed with its reason, here and in the input file.
+curves become phases: a phase ends where a tool starts, stops or turns back, or where tools go on in other proportions;
+a force that changes meanwhile gets a press_table. Each keyword and each field that is not used is listed with its line
+and the reason, here and in the input file.
 """
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from dd3 import tool as tools
+from dd3.account import LeftOut
 from dd3.command import new_parser
 from dd3.dyna.blank import Blank, blank_of, with_sets
-from dd3.dyna.deck import Deck, Part
-from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of
+from dd3.dyna.deck import Deck, Drive
+from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of, use_rigid
+from dd3.dyna.mesh import Part
+from dd3.dyna.phases import EARTH, Names, Phases, numbers
 from dd3.dyna.process import Stage, stages
 from dd3.errors import Problem, run
 from dd3.mesh import set_name, write_inp
@@ -32,7 +36,8 @@ from dd3.progress import each
 from dd3.tools.surface import write
 
 RIGID = 20
-TRIAL = 0.5, 0.05  # trial increment of a tool, mm, at most this part of its displacement
+SEW = 2e-3  # distance up to which free edges of a tool are joined, mm: deck writers round coordinates
+BENT = 2.0  # angle between first edges of elements, degrees, from which a note tells of it
 
 
 @dataclass
@@ -51,21 +56,22 @@ class Import:
     def __init__(self, options: argparse.Namespace) -> None:
         self.deck = deck = Deck(options.deck)
         self.part = self.blank_part(options.blank)
-        self.material = deck.materials[self.part.material]
+        self.material = deck.material(self.part)
         self.units: Units = units_of(self.material, options.units)
         self.blank: Blank = blank_of(deck, self.part, self.units)
-        self.law: Law = law_of(deck, self.material, self.units, np.array([self.blank.edge, self.blank.normal]))
-        self.notes = list(self.law.notes)
-        self.nodes = {label for _, members in self.part.cells for label in members}  # of the blank
+        self.law: Law = law_of(deck, self.material, self.units, self.blank.axes)
+        self.notes = [*deck.notes, *self.law.notes]
+        if self.blank.bent > BENT and any("AOPT = 0" in note for note in self.law.notes):
+            self.notes.append(f"rolling direction: the first edges of the elements differ by up to "
+                              f"{self.blank.bent:.3g} degrees; LS-DYNA follows each, here the first one counts")
+        self.nodes = {label for cell in self.part.cells for label in cell.nodes}  # of the blank
         self.tools = self.find_tools()
         self.stages: list[Stage] = self.find_stages()
         self.fixed = self.find_supports()
 
     def is_rigid(self, part: Part) -> bool:
         """Check whether a part is rigid."""
-        if part.material not in self.deck.materials:
-            raise Problem(f"{part.place}: error: part {part.number} has no *MAT {part.material}")
-        return number_of(self.deck.materials[part.material]) == RIGID
+        return number_of(self.deck.material(part)) == RIGID
 
     def blank_part(self, wanted: int | None) -> Part:
         """Return the part that is the blank."""
@@ -80,11 +86,13 @@ class Import:
 
     def find_tools(self) -> list[Tool]:
         """Return the tools: rigid parts in contact with the blank, joined where one follows another."""
-        pairs, friction = self.deck.pairs(), {}
+        pairs, friction = self.deck.pairs(), dict[int, float]()
         for pair in pairs:
             for one, other in (pair.sides, pair.sides[::-1]):
-                if self.part.number in one:
-                    friction.update(dict.fromkeys(other, pair.friction))
+                for number in other if self.part.number in one else ():
+                    if friction.setdefault(number, pair.friction) != pair.friction:
+                        self.notes.append(f"{pair.place}: another friction of part {number}; the larger one is taken")
+                        friction[number] = max(friction[number], pair.friction)
         groups: dict[int, list[Part]] = {}
         for part in self.deck.parts.values():
             if part.number == self.part.number or not part.cells:
@@ -96,7 +104,8 @@ class Import:
             else:
                 groups.setdefault(self.root(part.number), []).append(part)
         if not groups:
-            raise Problem(f"{self.deck.path}: no rigid part in contact with the blank, part {self.part.number}")
+            raise Problem(f"{self.deck.path}: no rigid part in contact with the blank, part {self.part.number}"
+                          + self.deck.unread("*CONTACT"))
         if not pairs:
             self.notes.append("no contact is defined: all rigid parts are tools, without friction")
         found, names = [], set[str]()
@@ -105,6 +114,9 @@ class Import:
             name = set_name(leader.title or f"tool_{leader.number}")
             name = f"{name}_{leader.number}" if name in names or name == "load" else name
             names.add(name)
+            for part in parts:
+                use_rigid(self.deck.material(part))
+                self.use_section(part)
             values = [friction.get(part.number, 0.0) for part in parts]
             if len(set(values)) > 1:
                 self.notes.append(f"tool {name}: frictions {values}; the largest is taken")
@@ -118,12 +130,17 @@ class Import:
             seen.add(number)
         return number
 
+    def use_section(self, part: Part) -> None:
+        """Take the section of a tool, of which nothing is needed: a sheet touches its elements at their nodes."""
+        if part.section in self.deck.sections:
+            card, i = self.deck.sections[part.section]
+            for k in range(i, min(len(card), i + (1 if card.keyword == "*SECTION_SOLID" else 2))):
+                card.row(k, "").use()
+
     def is_above(self, parts: list[Part]) -> bool:
         """Check whether a tool is on the side of the blank's normal, by its nodes over the blank."""
         sheet = np.array(list(self.blank.mesh.nodes.values()))
-        labels = sorted({label for part in parts for _, members in part.cells for label in members})
-        if missing := [label for label in labels if label not in self.deck.nodes]:
-            raise Problem(f"{self.deck.path}: node {missing[0]} of an element has no coordinates")
+        labels = sorted({label for part in parts for cell in part.cells for label in cell.nodes})
         points = np.array([self.deck.nodes[label] for label in labels]) * self.units.length
         flat = np.eye(3) - np.outer(self.blank.normal, self.blank.normal)
         low, high = (sheet @ flat).min(axis=0), (sheet @ flat).max(axis=0)
@@ -134,7 +151,7 @@ class Import:
     def find_stages(self) -> list[Stage]:
         """Return the stages of the process, with tools in place of parts."""
         number_of_tool = {part: i for i, tool in enumerate(self.tools) for part in tool.parts}
-        drives = []
+        drives: list[Drive] = []
         for drive in self.deck.drives:
             if drive.of_set and drive.kind == "force" and self.members(drive.target):
                 drives.append(drive)
@@ -148,26 +165,60 @@ class Import:
             if drive.begins:
                 self.notes.append(f"{drive.place}: the curve of the motion is taken from its birth on")
             drives.append(replace(drive, target=target))
+        self.check_gravity()
         found = stages(self.deck, drives)
-        if not any(stage.moving or stage.forces for stage in found):
+        if not any(stage.moving or stage.forces or stage.gravity for stage in found):
             raise Problem(f"{self.deck.path}: no tool moves and none is pressed: expected "
-                          "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool")
+                          "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool"
+                          + self.deck.unread("*BOUNDARY_PRESCRIBED") + self.deck.unread("*LOAD"))
         return found
+
+    def check_gravity(self) -> None:
+        """Leave out gravity that does not act on the blank; tell of one that is not that of the earth."""
+        for row in self.deck.heavy:
+            if self.part.number not in self.deck.of_set("PART", row.label("PSID"), row.place):
+                self.notes += [f"{one.place}: gravity of other parts than the blank; left out"
+                               for one in self.deck.gravity]
+                self.deck.gravity = []
+        if self.deck.gravity and not self.law.density:
+            raise Problem(f"{self.material.place}: error: gravity acts, but the blank's material has no density RO")
+        for one in self.deck.gravity:
+            curve = self.deck.curves.get(one.curve, one.place)
+            value = float(np.abs(one.scale * curve.y).max()) * self.units.acceleration
+            if value and not 0.9 < value / EARTH < 1.1:
+                self.notes.append(f"{one.place}: gravity of {value:.4g} mm/s2 in the units {self.units.name}; that of "
+                                  f"the earth is {EARTH:g}: another unit of time?")
 
     def members(self, number: int) -> set[int]:
         """Return the nodes of the blank in a set."""
-        return self.nodes & set(self.deck.node_sets.get(number, ()))
+        return self.nodes & set(self.deck.sets.get("NODE", number)) if self.deck.sets.has("NODE", number) else set()
 
     def find_supports(self) -> dict[str, set[int]]:
         """Return the nodes of the blank that are held, by the axes."""
         held: dict[int, set[str]] = {}
+        turns: dict[int, set[str]] = {}
         for fix in self.deck.fixes():
             for label in fix.nodes & self.nodes:
                 held.setdefault(label, set()).update(fix.axes)
+                turns.setdefault(label, set()).update(fix.turns)
+        self.check_turns(held, turns)
         found: dict[str, set[int]] = {}
         for label, axes in held.items():
-            found.setdefault("".join(sorted(axes)), set()).add(label)
+            if axes:
+                found.setdefault("".join(sorted(axes)), set()).add(label)
         return found
+
+    def check_turns(self, held: dict[int, set[str]], turns: dict[int, set[str]]) -> None:
+        """Tell of rotations that are held where the faces of the sheet are not: about an axis of the sheet the nodes
+        move along the other."""
+        normal = "xyz"[int(np.abs(self.blank.normal).argmax())]
+        if self.blank.upper:
+            for axis in "xyz".replace(normal, ""):
+                other = "xyz".replace(normal, "").replace(axis, "")
+                free = [label for label, axes in turns.items() if axis in axes and other not in held.get(label, ())]
+                if free:
+                    self.notes.append(f"the rotation about {axis} of {len(free)} nodes is held, the first "
+                                      f"{min(free)}, but not their displacement along {other}; left out")
 
     def write_tools(self, folder: Path) -> None:
         """Write the surfaces of the tools."""
@@ -177,6 +228,7 @@ class Import:
                      "--toward", *numbers(toward).split()]
             for number in tool.parts:
                 words += ["--part", str(number)]
+            words += ["--sew", f"{SEW:g}"]
             options = tools.arguments([*words, "--tolerance", "1000"])
             surface, _, result = tools.made(options)
             if result.errors:
@@ -185,14 +237,19 @@ class Import:
             estimate = next((line.strip() for line in result.lines if "estimated" in line), "")
             self.notes.append(f"tool {tool.name}: {len(surface.net)} patches, {' '.join(estimate.split())}")
 
+    @property
+    def left_out(self) -> list[LeftOut]:
+        """What of the deck nothing has used."""
+        return self.deck.left_out()
+
     def entries(self) -> list[str]:
         """Return the lines of the input file, behind notes and what is left out."""
         body = self.body()
         lines = [f"# {self.deck.path.name}, imported from LS-DYNA ({self.units.name}) to mm, N and MPa."]
         lines += ["#", "# Notes:", *(f"# - {note}" for note in self.notes)] if self.notes else []
-        if self.deck.left_out:
-            lines += ["#", "# Left out:", *(f"# - {Path(place).name} {keyword}: {why}"
-                                            for place, keyword, why in self.deck.left_out)]
+        left = self.left_out
+        if left:
+            lines += ["#", "# Left out:", *(f"# - {item._replace(place=Path(item.place).name)}" for item in left)]
         return lines + body
 
     def body(self) -> list[str]:
@@ -200,7 +257,10 @@ class Import:
         lines = ["*TITLE", f"  {self.deck.title or self.deck.path.stem}", "",
                  f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
-                 f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}"]
+                 f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}",
+                 *(f"  backstress = {law}" for law in self.law.backstresses)]
+        if self.law.density:
+            lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:
             lines.append("  rolling_direction = " + numbers(self.law.rolling))
         if abs(self.blank.normal[2]) < 1 - 1e-6:
@@ -223,14 +283,30 @@ class Import:
         """Return the draw-beads."""
         lines = []
         for i, bead in enumerate(self.deck.lines_of_beads(), 1):
-            curve = self.deck.curve(bead.curve, bead.place)
-            force = abs(bead.scale * float(curve.y[-1])) * self.units.force / self.units.length
+            per_length = self.units.force / self.units.length
+            force = abs(bead.scale * float(self.deck.curves.get(bead.curve, bead.place).y[-1])) * per_length
             points = [self.deck.nodes[label] for label in bead.nodes if label in self.deck.nodes]
             if len(points) < 2:
                 raise Problem(f"{bead.place}: error: a draw-bead of {len(points)} nodes; expected 2 or more")
             lines += [f"*DRAWBEAD bead_{i}", f"  force = {force:g}", "  points = " + "  ".join(
-                numbers([self.units.length * value for value in point[:2]]) for point in points), ""]
+                numbers([self.units.length * value for value in point[:2]]) for point in points)]
+            if bead.normal:
+                normal = abs(float(self.deck.curves.get(bead.normal, bead.place).y[-1])) * per_length
+                tool = self.tool_of_bead(bead.nodes, points)
+                lines += [f"  normal = {-normal if tool.above else normal:g}", f"  tool = {tool.name}"]
+            lines.append("")
         return lines
+
+    def tool_of_bead(self, nodes: list[int], points: list[tuple[float, ...]]) -> Tool:
+        """Return the tool that carries a bead: that of its nodes, or of the nearest one."""
+        least: list[tuple[float, int]] = []
+        for i, tool in enumerate(self.tools):
+            labels = {label for part in tool.parts for cell in self.deck.parts[part].cells for label in cell.nodes}
+            if labels & set(nodes):
+                return tool
+            there = np.array([self.deck.nodes[label] for label in labels])
+            least.append((float(np.linalg.norm(there - np.array(points[0]), axis=1).min()), i))
+        return self.tools[min(least)[1]]
 
     def support_lines(self) -> list[str]:
         """Return the supports; of a sheet without any the node nearest to its middle is held in its plane."""
@@ -245,77 +321,21 @@ class Import:
                 f"  near = {numbers(middle)}", "", "*BOUNDARY middle", "  set = middle", f"  fix = {plane}", ""]
 
     def phase_lines(self) -> list[str]:
-        """Return the phases: before a stage that presses a tool anew, one that presses it alone."""
-        lines: list[str] = []
-        pressed: dict[int, np.ndarray] = {}
-        loaded: set[int] = set()
-        count = 0
-        for stage in self.stages:
-            forces = {tool: force * self.units.force for tool, force in stage.forces.items() if tool not in stage.moves}
-            new = {tool: force for tool, force in forces.items() if tool not in pressed}
-            changed = {tool: force for tool, force in forces.items()
-                       if tool not in pressed or not np.allclose(force, pressed[tool])}
-            pressed |= forces
-            if new or (changed and not stage.moving):
-                count += 1
-                lines += [f"# At {stage.ends:g}, before tools move.", f"*PHASE press_{count}", "  control = load",
-                          "  trial = 0.1", *self.presses(changed), ""]
-                changed = {}
-            if not stage.moving and stage.loads.keys() <= loaded:
-                continue
-            count += 1
-            lines += [f"# From {stage.begins:g} to {stage.ends:g}.", f"*PHASE move_{count}", *self.motion_lines(stage),
-                      *self.presses(changed), *self.load_lines(stage, loaded), ""]
-            loaded |= stage.loads.keys()
+        """Return the phases."""
+        phases = Phases(Names([tool.name for tool in self.tools], self.tool_points,
+                              lambda number: len(self.members(number)), self.blank.size, self.units, self.notes))
+        phases.add(self.stages)
         if self.deck.springback:
-            lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on", ""]
-        return lines
-
-    def motion_lines(self, stage: Stage) -> list[str]:
-        """Return the lines of a phase that move and turn tools."""
-        moves = {tool: move * self.units.length for tool, move in stage.moves.items()}
-        lines = [f"  move = {self.tools[tool].name} {numbers(move)}" for tool, move in moves.items()]
-        part = 0.1  # of the phase, in the trial increment
-        for tool, turn in stage.turns.items():
-            points, centre = self.tool_points(tool)
-            angle, axis = float(np.linalg.norm(turn)), turn / np.linalg.norm(turn)
-            if np.count_nonzero(turn) > 1:
-                self.notes.append(f"tool {self.tools[tool].name}: turns about several axes are taken as one")
-            path = angle * float(np.linalg.norm(np.cross(points - centre, axis), axis=1).max())
-            part = float(np.clip(self.blank.size / 4 / path, 1e-4, part)) if path > 0 else part
-            lines.append(f"  turn = {self.tools[tool].name} {numbers(centre)}  {numbers(axis)}  "
-                         f"{np.degrees(angle):.6g}")
-        if not moves:
-            return ["  control = load", f"  trial = {part:.3g}", *lines]
-        leader = max(moves, key=lambda tool: float(np.linalg.norm(moves[tool])))
-        length = float(np.linalg.norm(moves[leader]))
-        trial = min(TRIAL[0], min(TRIAL[1], part) * length)
-        return [f"  control = {self.tools[leader].name}", f"  trial = {trial:.3g}", *lines]
+            phases.lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on", ""]
+        return phases.lines
 
     def tool_points(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the nodes of a tool and the centre of its area, mm."""
-        cells = [members for part in self.tools[number].parts for _, members in self.deck.parts[part].cells]
+        cells = [cell.nodes for part in self.tools[number].parts for cell in self.deck.parts[part].cells]
         corners = np.array([[self.deck.nodes[label] for label in (*cell, *cell[-1:] * 4)[:4]] for cell in cells])
         area = np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
         centre = np.average(corners.mean(axis=1), axis=0, weights=area) if area.sum() > 0 else corners.mean(axis=(0, 1))
         return corners.reshape(-1, 3) * self.units.length, centre * self.units.length
-
-    def load_lines(self, stage: Stage, loaded: set[int]) -> list[str]:
-        """Return the lines of a phase with the forces on sets of nodes; those that end are 0."""
-        lines = []
-        for number in sorted(loaded | stage.loads.keys()):
-            force = stage.loads.get(number, np.zeros(3)) * self.units.force * len(self.members(number))
-            lines.append(f"  load = load_{number} {numbers(force)}")
-        return lines
-
-    def presses(self, forces: dict[int, np.ndarray]) -> list[str]:
-        """Return the lines that press tools."""
-        return [f"  press = {self.tools[tool].name} {numbers(force)}" for tool, force in forces.items()]
-
-
-def numbers(values: Iterable[float]) -> str:
-    """Return numbers as words."""
-    return " ".join(f"{round(value, 9) + 0.0:.6g}" for value in values)
 
 
 def convert(words: Sequence[str]) -> None:
@@ -342,8 +362,8 @@ def convert(words: Sequence[str]) -> None:
           + ", ".join(tool.name for tool in found.tools))
     for note in found.notes:
         print(f"note: {note}")
-    for place, keyword, why in found.deck.left_out:
-        print(f"left out: {place} {keyword}: {why}")
+    for item in found.left_out:
+        print(f"left out: {item}")
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -1,63 +1,60 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a forming deck of LS-DYNA says: parts, materials, curves, contacts, motions, forces, supports, beads."""
+"""What a forming deck of LS-DYNA says: parts, materials, contacts, motions, forces, supports, beads, gravity.
 
+The order of the fields is that of the LS-DYNA Keyword User's Manual, Vol. I and II.
+"""
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from dd3.dyna.cards import LONG, Card, Row, read_cards
+from dd3.account import LeftOut
+from dd3.dyna.cards import Card, Reader, Row, unread
+from dd3.dyna.curves import Curves
+from dd3.dyna.mesh import Part
+from dd3.dyna.positions import AUTO, placed_mesh
+from dd3.dyna.sets import Sets
 from dd3.errors import Problem
-from dd3.tools.facet_files import dyna_mesh
 
-FARTHEST = 1e7  # coordinate of a node
-SILENT = ("*KEYWORD", "*TITLE", "*END", "*PARAMETER", "*COMMENT", "*INCLUDE", "*CONTROL_TERMINATION")
-# Keywords by their beginning, and why they are left out; the first that fits.
+# Why keywords are left out, by their beginning; the first that fits. Others are named without a reason.
 REASONS = (
     ("*CONTROL_ADAPTIVE", "the mesh is not adapted: give the blank elements of half the smallest radius"),
     ("*CONTROL_TIMESTEP", "time step and mass scaling belong to explicit dynamics; this is an implicit computation"),
     ("*CONTROL_IMPLICIT", "increments follow from *LIMITS"),
+    ("*CONTROL_FORMING", "not read; tools start where *NODE has them"),
     ("*CONTROL", "settings of LS-DYNA's solver"),
     ("*DATABASE", "output follows from *OUTPUT and *HISTORY"),
     ("*HOURGLASS", "elements here need no hourglass control"),
     ("*DAMPING", "there is no dynamics"),
     ("*INITIAL_VELOCITY", "there is no dynamics"),
     ("*INITIAL", "the blank starts without stress"),
-    ("*LOAD_BODY", "gravity is not available"),
+    ("*LOAD_BODY", "body force that is not read; gravity by *LOAD_BODY_X, _Y, _Z and _VECTOR is"),
+    ("*CONTACT_AUTO_MOVE", "not read; tools move by *BOUNDARY_PRESCRIBED_MOTION_RIGID"),
+    ("*CONTACT", "contact of another kind: the sheet does not touch itself here"),
     ("*CONSTRAINED", "constraint that is not read"),
     ("*INTERFACE", "results are in fields.vtkhdf"),
     ("*SENSOR", "sensors are not available; `until` ends a phase by force or travel"),
+    ("*MAT_ADD", "added behaviour of a material is not available"),
     ("*DEFINE_FRICTION", "friction is constant for each tool"),
     ("*DEFINE", "definition that nothing here uses"),
-    ("*ELEMENT_SHELL_THICKNESS", "the blank has the thickness of its section everywhere"),
-    ("*ELEMENT_SHELL_BETA", "the rolling direction is that of the material"),
+    ("*SET", "a set of a kind that is not read"),
+    ("*BOUNDARY_PRESCRIBED_MOTION", "motion of nodes, or in axes of its own; that of a rigid part is read"),
     ("*EOS", "equations of state are not available"),
+    ("*ELEMENT", "elements other than shells and solids"),
 )
-MESH = ("*NODE", "*ELEMENT_SHELL", "*ELEMENT_SOLID", "*ELEMENT_TSHELL")
-IGNORED = ("*DEFINE_BOX", "*DEFINE_COORDINATE", "*DEFINE_VECTOR", "*SET_SEGMENT", "*SET_SHELL", "*SET_SOLID")
-GEOMETRY = ("*INCLUDE_TRANSFORM", "*INCLUDE_STAMPED", "*NODE_TRANSFORM", "*PART_MOVE", "*DEFINE_TRANSFORMATION")
-
-
-@dataclass
-class Curve:
-    """A *DEFINE_CURVE: abscissae and ordinates with their scales, and the place of each point."""
-
-    x: np.ndarray
-    y: np.ndarray
-    places: list[str]
-
-
-@dataclass
-class Part:
-    """A *PART with its cells, tuples of dimension and nodes."""
-
-    number: int
-    title: str
-    section: int
-    material: int
-    place: str
-    cells: list[tuple[int, tuple[int, ...]]] = field(default_factory=list)
+SHELL = ("SECID ELFORM SHRF=1 NIP PROPT=1 QR ICOMP SETYP=1", "T1 T2 T3 T4 NLOC MAREA IDOF EDGSET")
+CONTACT = ("SURFA SURFB SURFATYP SURFBTYP SABOXID SBBOXID SAPR SBPR", "FS FD DC VC VDC PENCHK BT DT=1E20",
+           "SFSA=1 SFSB=1 SAST SBST SFSAT=1 SFSBT=1 FSF=1 VSF=1")
+CONTACT_MORE = ("SOFT SOFSCL=0.1 LCIDAB MAXPAR=1.025 SBOPT=2 DEPTH=2 BSORT FRCFRQ=1",
+                "PENMAX THKOPT SHLTHK SNLOG ISYM I2D3D SLDTHK SLDSTF",
+                "IGAP=1 IGNORE DPRFAC DTSTIF EDGEK unused FLANGL CID_RCF",
+                "Q2TRI DTPCHK SFNBR FNLSCL DNLSCL TCSO TIEDID SHLEDG")
+BEAD = "LCIDRF LCIDNF DBDTH DFSCL NUMINT DBPID ELOFF NBEAD"
+MOTION = "PID DOF VAD LCID SF VID DEATH BIRTH"
+FORCE = "PID DOF LCID SF CID M1 M2 M3"
+PENALTY = "a setting of LS-DYNA's contact; that of dd3imp is in *CONTACT"
+ALWAYS = "a contact acts from the start to the end; `release` withdraws a tool"
 
 
 @dataclass
@@ -71,13 +68,13 @@ class Pair:
 
 @dataclass
 class Drive:
-    """A motion or a force of a part or a set along an axis, 0 to 2, by a curve with a scale; `turns` about the axis.
+    """A motion or a force of a part or a set along a direction, by a curve with a scale; `turns` about the direction.
 
     kind: velocity, displacement or force; of a set it is the force on each node.
     """
 
     target: int
-    axis: int
+    direction: np.ndarray
     kind: str
     curve: int
     scale: float
@@ -90,258 +87,346 @@ class Drive:
 
 @dataclass
 class Fix:
-    """Directions that are held of nodes."""
+    """Directions that are held of nodes, and of their rotations."""
 
     nodes: set[int]
     axes: str
+    turns: str
     place: str
 
 
 @dataclass
 class Bead:
-    """A *CONTACT_DRAWBEAD: the nodes along its line, the load curve of its force and the scale of that."""
+    """A *CONTACT_DRAWBEAD: the nodes along its line, the load curve of its force and the scale of that, the load curve
+    of its normal force or 0."""
 
     nodes: list[int]
+    curve: int
+    scale: float
+    normal: int
+    place: str
+
+
+@dataclass
+class Gravity:
+    """The acceleration of a *LOAD_BODY along a direction, by a curve with a scale."""
+
+    direction: np.ndarray
     curve: int
     scale: float
     place: str
 
 
 class Deck:
-    """A deck. `left_out` has place, keyword and reason of what is not carried over."""
+    """A deck; `left_out` at the end gives what nothing has used."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.parts: dict[int, Part] = {}
-        self.sections: dict[int, Card] = {}
+        self.reader = reader = Reader(path)
+        if not reader.cards:
+            raise Problem(f"{path}: no keyword: expected a keyword file of LS-DYNA")
+        self.mesh, moves = placed_mesh(reader)
+        self.nodes, self.parts = self.mesh.nodes, self.mesh.parts
+        self.sets, self.curves = Sets(self.mesh), Curves(path)
+        self.sections: dict[int, tuple[Card, int]] = {}
         self.materials: dict[int, Card] = {}
-        self.curves: dict[int, Curve] = {}
-        self.tables: dict[int, int] = {}  # the curve of the lowest rate
-        self.node_sets: dict[int, list[int]] = {}
-        self.part_sets: dict[int, list[int]] = {}
+        self.vectors: dict[int, tuple[Card, int]] = {}
         self.master: dict[int, int] = {}
         self.contacts: list[Card] = []
         self.beads: list[Card] = []
         self.drives: list[Drive] = []
         self.supports: list[Card] = []
-        self.left_out: list[tuple[str, str, str]] = []
+        self.gravity: list[Gravity] = []
+        self.heavy: list[Row] = []  # of *LOAD_BODY_PARTS
+        self.hung: list[tuple[str, list[int]]] = []
+        self.notes = [*moves, *(f"{place}: a second *PARAMETER {name}; the first holds, as in LS-DYNA"
+                      for place, name in reader.parameters.twice)]
         self.title, self.end_time, self.springback = "", 0.0, False
-        waiting = None
-        for card in read_cards(path):
-            waiting = self.table_curve(card, waiting)
+        for card in reader.cards:
             self.take(card)
-        self.nodes, cells, _ = dyna_mesh(path)
-        if not cells:
-            raise Problem(f"{path}: no shells and no solids")
-        if lost := [label for label, point in self.nodes.items() if not max(map(abs, point)) < FARTHEST]:
-            raise Problem(f"{path}: node {lost[0]} at {' '.join(map(str, self.nodes[lost[0]]))}; expected coordinates "
-                          f"below {FARTHEST:g}")
-        for number, dimension, members in cells:
-            if number not in self.parts:
-                raise Problem(f"{path}: elements of part {number}, but no *PART of this number")
-            self.parts[number].cells.append((dimension, members))
+        if not self.mesh.cells:
+            raise Problem(f"{path}: no shells and no solids" + self.unread("*ELEMENT"))
+        self.mesh.fill_parts()
 
-    def leave(self, card: Card, why: str) -> None:
-        """Note a card that is not carried over, once for each keyword and reason."""
-        if not any(keyword == card.keyword and reason == why for _, keyword, reason in self.left_out):
-            self.left_out.append((card.place, card.keyword, why))
+    def left_out(self) -> list[LeftOut]:
+        """Return what nothing has used."""
+        return self.reader.left_out()
 
-    def table_curve(self, card: Card, waiting: int | None) -> int | None:
-        """Remember the first curve behind a *DEFINE_TABLE as that of its lowest rate."""
-        if card.keyword == "*DEFINE_TABLE" and card.rows:
-            return card.row(0).label(0)
-        if waiting is not None and card.keyword == "*DEFINE_CURVE" and card.rows:
-            self.tables[waiting] = card.row(0).label(0)
-            return None
-        return waiting
+    def unread(self, beginning: str) -> str:
+        """Return a text on the keywords with a beginning that are not read, for a message on what is missing."""
+        found = [card for card in self.reader.cards if card.keyword.startswith(beginning) and not card.entry.used
+                 and not KNOWN.get(card.keyword) and not self.known(card)]
+        return unread(found)
+
+    def known(self, card: Card) -> bool:
+        """Check whether a card is read where something uses it."""
+        return (any(card in cards for cards in self.sets.cards.values()) or self.curves.holds(card)
+                or card in self.materials.values() or any(card is one for one, _ in self.sections.values()))
 
     def take(self, card: Card) -> None:
         """Take what a card says."""
         word = card.keyword
-        if word.startswith(GEOMETRY):
-            raise Problem(f"{card.place}: error: {word} moves or copies nodes and is not read; write the deck with the "
-                          "nodes in their places")
-        for beginning, reader in self.readers():
-            if word == beginning or (beginning.endswith("_") and word.startswith(beginning)):
-                reader(card)
-                return
-        if word.startswith((*SILENT, *IGNORED)) or word in MESH:
-            if word == "*CONTROL_TERMINATION":
-                self.end_time = card.row(0).number(0)
-            elif word == "*TITLE" and card.rows:
-                self.title = card.rows[0].text.replace("#", " ").strip()
-            return
-        if word.startswith("*INTERFACE_SPRINGBACK"):
-            self.springback = True
-            return
-        self.leave(card, next((why for beginning, why in REASONS if word.startswith(beginning)), "not read"))
+        reader = KNOWN.get(word) or next((one for beginning, one in BEGINNINGS if word.startswith(beginning)), None)
+        if reader:
+            reader(self, card)
+        elif word.startswith("*MAT_") and not word.startswith("*MAT_ADD"):
+            self.take_material(card)
+        elif word.startswith("*CONTACT_") and ("SURFACE_TO_SURFACE" in word or "NODES_TO_SURFACE" in word):
+            self.contacts.append(card)
+        elif not self.sets.take(card) and not self.curves.take(card):
+            card.leave(next((why for beginning, why in REASONS if word.startswith(beginning)), "not read"))
 
-    def readers(self) -> tuple[tuple[str, Callable[[Card], None]], ...]:
-        """Return the readers by keyword, or by its beginning if that ends in _."""
-        return (("*PART", self.take_part), ("*PART_CONTACT", self.take_part), ("*SECTION_SHELL", self.take_sections),
-                ("*SECTION_SOLID", self.take_sections), ("*SECTION_TSHELL", self.take_sections),
-                ("*MAT_", self.take_material), ("*DEFINE_CURVE", self.take_curve), ("*DEFINE_TABLE", lambda card: None),
-                ("*SET_NODE_LIST", self.take_node_set), ("*SET_NODE", self.take_node_set),
-                ("*SET_PART_LIST", self.take_part_set), ("*SET_PART", self.take_part_set),
-                ("*CONSTRAINED_RIGID_BODIES", self.take_master), ("*CONTACT_", self.take_contact),
-                ("*BOUNDARY_PRESCRIBED_MOTION_", self.take_motion), ("*LOAD_RIGID_BODY", self.take_force),
-                ("*LOAD_NODE_SET", self.take_force), ("*BOUNDARY_SPC_", self.supports.append))
+    # ---- what cards say ---------------------------------------------------------------------------------------------
 
-    def take_part(self, card: Card) -> None:
-        """Take parts, two rows each; *PART_CONTACT has a third."""
-        step = 3 if card.keyword == "*PART_CONTACT" else 2
-        for i in range(0, len(card.rows) - 1, step):
-            row = card.rows[i + 1]
-            number = row.label(0)
-            if number in self.parts:
-                raise Problem(f"{row.place}: error: a second *PART {number}")
-            self.parts[number] = Part(number, card.rows[i].text.strip(), row.label(1), row.label(2), row.place)
+    def take_title(self, card: Card) -> None:
+        """Take the title."""
+        if card.lines:
+            self.title = " ".join(card.lines[0][1].replace("#", " ").split())[:80]
+        card.ignore()
+
+    def take_end(self, card: Card) -> None:
+        """Take the time at which the process ends."""
+        row = card.optional(0, "ENDTIM ENDCYC DTMIN ENDENG ENDMAS=1E8 NOSOL")
+        self.end_time = row.number("ENDTIM")
+        row.leave("the process ends with its last phase")
+
+    def take_springback(self, card: Card) -> None:
+        """Take that the blank springs back; the nodes and settings of its output are of no use here."""
+        self.springback = True
+        card.ignore()
 
     def take_sections(self, card: Card) -> None:
         """Take sections: of shells two rows each."""
-        step = 1 if card.keyword == "*SECTION_SOLID" else 2
-        for i in range(0, len(card.rows), step):
-            self.sections[card.rows[i].label(0)] = Card(card.keyword, card.rows[i].place, card.rows[i:i + step])
+        rows = card.filled() if card.keyword == "*SECTION_SOLID" else range(0, len(card), 2)
+        for i in rows:
+            number = card.first(i)
+            self.once("*SECTION", self.sections, number, card.place_of(i))
+            self.sections[number] = card, i
+
+    def once(self, kind: str, there: dict, number: int, place: str) -> None:
+        """Raise a Problem at a second definition of a number."""
+        if number in there:
+            first = there[number][0] if isinstance(there[number], tuple) else there[number]
+            raise Problem(f"{place}: error: a second {kind} {number}; the first is at {first.place}")
 
     def take_material(self, card: Card) -> None:
         """Take a material."""
-        if card.keyword.startswith("*MAT_ADD"):
-            self.leave(card, "added behaviour of a material is not available")
-            return
-        self.materials[card.row(0).label(0)] = card
+        number = card.first(0)
+        self.once("*MAT", self.materials, number, card.place)
+        card.leave("no part of this material is the blank or a tool")
+        self.materials[number] = card
 
-    def take_curve(self, card: Card) -> None:
-        """Take a curve."""
-        first, rows = card.row(0), card.rows[1:]
-        if len(rows) < 2:
-            raise Problem(f"{card.place}: error: a curve of {len(rows)} points; expected 2 or more")
-        scale = [first.number(i, 1.0) or 1.0 for i in (2, 3)]
-        shift = [first.number(i) for i in (4, 5)]
-        points = np.array([[scale[i] * (row.number(i, width=LONG) + shift[i]) for i in (0, 1)] for row in rows])
-        wrong = np.flatnonzero(np.diff(points[:, 0]) <= 0)
-        if wrong.size:
-            raise Problem(f"{rows[wrong[0] + 1].place}: error: the abscissae of a curve must increase; "
-                          f"{points[wrong[0] + 1, 0]:g} follows {points[wrong[0], 0]:g}")
-        self.curves[first.label(0)] = Curve(points[:, 0], points[:, 1], [row.place for row in rows])
+    def take_vector(self, card: Card) -> None:
+        """Take vectors."""
+        for i in card.filled():
+            number = card.first(i)
+            self.once("*DEFINE_VECTOR", self.vectors, number, card.place_of(i))
+            self.vectors[number] = card, i
+        card.leave("nothing here uses it")
 
-    def curve(self, number: int, place: str) -> Curve:
-        """Return a curve, of a table that of its lowest rate."""
-        number = self.tables.get(number, number)
-        if number not in self.curves:
-            raise Problem(f"{place}: error: there is no *DEFINE_CURVE {number}")
-        return self.curves[number]
-
-    def take_node_set(self, card: Card) -> None:
-        """Take a node set."""
-        self.node_sets[card.row(0).label(0)] = members(card.rows[1:])
-
-    def take_part_set(self, card: Card) -> None:
-        """Take a part set."""
-        self.part_sets[card.row(0).label(0)] = members(card.rows[1:])
+    def vector(self, number: int, place: str) -> np.ndarray:
+        """Return the unit vector of a *DEFINE_VECTOR."""
+        if number not in self.vectors:
+            raise Problem(f"{place}: error: there is no *DEFINE_VECTOR {number}" + self.unread("*DEFINE_VECTOR"))
+        card, i = self.vectors[number]
+        row = card.row(i, "VID XT YT ZT XH YH ZH CID")
+        row.label("VID")
+        value = np.array(row.numbers("XH YH ZH")) - np.array(row.numbers("XT YT ZT"))
+        if row.label("CID") or not np.linalg.norm(value) > 0:
+            raise Problem(f"{row.place}: error: a *DEFINE_VECTOR in axes of its own, or of no length")
+        return np.asarray(value / np.linalg.norm(value))
 
     def take_master(self, card: Card) -> None:
         """Take rigid bodies that follow another."""
-        for row in filled(card):
-            self.master[row.label(1)] = row.label(0)
-
-    def take_contact(self, card: Card) -> None:
-        """Take a contact between surfaces, or a draw-bead."""
-        if card.keyword.startswith("*CONTACT_DRAWBEAD"):
-            self.beads.append(card)
-        elif "SURFACE_TO_SURFACE" in card.keyword or "NODES_TO_SURFACE" in card.keyword:
-            self.contacts.append(card)
-        else:
-            self.leave(card, "contact of another kind: the sheet does not touch itself here")
+        for i in card.filled():
+            row = card.row(i, "PIDL PIDC IFLAG")
+            self.master[row.label("PIDC")] = row.label("PIDL")
 
     def take_motion(self, card: Card) -> None:
-        """Take prescribed motions of rigid bodies and node sets."""
+        """Take prescribed motions of rigid bodies and node sets; with ID each has a row of its own before it, of some
+        kinds a row behind it."""
         of_set = card.keyword.endswith("_SET")
-        if not of_set and not card.keyword.endswith("_RIGID"):
-            self.leave(card, "motion of nodes, or in axes of its own; that of a rigid part is read")
-            return
-        for row in filled(card):
-            dof, vad = row.label(1), row.label(2)
-            if dof not in (1, 2, 3, 5, 6, 7) or vad not in (0, 2):
-                self.leave(card, f"motion of kind dof = {dof}, vad = {vad}")
+        rows = iter(card.filled())
+        for i in rows:
+            row = card.row(i, MOTION)
+            dof, vad = row.label("DOF"), row.label("VAD")
+            more = [next(rows, None)] if abs(dof) in (9, 10, 11) or vad == 4 else []
+            card.rows |= {k: None for k in (*more, next(rows, None) if "ID" in card.options else None) if k is not None}
+            if dof not in (1, 2, 3, 4, 5, 6, 7, 8) or vad not in (0, 2):
+                row.drop(f"motion of kind DOF = {dof}, VAD = {vad}")
                 continue
-            begins, ends, turns = row.number(7), row.number(6) or np.inf, dof > 3
-            axis, scale = dof - (5 if turns else 1), row.number(4, 1.0) or 1.0
+            direction = (self.vector(row.label("VID"), row.place) if dof in (4, 8)
+                         else np.eye(3)[dof - (5 if dof > 4 else 1)])
             kind = "displacement" if vad == 2 else "velocity"
-            self.drives.append(Drive(row.label(0), axis, kind, row.label(3), scale,
-                                     row.place, begins, ends, of_set, turns))
+            self.drives.append(Drive(row.label("PID"), direction, kind, row.label("LCID"), row.number("SF", 1.0) or 1.0,
+                                     row.place, row.number("BIRTH"), row.number("DEATH") or np.inf, of_set, dof > 4))
 
     def take_force(self, card: Card) -> None:
         """Take forces on rigid bodies and on the nodes of sets."""
-        of_set = card.keyword == "*LOAD_NODE_SET"
-        for row in filled(card):
-            dof, axes = row.label(1), row.label(4)
+        for i in card.filled():
+            row = card.row(i, FORCE)
+            dof, axes = row.label("DOF"), row.label("CID")
             if dof not in (1, 2, 3) or axes:
-                self.leave(card, f"force of kind dof = {dof}" + (f" in the axes {axes}" if axes else ""))
+                row.drop(f"force of kind DOF = {dof}" + (f" in the axes {axes}" if axes else ""))
                 continue
-            scale = row.number(3, 1.0) or 1.0
-            self.drives.append(Drive(row.label(0), dof - 1, "force", row.label(2), scale, row.place, of_set=of_set))
+            self.drives.append(Drive(row.label("PID"), np.eye(3)[dof - 1], "force", row.label("LCID"),
+                                     row.number("SF", 1.0) or 1.0, row.place, of_set=card.keyword == "*LOAD_NODE_SET"))
+
+    def take_gravity(self, card: Card) -> None:
+        """Take an acceleration of the base: the body force acts against it."""
+        row = card.row(0, "LCID SF LCIDDR XC YC ZC CID")
+        row.leave("the relaxation before the start", "LCIDDR")
+        name = card.keyword.rpartition("_")[2]
+        direction = np.eye(3)["XYZ".index(name)] if name in "XYZ" else np.array(
+            card.row(1, "V1 V2 V3").numbers("V1 V2 V3"))
+        if not np.linalg.norm(direction) > 0 or row.label("CID"):
+            raise Problem(f"{row.place}: error: {card.keyword} in axes of its own, or without a direction")
+        self.gravity.append(Gravity(-direction / np.linalg.norm(direction), row.label("LCID"),
+                                    row.number("SF", 1.0) or 1.0, row.place))
+
+    def take_heavy(self, card: Card) -> None:
+        """Take the set of parts on which *LOAD_BODY acts."""
+        self.heavy.append(card.row(0, "PSID"))
+
+    def take_hung(self, card: Card) -> None:
+        """Take nodes that hang on the edge between two others."""
+        self.hung += [(card.place_of(i), [card.whole(i, word) for word in words[:3]]) for i, words in card.words(0)]
+
+    def take_mesh(self, card: Card) -> None:
+        """Leave to the mesh what it reads."""
+
+    # ---- what is asked for ------------------------------------------------------------------------------------------
+
+    def section(self, part: Part, keyword: str, names: tuple[str, ...]) -> list[Row]:
+        """Return the rows of the section of a part."""
+        if part.section not in self.sections or self.sections[part.section][0].keyword != keyword:
+            raise Problem(f"{part.place}: error: part {part.number} has no {keyword} {part.section}"
+                          + self.unread("*SECTION"))
+        card, i = self.sections[part.section]
+        return [card.row(i + k, name) for k, name in enumerate(names)]
+
+    def material(self, part: Part) -> Card:
+        """Return the material of a part."""
+        if part.material not in self.materials:
+            raise Problem(f"{part.place}: error: part {part.number} has no *MAT {part.material}" + self.unread("*MAT"))
+        return self.materials[part.material]
+
+    def node_set(self, number: int, place: str) -> list[int]:
+        """Return the nodes of a set."""
+        return self.of_set("NODE", number, place)
+
+    def of_set(self, kind: str, number: int, place: str) -> list[int]:
+        """Return the labels of a set of a kind."""
+        if not self.sets.has(kind, number):
+            raise self.sets.missing(kind, number, place)
+        return self.sets.get(kind, number)
 
     def of_parts(self, number: int, kind: int, place: str) -> set[int]:
-        """Return the parts of a side of a contact: of kind 2 a set, 3 a part, 5 all."""
+        """Return the parts of a side of a contact: 0 of segments, 1 of shells, 2 a set of parts, 3 a part, 4 of nodes,
+        5 all, 6 all but a set. Of nodes those parts that have an element with all of its nodes in the set."""
         if kind == 2:
-            if number not in self.part_sets:
-                raise Problem(f"{place}: error: there is no *SET_PART {number}")
-            return set(self.part_sets[number])
-        return {number} if kind == 3 else set(self.parts) if kind == 5 or not number else set()
+            return set(self.of_set("PART", number, place))
+        if kind == 3:
+            return {number}
+        if kind == 5 or not number:
+            return set(self.parts)
+        if kind == 6:
+            return set(self.parts) - set(self.of_set("PART", number, place))
+        if kind == 1:
+            shells = set(self.of_set("SHELL", number, place))
+            return {cell.part for cell in self.mesh.cells if cell.dimension == 2 and cell.label in shells}
+        if kind in (0, 4):
+            nodes = set(self.of_set("NODE" if kind else "SEGMENT", number, place))
+            return {cell.part for cell in self.mesh.cells
+                    if sum(label in nodes for label in cell.nodes) >= min(len(cell.nodes), 4 if not kind else 8)}
+        raise Problem(f"{place}: error: a side of a contact of type {kind}; expected 0 to 6")
 
     def pairs(self) -> list[Pair]:
         """Return the contacts."""
         found = []
         for card in self.contacts:
-            row = card.row(0)
-            sides = (self.of_parts(row.label(0), row.label(2), row.place),
-                     self.of_parts(row.label(1), row.label(3), row.place))
-            friction = card.rows[1].number(0) if len(card.rows) > 1 else 0.0
-            if not all(sides):
-                self.leave(card, "sides by segments or nodes: give them by parts")
-            elif not 0 <= friction < 2:
-                raise Problem(f"{card.rows[1].place}: error: a friction of {friction:g}; expected 0 to 2")
+            row, second = card.row(0, CONTACT[0]), card.optional(1, CONTACT[1])
+            row.leave("forces are in history.csv", "SAPR SBPR")
+            sides = (self.of_parts(row.label("SURFA"), row.label("SURFATYP"), row.place),
+                     self.of_parts(row.label("SURFB"), row.label("SURFBTYP"), row.place))
+            friction = second.number("FS")
+            if not 0 <= friction < 2:
+                raise Problem(f"{second.place}: error: a friction of {friction:g}; expected 0 to 2")
+            if second.number("FD") != friction:
+                second.entry.read -= {"FD"}
+            second.leave("friction is that at rest, FS: it does not depend on the velocity", "FD DC")
+            second.leave("a limit of friction is not available", "VC")
+            second.leave("there is no dynamics", "VDC")
+            second.leave(PENALTY, "PENCHK")
+            second.leave(ALWAYS, "BT DT")
+            if not second.number("DT", 1e20) < (self.end_time or 1e19):
+                second.entry.read.add("DT")
             else:
-                found.append(Pair(sides, friction, card.place))
+                second.entry.read.discard("DT")
+            for i, names in enumerate((CONTACT[2], *CONTACT_MORE), 2):
+                if i < len(card):
+                    card.row(i, names).leave(PENALTY)
+            found.append(Pair(sides, friction, card.place))
         return found
 
     def fixes(self) -> list[Fix]:
-        """Return the supports of nodes in the axes of space."""
-        found = []
+        """Return the supports of nodes in the axes of space, those by *NODE too."""
+        by_axes: dict[tuple[str, str], set[int]] = {}
+        for label in self.mesh.held.keys() | self.mesh.turns.keys():
+            turns = ("", "x", "y", "z", "xy", "yz", "xz", "xyz")[self.mesh.turns.get(label, 0)]
+            by_axes.setdefault((self.mesh.held.get(label, ""), turns), set()).add(label)
+        found = [Fix(nodes, *axes, f"{self.path}: *NODE") for axes, nodes in sorted(by_axes.items())]
         for card in self.supports:
-            of_set = card.keyword.startswith("*BOUNDARY_SPC_SET")
-            for row in filled(card):
-                number = row.label(0)
-                nodes = self.node_sets.get(number) if of_set else [number]
-                if nodes is None:
-                    raise Problem(f"{row.place}: error: there is no *SET_NODE {number}")
-                if row.label(1):
-                    self.leave(card, "a support in axes of its own")
+            of_set = card.keyword == "*BOUNDARY_SPC_SET"
+            rows = card.filled()
+            for i in rows[::2] if "ID" in card.options else rows:
+                row = card.row(i, "NSID CID DOFX DOFY DOFZ DOFRX DOFRY DOFRZ")
+                number = row.label("NSID")
+                if row.label("CID"):
+                    row.drop("a support in axes of its own")
                     continue
-                axes = "".join(axis for i, axis in enumerate("xyz", 2) if row.number(i))
-                if axes:
-                    found.append(Fix(set(nodes), axes, row.place))
+                nodes = self.node_set(number, row.place) if of_set else [number]
+                axes, turns = ("".join(axis for axis in "xyz" if row.number(f"{name}{axis.upper()}"))
+                               for name in ("DOF", "DOFR"))
+                found.append(Fix(set(nodes), axes, turns, row.place))
         return found
 
     def lines_of_beads(self) -> list[Bead]:
         """Return the draw-beads whose lines are node sets."""
         found = []
         for card in self.beads:
-            row = card.row(0)
-            nodes = self.node_sets.get(row.label(0)) if row.label(2) == 4 else None
-            if not nodes or len(card.rows) < 4:
-                self.leave(card, "a draw-bead that is not a set of nodes with a load curve: *DRAWBEAD")
+            row = card.row(0, CONTACT[0])
+            if row.label("SURFATYP") != 4 or len(card) < 4:
+                row.drop("a draw-bead that is not a set of nodes with a load curve: *DRAWBEAD")
                 continue
-            last = card.rows[3]
-            found.append(Bead(nodes, last.label(0), last.number(3, 1.0) or 1.0, card.place))
+            row.number("SURFB"), row.number("SURFBTYP")
+            nodes = self.node_set(row.label("SURFA"), row.place)
+            for i, names in ((1, CONTACT[1]), (2, CONTACT[2])):
+                card.row(i, names).leave("only the restraining and the normal force of a bead are taken")
+            last = card.row(3, BEAD)
+            last.leave("the bead has its full force from the start", "DBDTH")
+            last.leave("the bead is divided by the elements", "NUMINT")
+            curve = last.label("LCIDRF")
+            if curve < 0:
+                raise Problem(f"{last.place}: error: LCIDRF = {curve}: a force that varies along the bead is not "
+                              "available; divide the bead")
+            found.append(Bead(nodes, curve, last.number("DFSCL", 1.0) or 1.0, abs(last.label("LCIDNF")), card.place))
         return found
 
 
-def filled(card: Card) -> list[Row]:
-    """Return the rows of a card that are not empty."""
-    return [row for row in card.rows if row.text.strip()]
-
-
-def members(rows: list[Row]) -> list[int]:
-    """Return the labels in rows of a set."""
-    return [row.label(i) for row in rows for i, word in enumerate(row.words()) if word and row.label(i)]
+KNOWN: dict[str, Callable[[Deck, Card], None]] = {
+    "*TITLE": Deck.take_title, "*CONTROL_TERMINATION": Deck.take_end, "*KEYWORD": lambda deck, card: card.ignore(),
+    "*COMMENT": lambda deck, card: card.ignore(), "*NODE": Deck.take_mesh, "*PART_MOVE": Deck.take_mesh,
+    "*SECTION_SHELL": Deck.take_sections, "*SECTION_SOLID": Deck.take_sections, "*SECTION_TSHELL": Deck.take_sections,
+    "*DEFINE_VECTOR": Deck.take_vector, "*CONSTRAINED_RIGID_BODIES": Deck.take_master,
+    "*CONSTRAINED_ADAPTIVITY": Deck.take_hung,
+    "*BOUNDARY_PRESCRIBED_MOTION_RIGID": Deck.take_motion, "*BOUNDARY_PRESCRIBED_MOTION_SET": Deck.take_motion,
+    "*LOAD_RIGID_BODY": Deck.take_force, "*LOAD_NODE_SET": Deck.take_force,
+    "*LOAD_BODY_X": Deck.take_gravity, "*LOAD_BODY_Y": Deck.take_gravity, "*LOAD_BODY_Z": Deck.take_gravity,
+    "*LOAD_BODY_VECTOR": Deck.take_gravity, "*LOAD_BODY_PARTS": Deck.take_heavy,
+    "*BOUNDARY_SPC_NODE": lambda deck, card: deck.supports.append(card),
+    "*BOUNDARY_SPC_SET": lambda deck, card: deck.supports.append(card),
+    "*CONTACT_DRAWBEAD": lambda deck, card: deck.beads.append(card)}
+BEGINNINGS: tuple[tuple[str, Callable[[Deck, Card], None]], ...] = (
+    ("*INTERFACE_SPRINGBACK", Deck.take_springback),
+    (AUTO, Deck.take_mesh))

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials of LS-DYNA as laws of *MATERIAL."""
+"""Materials of LS-DYNA as laws of *MATERIAL (fields: LS-DYNA Keyword User's Manual, Vol. II)."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from dd3.dyna.cards import Card
+from dd3.dyna.cards import Card, Row
 from dd3.dyna.deck import Deck
+from dd3.dyna.planar import barlat89_at, yld2000_at
 from dd3.errors import Problem
 
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
@@ -17,6 +18,27 @@ NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 3
 READ = "003, 018, 024, 036, 037, 122, 133"
 # Units by Young's modulus of a metal: its range, the factors on lengths and on stresses, mm and MPa here.
 UNITS = {"mm MPa": (3e4, 4.5e5, 1.0, 1.0), "mm GPa": (30.0, 450.0, 1.0, 1e3), "m Pa": (3e10, 4.5e11, 1e3, 1e-6)}
+ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
+        18: ("MID RO E PR K N SRC SRP", "SIGY EPSF VP"),
+        20: ("MID RO E PR N COUPLE M ALIAS", "CMO CON1 CON2 SPCNID XSPC YSPC ZSPC", "LCO A2 A3 V1 V2 V3 BNDLCO"),
+        24: ("MID RO E PR SIGY ETAN FAIL TDEL", "C P LCSS LCSR VP unused RFILTF",
+             "EPS1 EPS2 EPS3 EPS4 EPS5 EPS6 EPS7 EPS8", "ES1 ES2 ES3 ES4 ES5 ES6 ES7 ES8"),
+        36: ("MID RO E PR HR P1 P2 ITER", "M R00 R45 R90 LCID E0 SPI P3"),
+        37: ("MID RO E PR SIGY ETAN R HLCID", "unused1 unused2 unused3 ICFLD unused5 STRAINLT"),
+        122: ("MID RO E PR HR P1 P2", "R00 R45 R90 LCID E0"),
+        133: ("MID RO E PR FIT BETA ITER ISCALE", "K E0 N C P HARD A")}
+CHABOCHE = "CRC1 CRA1 CRC2 CRA2 CRC3 CRA3 CRC4 CRA4"
+AXES = {36: ("AOPT C P VLCID unused PB NLP HTB", "unused1 unused2 unused3 A1 A2 A3 HTC HTD",
+             "V1 V2 V3 D1 D2 D3 BETA HTFLAG"),
+        122: ("AOPT", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
+        133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL")}
+RATES = "the flow stress does not depend on the strain rate here"
+FAILURE = "failure is not available"
+HEAT = "temperatures and heat treatment are not available"
+METAL = 5e-10, 2.5e-8  # densities, t/mm3
+LARGEST_R = 10.0
+SOFT_STRAINS = (0.0, 0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15,
+                0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # of a table that replaces a law
 
 
 @dataclass(frozen=True)
@@ -32,6 +54,21 @@ class Units:
         """The factor on forces."""
         return self.stress * self.length**2
 
+    @property
+    def time(self) -> float:
+        """The factor on times to s: mm and GPa go with kg and ms, the others with s."""
+        return 1e-3 if self.name == "mm GPa" else 1.0
+
+    @property
+    def density(self) -> float:
+        """The factor on densities to t/mm3."""
+        return self.stress * self.time**2 / self.length**2
+
+    @property
+    def acceleration(self) -> float:
+        """The factor on accelerations to mm/s2."""
+        return self.length / self.time**2
+
 
 @dataclass
 class Law:
@@ -42,6 +79,8 @@ class Law:
     criterion: str
     hardening: str
     rolling: tuple[float, ...] | None = None
+    backstresses: list[str] = field(default_factory=list)
+    density: float = 0.0
     notes: list[str] = field(default_factory=list)
 
 
@@ -53,34 +92,64 @@ def number_of(card: Card) -> int:
     return next((number for name, number in NAMES.items() if word == name or word.startswith(f"{name}_")), 0)
 
 
+def row_of(card: Card, i: int) -> Row:
+    """Return a row of the material's own fields, one of defaults at the end of the card."""
+    names = ROWS.get(number_of(card), ("MID RO E PR",))[i]
+    return card.row(i, names) if not i else card.optional(i, names)
+
+
 def units_of(card: Card, wanted: str | None) -> Units:
     """Return the units of a deck, by Young's modulus of the blank if they are not given."""
-    young = card.row(0).number(2)
+    row = row_of(card, 0)
+    young = row.number("E")
     if wanted:
         return Units(wanted, *UNITS[wanted][2:])
     for name, (low, high, length, stress) in UNITS.items():
         if low <= young <= high:
             return Units(name, length, stress)
-    raise Problem(f"{card.row(0).place}: error: Young's modulus {young:g} tells no units; expected a metal in "
+    raise Problem(f"{row.place}: error: Young's modulus {young:g} tells no units; expected a metal in "
                   f"{', '.join(UNITS)}; --units gives them")
 
 
 def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     """Return the laws of a material; `axes` are the first edge and the normal of the blank's first element."""
-    number, first = number_of(card), card.row(0)
-    readers = {3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 122: hill, 133: yld2000}
+    number = number_of(card)
+    readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
+        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 122: hill, 133: yld2000}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
                       + READ)
-    young, poisson = first.number(2) * units.stress, first.number(3)
+    first = row_of(card, 0)
+    first.number("MID")
+    young, poisson = first.number("E") * units.stress, first.number("PR")
     if not young > 0 or not -1 < poisson < 0.5:
         raise Problem(f"{first.place}: error: E = {young:g} MPa, PR = {poisson:g}; expected E > 0, -1 < PR < 0.5")
     law = Law(young, poisson, "von_mises", "")
-    readers[number](deck, card, units, law)
-    if number in (36, 122, 133):
-        at = 2 if number != 133 else 4 if first.number(4) else 3  # the row of AOPT
+    law.density = density(first.number("RO"), units, law, first.place)
+    at = readers[number](deck, card, units, law)
+    if at:
         law.rolling = rolling(card, at, axes, law)
     return law
+
+
+def density(value: float, units: Units, law: Law, place: str) -> float:
+    """Return a density in t/mm3."""
+    value *= units.density
+    if value and not METAL[0] <= value <= METAL[1]:
+        law.notes.append(f"{place}: RO is {value:.3g} t/mm3 in the units {units.name}, that of a metal is {METAL[0]:g} "
+                         f"to {METAL[1]:g}: mass scaling, or another unit of time or mass; gravity takes it as it is")
+    return max(value, 0.0)
+
+
+def use_rigid(card: Card) -> None:
+    """Take the material of a tool: only that it is rigid tells."""
+    for i, names in enumerate(ROWS[20][:len(card)]):
+        row = card.row(i, names)
+        if i == 0:
+            row.numbers("MID RO E PR")
+        elif i == 1 and row.number("CMO") >= 0:
+            row.numbers("CMO CON1 CON2")  # a tool moves only as it is told
+        row.leave("a tool moves as its motions and forces say" if i else "a tool is rigid")
 
 
 def positive(value: float, name: str, place: str) -> float:
@@ -95,13 +164,17 @@ def hill48(r: Sequence[float]) -> str:
     return "hill48 " + " ".join(f"r{angle}={value:.6g}" for angle, value in zip((0, 45, 90), r))
 
 
-def linear(units: Units, law: Law, stress: float, tangent: float, place: str) -> str:
-    """Return linear hardening by yield stress and tangent modulus, in units of the deck."""
+def linear(units: Units, law: Law, stress: float, tangent: float, place: str, part: float = 1.0) -> str:
+    """Return linear hardening, a part of it, by yield stress and tangent modulus, in units of the deck."""
     stress = positive(stress, "yield stress", place) * units.stress
-    tangent *= units.stress
-    if not 0 <= tangent < law.young:
-        raise Problem(f"{place}: error: a tangent modulus of {tangent:g} MPa; expected 0 to Young's modulus")
-    return f"linear Y0={stress:.8g} H={law.young * tangent / (law.young - tangent):.8g}"
+    if not 0 <= tangent * units.stress < law.young:
+        raise Problem(f"{place}: error: a tangent modulus of {tangent * units.stress:g} MPa; expected 0 to E")
+    return f"linear Y0={stress:.8g} H={part * slope(units, law, tangent):.8g}"
+
+
+def slope(units: Units, law: Law, tangent: float) -> float:
+    """Return the slope of the flow stress over the plastic strain by a tangent modulus."""
+    return law.young * tangent * units.stress / (law.young - tangent * units.stress)
 
 
 def swift(units: Units, law: Law, values: tuple[float, float, float], place: str) -> str:
@@ -114,9 +187,9 @@ def swift(units: Units, law: Law, values: tuple[float, float, float], place: str
 
 def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str:
     """Return hardening by points of plastic strain and flow stress."""
-    if number in deck.tables:
+    if number in deck.curves.tables:
         law.notes.append("hardening: the curve of the lowest strain rate; rates are not available")
-    curve = deck.curve(number, place)
+    curve = deck.curves.get(number, place)
     strain, stress = curve.x.copy(), curve.y * units.stress
     for i in range(len(strain)):
         if strain[i] < 0:
@@ -132,22 +205,30 @@ def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
     return "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
 
 
-def bilinear(deck: Deck, card: Card, units: Units, law: Law) -> None:
-    """*MAT_003: linear hardening, isotropic by its part beta."""
-    row = card.row(0)
-    law.hardening = linear(units, law, row.number(4), row.number(5), row.place)
-    beta = row.number(6)
-    if beta < 1 and row.number(5) > 0:
-        law.notes.append(f"hardening: isotropic for BETA = {beta:g}; kinematic hardening: `backstress`")
+def bilinear(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_003: linear hardening, its part BETA isotropic, the rest kinematic."""
+    row, second = row_of(card, 0), row_of(card, 1)
+    beta = row.number("BETA")
+    if not 0 <= beta <= 1:
+        raise Problem(f"{row.place}: error: BETA = {beta:g}; expected 0 to 1")
+    law.hardening = linear(units, law, row.number("SIGY"), row.number("ETAN"), row.place, beta)
+    if beta < 1 and row.number("ETAN") > 0:
+        law.backstresses = [f"prager k={(1 - beta) * slope(units, law, row.number('ETAN')):.8g}"]
+    second.leave(RATES, "SRC SRP VP")
+    second.leave(FAILURE, "FS")
+    return 0
 
 
-def power_law(deck: Deck, card: Card, units: Units, law: Law) -> None:
+def power_law(deck: Deck, card: Card, units: Units, law: Law) -> int:
     """*MAT_018: K (e0 + p)^n."""
-    row = card.row(0)
-    factor, exponent = positive(row.number(4), "K", row.place), positive(row.number(5), "N", row.place)
-    start = card.rows[1].number(0) if len(card.rows) > 1 else 0.0
-    start = first_strain(start, factor, exponent, law.young / units.stress)
+    row, second = row_of(card, 0), row_of(card, 1)
+    factor, exponent = positive(row.number("K"), "K", row.place), positive(row.number("N"), "N", row.place)
+    start = first_strain(second.number("SIGY"), factor, exponent, law.young / units.stress)
     law.hardening = swift(units, law, (factor, exponent, start), row.place)
+    row.leave(RATES, "SRC SRP")
+    second.leave(FAILURE, "EPSF")
+    second.leave(RATES, "VP")
+    return 0
 
 
 def first_strain(start: float, factor: float, exponent: float, young: float) -> float:
@@ -158,87 +239,169 @@ def first_strain(start: float, factor: float, exponent: float, young: float) -> 
     return start or float((young / factor) ** (1 / (exponent - 1)) if exponent < 1 else 1e-3)
 
 
-def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> None:
+def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
     """*MAT_024: a curve, eight points, or yield stress and tangent modulus."""
-    row = card.row(0)
-    second = card.rows[1] if len(card.rows) > 1 else None
-    if second and second.number(0):
-        law.notes.append("rates of strain (C, P) are not available")
-    if second and second.number(2):
-        law.hardening = by_curve(deck, second.label(2), units, law, second.place)
-    elif len(card.rows) > 3 and any(card.rows[3].number(i) for i in range(8)):
-        points = [(card.rows[2].number(i), card.rows[3].number(i) * units.stress) for i in range(8)
-                  if card.rows[3].number(i)]
-        law.hardening = "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in sorted(points))
+    row, second, strains, stresses = (row_of(card, i) for i in range(4))
+    row.leave(FAILURE, "FAIL TDEL")
+    second.leave(RATES, "C P LCSR VP RFILTF")
+    curve = second.label("LCSS")
+    at = [(p, y) for k in range(1, 9) if (y := stresses.number(f"ES{k}"))
+          for p in (strains.number(f"EPS{k}"),)] if not curve else []
+    if curve:
+        law.hardening = by_curve(deck, curve, units, law, second.place)
+        strains.leave("LCSS goes before")
+        stresses.leave("LCSS goes before")
+        row.leave("LCSS goes before", "SIGY ETAN")
+    elif at:
+        row.leave("the points go before", "SIGY ETAN")
+        law.hardening = "table " + " ".join(f"{p:.6g}:{y * units.stress:.6g}" for p, y in sorted(at))
     else:
-        law.hardening = linear(units, law, row.number(4), row.number(5), row.place)
+        law.hardening = linear(units, law, row.number("SIGY"), row.number("ETAN"), row.place)
+    return 0
 
 
-def transverse(deck: Deck, card: Card, units: Units, law: Law) -> None:
+def transverse(deck: Deck, card: Card, units: Units, law: Law) -> int:
     """*MAT_037: Hill's criterion with one r-value."""
-    row = card.row(0)
-    r = abs(row.number(6, 1.0)) or 1.0
+    row, second = row_of(card, 0), row_of(card, 1)
+    r = abs(row.number("R", 1.0)) or 1.0
     law.criterion = hill48((r, r, r))
-    number = int(abs(row.number(7)))
+    number = int(abs(row.number("HLCID")))
+    if number:
+        row.leave("HLCID goes before", "SIGY ETAN")
     law.hardening = by_curve(deck, number, units, law, row.place) if number else linear(
-        units, law, row.number(4), row.number(5), row.place)
+        units, law, row.number("SIGY"), row.number("ETAN"), row.place)
+    second.leave("a forming limit curve: dd3 fld --curve", "ICFLD STRAINLT")
+    return 0
 
 
-def r_values(card: Card, at: int, first: int) -> tuple[float, float, float]:
-    """Return the r-values in a row from a field on."""
-    row = card.row(at)
-    r00, r45, r90 = (positive(row.number(first + i), f"r-value {name}", row.place)
-                     for i, name in enumerate(("00", "45", "90")))
-    return r00, r45, r90
+def r_values(row: Row) -> tuple[float, float, float]:
+    """Return the r-values in a row."""
+    found = []
+    for name in ("R00", "R45", "R90"):
+        value = row.number(name)
+        if value < 0:
+            raise Problem(f"{row.place}: error: {name} = {value:g} is a curve of r-values, which is not read; "
+                          "expected a number > 0")
+        if positive(value, name, row.place) > LARGEST_R:
+            raise Problem(f"{row.place}: error: {name} = {value:g}; expected an r-value up to {LARGEST_R:g}, "
+                          "not in per cent")
+        found.append(value)
+    return found[0], found[1], found[2]
 
 
-def by_rule(deck: Deck, card: Card, units: Units, law: Law, curve_at: int) -> str:
+def by_rule(deck: Deck, card: Card, units: Units, law: Law) -> str:
     """Return the hardening of *MAT_036 and 122: by HR = 1 linear, 2 Swift, 3 a curve."""
-    row, second = card.row(0), card.row(1)
-    rule = row.label(4)
+    row, second = row_of(card, 0), row_of(card, 1)
+    rule = row.label("HR")
     if rule == 3:
-        return by_curve(deck, abs(second.label(curve_at)), units, law, second.place)
+        row.leave("HR = 3 takes the curve", "P1 P2")
+        second.leave("HR = 3 takes the curve", "E0 SPI")
+        return by_curve(deck, abs(second.label("LCID")), units, law, second.place)
+    second.leave(f"HR = {rule} takes no curve", "LCID")
     if rule == 2:
-        factor, exponent = (positive(row.number(i), name, row.place) for i, name in ((5, "K"), (6, "n")))
-        start = second.number(curve_at + 1)
+        factor, exponent = positive(row.number("P1"), "K", row.place), positive(row.number("P2"), "n", row.place)
+        start = second.number("E0")
         if not start:
-            given = second.number(curve_at + 2) if curve_at == 4 else 0.0
+            given = second.number("SPI") if "SPI" in second.names else 0.0
             start = first_strain(given, factor, exponent, law.young / units.stress)
         return swift(units, law, (factor, exponent, start), row.place)
     if rule in (0, 1):
-        return linear(units, law, row.number(6), row.number(5), row.place)
+        return linear(units, law, row.number("P2"), row.number("P1"), row.place)
     raise Problem(f"{row.place}: error: the hardening rule HR = {rule} is not read; expected 1, 2 or 3")
 
 
-def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> None:
-    """*MAT_036: Barlat and Lian (1989) of exponent m; of m = 2 it is Hill's criterion in plane stress."""
-    r = r_values(card, 1, 1)
-    law.criterion = hill48(r)
-    exponent = card.row(1).number(0)
-    if abs(exponent - 2) > 1e-6:
-        law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
-                         f"{exponent:g}; nearer: dd3 identify blank --criterion yld91 --fix m={exponent:g} --r "
-                         f"0:{r[0]:g} 45:{r[1]:g} 90:{r[2]:g}")
-    law.hardening = by_rule(deck, card, units, law, 4)
-
-
-def hill(deck: Deck, card: Card, units: Units, law: Law) -> None:
-    """*MAT_122: Hill (1948) by r-values."""
-    r = r_values(card, 1, 0)
-    law.criterion = hill48(r)
-    law.hardening = by_rule(deck, card, units, law, 3)
-
-
-def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> None:
-    """*MAT_133: Barlat et al. (2003), Yld2000-2d; hill48 with its r-values."""
-    first, second, third = card.row(0), card.row(1), card.row(2)
-    exponent = second.number(6) or 8.0
-    if first.number(4):
-        r = [positive(third.number(i), "r-value", third.place) for i in (3, 4, 5)]
-        stress = [third.number(i) for i in (0, 1, 2)]
-        stress = [value / stress[0] for value in stress] if all(value > 0 for value in stress) else []
+def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_036: Barlat and Lian (1989) of exponent m, by r-values or, with PB, by a, c, h and p; of m = 2 it is Hill's
+    criterion in plane stress. M < 0: back-stresses of Chaboche in a further row."""
+    row_of(card, 0).leave("the stress is integrated in another way", "ITER")
+    second = row_of(card, 1)
+    exponent = second.number("M")
+    at = 3 if exponent < 0 else 2
+    third = card.optional(at, AXES[36][0])
+    pb = third.number("PB")
+    third.leave(RATES, "C P")
+    third.leave("a forming limit curve: dd3 fld --curve", "NLP")
+    for i, names in ((0, "HTB"), (1, "HTC HTD"), (2, "HTFLAG")):
+        card.optional(at + i, AXES[36][i]).leave(HEAT, names)
+    second.leave("used by hardening rules that are not read", "P3")
+    if pb > 0:
+        a, c, h = second.numbers("R00 R45 R90")
+        found = [barlat89_at((a, c, h, pb), abs(exponent), np.radians(angle))[1] for angle in (0, 45, 90)]
+        if not np.all(np.isfinite(found)) or min(found) <= 0:
+            raise Problem(f"{second.place}: error: the coefficients a = {a:g}, c = {c:g}, h = {h:g}, p = {pb:g} of "
+                          "Barlat and Lian give no positive r-values")
+        r = (found[0], found[1], found[2])
     else:
-        alpha = np.array([third.number(i) for i in range(8)])
+        r = r_values(second)
+    law.criterion = hill48(r)
+    if abs(abs(exponent) - 2) > 1e-6:
+        law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
+                         f"{abs(exponent):g}; nearer: dd3 identify blank --criterion yld91 --fix m={abs(exponent):g} "
+                         "--r "
+                         + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r)))
+    law.hardening = by_rule(deck, card, units, law)
+    if exponent < 0:
+        chaboche(card.row(2, CHABOCHE), units, law)
+    return at
+
+
+def chaboche(row: Row, units: Units, law: Law) -> None:
+    """Take the back-stresses of *MAT_036 with M < 0, dX = C (a s/Y - X) dp. The curve of the card is that of tension:
+    the isotropic part is the curve less the sum of a (1 - exp(-C p))."""
+    terms = [(rate, limit * units.stress) for k in "1234"
+             if (limit := row.number(f"CRA{k}")) and (rate := row.number(f"CRC{k}"))]
+    if any(rate <= 0 or limit <= 0 for rate, limit in terms):
+        raise Problem(f"{row.place}: error: a back-stress with a rate or a limit <= 0")
+    law.backstresses = [f"lemaitre_chaboche CX={rate:.8g} Xsat={limit:.8g}" for rate, limit in terms]
+    if not terms:
+        return
+    points = table_of(law.hardening)
+    points = [(p, y - sum(limit * (1 - np.exp(-rate * p)) for rate, limit in terms)) for p, y in points]
+    if min(y for _, y in points) <= 0:
+        raise Problem(f"{row.place}: error: the back-stresses are larger than the flow stress")
+    law.hardening = "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in points)
+    law.notes.append("hardening: the curve less the back-stresses in tension, as the sum of both is that of the deck")
+
+
+def table_of(law: str) -> list[tuple[float, float]]:
+    """Return points of a hardening law, dense at small strains."""
+    name, *words = law.split()
+    if name == "table":
+        p, y = np.array([[float(value) for value in word.split(":")] for word in words]).T
+        strains = np.unique([*p, *(strain for strain in SOFT_STRAINS if strain <= p[-1])])
+        return list(zip(strains.tolist(), np.interp(strains, p, y).tolist()))
+    value = {key: float(number) for key, number in (word.split("=") for word in words)}
+    if name == "swift":
+        return [(p, value["K"] * (value["e0"] + p)**value["n"]) for p in SOFT_STRAINS]
+    return [(p, value["Y0"] + value["H"] * p) for p in SOFT_STRAINS]
+
+
+def hill(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_122: Hill (1948) by r-values."""
+    law.criterion = hill48(r_values(row_of(card, 1)))
+    law.hardening = by_rule(deck, card, units, law)
+    return 2
+
+
+def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_133: Barlat et al. (2003), Yld2000-2d; hill48 with its r-values."""
+    first, second = row_of(card, 0), row_of(card, 1)
+    exponent, at = second.number("A") or 8.0, 2
+    first.leave("the stress is integrated in another way", "ITER")
+    second.leave(RATES, "C P")
+    if exponent < 0:
+        at, exponent = 3, -exponent
+        card.row(2, CHABOCHE).leave("back-stresses of this material are not taken over")
+    if first.number("FIT"):
+        third = card.row(at, "SIG00 SIG45 SIG90 R00 R45 R90")
+        r = list(r_values(third))
+        stress = third.numbers("SIG00 SIG45 SIG90")
+        stress = [value / stress[0] for value in stress] if all(value > 0 for value in stress) else []
+        card.optional(at + 1, "SIGXX SIGYY SIGXY DXX DYY DXY").leave("biaxial tension does not enter hill48")
+        at += 1
+    else:
+        third = card.row(at, "ALPHA1 ALPHA2 ALPHA3 ALPHA4 ALPHA5 ALPHA6 ALPHA7 ALPHA8")
+        alpha = np.array([third.number(f"ALPHA{k}") for k in range(1, 9)])
         if not np.any(alpha):
             raise Problem(f"{third.place}: error: all coefficients of Yld2000 are 0")
         found = [yld2000_at(alpha, exponent, np.radians(angle)) for angle in (0, 45, 90)]
@@ -251,62 +414,38 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> None:
                      + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r))
                      + (" --stress " + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), stress))
                         if stress else ""))
-    rule = second.label(5)
+    rule = second.label("HARD")
     if rule < 0:
+        second.leave("HARD < 0 takes the curve", "K E0 N")
         law.hardening = by_curve(deck, -rule, units, law, second.place)
     elif rule in (0, 1):
-        law.hardening = swift(units, law, (second.number(0), second.number(2), second.number(1)), second.place)
+        law.hardening = swift(units, law, (second.number("K"), second.number("N"), second.number("E0")), second.place)
     else:
         raise Problem(f"{second.place}: error: the hardening rule HARD = {rule} is not read; expected 1, or the "
                       "negative number of a curve")
-
-
-def yld2000_at(alpha: np.ndarray, exponent: float, angle: float) -> tuple[float, float]:
-    """Return yield stress over flow stress and r-value of Yld2000-2d in tension at an angle to rolling.
-
-    Source: Barlat et al., Int. J. Plasticity 19 (2003) 1297-1319.
-    """
-    a = alpha
-    first = np.array([[2 * a[0], -a[0], 0], [-a[1], 2 * a[1], 0], [0, 0, 3 * a[6]]]) / 3
-    second = np.array([[8 * a[4] - 2 * a[2] - 2 * a[5] + 2 * a[3], 4 * a[5] - 4 * a[3] - 4 * a[4] + a[2], 0],
-                       [4 * a[2] - 4 * a[4] - 4 * a[3] + a[5], 8 * a[3] - 2 * a[5] - 2 * a[2] + 2 * a[4], 0],
-                       [0, 0, 9 * a[7]]]) / 9
-
-    def principal(x: np.ndarray) -> tuple[float, float]:
-        middle, radius = (x[0] + x[1]) / 2, np.hypot((x[0] - x[1]) / 2, x[2])
-        return middle + radius, middle - radius
-
-    def equivalent(s: np.ndarray) -> float:
-        (x1, x2), (y1, y2) = principal(first @ s), principal(second @ s)
-        return float(((abs(x1 - x2)**exponent + abs(2 * y2 + y1)**exponent + abs(2 * y1 + y2)**exponent) / 2)
-                     ** (1 / exponent))
-
-    c, s = np.cos(angle), np.sin(angle)
-    stress = np.array([c * c, s * s, c * s])
-    step = 1e-6
-    flow = np.array([(equivalent(stress + step * e) - equivalent(stress - step * e)) / (2 * step) for e in np.eye(3)])
-    across = flow[0] * s * s + flow[1] * c * c - flow[2] * s * c
-    return 1 / equivalent(stress), float(across / -(flow[0] + flow[1]))
+    return at + 1
 
 
 def rolling(card: Card, at: int, axes: np.ndarray, law: Law) -> tuple[float, ...] | None:
     """Return the rolling direction by AOPT, in a row of a material; None where it cannot be read."""
-    def numbers(row: int, first: int, count: int) -> np.ndarray:  # rows of defaults at the end of a card may be missing
-        there = row < len(card.rows)
-        return np.array([card.rows[row].number(i) if there else 0.0 for i in range(first, first + count)])
-
-    kind = numbers(at, 0, 1)[0]
+    names = AXES[number_of(card)]
+    first, second, third = (card.optional(at + i, names[i]) for i in range(3))
+    kind = first.number("AOPT")
+    angle = np.radians(first.number("OFFANG") if "OFFANG" in first.names else
+                       third.number("BETA") if kind in (0, 3) else 0.0)
     edge, normal = axes
+    third.leave("only the rolling direction is taken", "D1 D2 D3")
     if kind == 2:
-        vector = numbers(at + 1, 3, 3)
-    elif kind == 3:
-        vector, turn = np.cross(numbers(at + 2, 0, 3), normal), np.radians(numbers(at + 2, 6, 1)[0])
-        vector = np.cos(turn) * vector + np.sin(turn) * np.cross(normal, vector)
-    elif kind == 0:
-        vector = edge
-        law.notes.append("rolling direction: AOPT = 0, along the first edge of the blank's first element")
+        vector = np.array(second.numbers("A1 A2 A3"))
+    elif kind in (0, 3):
+        vector = edge if kind == 0 else np.cross(third.numbers("V1 V2 V3"), normal)
+        vector = np.cos(angle) * vector + np.sin(angle) * np.cross(normal, vector)
+        if kind == 0:
+            law.notes.append("rolling direction: AOPT = 0, along the first edge of the blank's first element"
+                             + (f", turned by {np.degrees(angle):g} degrees" if angle else ""))
     else:
         vector = np.zeros(3)
+    vector = vector - (vector @ normal) * normal
     if np.linalg.norm(vector) < 1e-12:
         law.notes.append(f"rolling direction: AOPT = {kind:g} is not read, or its vector is 0; it is along x")
         return None

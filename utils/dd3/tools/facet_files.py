@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of facets: STL, Gmsh, Abaqus, LS-DYNA and VTK files as nodes and triangles or quadrilaterals."""
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from dd3.account import Account
+from dd3.dyna.cards import Reader
+from dd3.dyna.positions import placed_mesh
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.inp.model import Model
@@ -242,104 +243,17 @@ def corners_and_dimension(label: int, element: Element) -> tuple[list[int], int]
     return element.counted(label, count)[:corners], 2 if shell else 3
 
 
-def dyna_lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
-    """Yield the lines of a keyword file and of those that it includes, as (place, text), empty ones too: a card of
-    defaults may be empty."""
-    if depth > 10:
-        raise Problem(f"{path}: includes nest too deeply")
-    if depth and not path.is_file():
-        raise Problem(f"{path}: no such included file")
-    include = False
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
-        if line.startswith("$") or (include and not line.strip()):
-            continue
-        if line.startswith("*"):
-            include = line.strip().upper() == "*INCLUDE"
-        elif include:
-            yield from dyna_lines(path.parent / line.strip(), depth + 1)
-            continue
-        if line.upper().startswith("*END"):
-            return
-        yield f"{path}:{number}", line
-
-
-def fields(line: str, widths: list[int], count: int) -> list[str]:
-    """Return the words of a line of fixed columns, or separated by commas."""
-    if "," in line:
-        return [word.strip() for word in line.split(",")][:count]
-    ends = np.cumsum([0, *widths])
-    return [line[a:b].strip() for a, b in pairwise(ends)][:count]
-
-
 def read_dyna(path: Path) -> Facets:
     """Read the shells and solids of an LS-DYNA keyword file; parts are those of *PART."""
-    nodes, cells, titles = dyna_mesh(path)
-    result = from_cells(path, nodes, cells)
+    reader = Reader(path)
+    mesh, notes = placed_mesh(reader)
+    notes += [f"left out: {card.place}: {card.keyword}: not read" for card in reader.cards
+              if card.keyword.startswith(("*ELEMENT", "*NODE")) and not card.entry.used]
+    result = from_cells(path, mesh.nodes, [(cell.part, cell.dimension, cell.nodes) for cell in mesh.cells])
+    titles = {number: part.title for number, part in mesh.parts.items()}
     result.names = [f"{number} {titles[number]}" if titles.get(number) else str(number) for number in result.names]
+    result.notes += notes
     return result
-
-
-DynaCell = tuple[int, int, tuple[int, ...]]  # part, dimension and nodes
-
-
-def dyna_mesh(path: Path) -> tuple[dict[int, tuple[float, ...]], list[DynaCell], dict[int, str]]:
-    """Return the nodes of an LS-DYNA keyword file, its cells, and the titles of the parts."""
-    nodes: dict[int, tuple[float, ...]] = {}
-    cells: list[DynaCell] = []
-    titles: dict[int, str] = {}
-    keyword, options, row, title = "", "", 0, ""
-    wide, part = False, None
-    for place, line in dyna_lines(path):
-        if line.startswith("*"):
-            keyword, _, tail = line.strip().upper().partition(" ")
-            wide = wide or (keyword == "*KEYWORD" and "LONG=Y" in tail.replace(" ", ""))
-            keyword, plus, options = keyword.rstrip("+-"), keyword.endswith("+") or tail.strip() == "+", keyword
-            long, row, part = wide or plus, 0, None
-            continue
-        if not line.strip() and (keyword != "*PART" or row % 2):
-            continue
-        row += 1
-        try:
-            if keyword == "*NODE":
-                words = fields(line, [20] * 4 if long else [8, 16, 16, 16], 4)
-                nodes[int(words[0])] = tuple(float(word or 0) for word in [*words[1:], "", "", ""][:3])
-            elif keyword.startswith("*ELEMENT_SHELL"):
-                # Options such as THICKNESS or BETA give each element further lines.
-                lines = 1 + sum(name in options for name in ("THICKNESS", "BETA", "MCID", "OFFSET", "DOF"))
-                if (row - 1) % max(1, min(lines, 2)) == 0:
-                    labels = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
-                    if len(labels) < 5:
-                        raise ValueError
-                    cells.append((labels[1], 2, corners_of(labels[2:6])))
-            elif keyword.startswith(("*ELEMENT_SOLID", "*ELEMENT_TSHELL")):
-                labels = [int(word) for word in fields(line, [20 if long else 8] * 10, 10) if word]
-                if len(labels) == 2:  # the nodes are on the next line
-                    part, row = labels[1], 0
-                elif row == 1 and part is not None:
-                    cells.append((part, 3, solid_of(labels)))
-                else:
-                    cells.append((labels[1], 3, solid_of(labels[2:])))
-            elif keyword == "*PART":
-                if row % 2 == 1:
-                    title = line.strip()
-                else:
-                    titles[int(fields(line, [20 if long else 10], 1)[0])] = title
-        except (ValueError, IndexError):
-            raise Problem(f"{place}: error: a line of {keyword} cannot be read: '{line.strip()}'") from None
-    return nodes, [(name, dim, members) for name, dim, members in cells if dim == 2 or len(members) in SOLIDS], titles
-
-
-def solid_of(labels: list[int]) -> tuple[int, ...]:
-    """Return the corners of a solid of LS-DYNA, a hexahedron whose other shapes repeat nodes."""
-    corners = tuple(dict.fromkeys(label for label in labels[:8] if label > 0))
-    if len(corners) == 6 and labels[4] == labels[5]:  # a wedge whose triangles are the faces 1 2 5 and 4 3 6
-        corners = tuple(corners[k] for k in (0, 1, 4, 3, 2, 5))
-    return corners
-
-
-def corners_of(labels: list[int]) -> tuple[int, ...]:
-    """Return the corners of a shell: a triangle repeats its last node, or has 0."""
-    return tuple(label for label in dict.fromkeys(labels) if label > 0)
 
 
 def read_msh(path: Path) -> Facets:
