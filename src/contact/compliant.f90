@@ -25,7 +25,7 @@ module dd3_contact_compliant
       status_slip, status_stick, traction_t
   implicit none
   private
-  public :: layer_t, new_layer, layer_gap, gap_under_force, layer_energy, compliant_operator, &
+  public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, layer_energy, compliant_operator, &
       rotated
 
   !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is
@@ -57,6 +57,15 @@ contains
     self%reference_force = reference_pressure*stiffness*thickness
     self%scale = scale_fraction*stiffness
   end function new_layer
+
+  !> Return a layer of a fraction of the area, with the same scale.
+  pure type(layer_t) function fraction_of(layer, fraction) result(self)
+    type(layer_t), intent(in) :: layer
+    real(wp), intent(in) :: fraction
+
+    self = layer
+    self%reference_force = fraction*layer%reference_force
+  end function fraction_of
 
   !> Return the gap under a pressure over the height of the layer.
   pure real(wp) function layer_gap(pressure, young)

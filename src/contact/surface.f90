@@ -8,7 +8,7 @@ module dd3_contact_surface
   use dd3_contact_oriented_box, only : new_oriented_box, oriented_box_t
   implicit none
   private
-  public :: surface_t, edge_t, new_surface, join_patches, edge_parameters, edge_number, coincident
+  public :: surface_t, edge_t, border_edge_t, new_surface, join_patches, edge_parameters, edge_number, coincident
 
   !> Parameters at which two edges are compared.
   real(wp), parameter :: compared(5) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
@@ -48,11 +48,21 @@ module dd3_contact_surface
     real(wp) :: band = 0.0_wp
   end type edge_t
 
+  !> An edge of the border.
+  type :: border_edge_t
+    !> Patch, and number of the edge as in `edge_t`.
+    integer :: patch = 0, edge = 0
+    !> Bounding box of its control points, mm.
+    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
+  end type border_edge_t
+
   !> The surface of a tool.
   type :: surface_t
     type(patch_t), allocatable :: patch(:)
     !> Edges, `edge(4, n_patch)`.
     type(edge_t), allocatable :: edge(:, :)
+    !> Edges without a neighbour, poles excluded.
+    type(border_edge_t), allocatable :: border(:)
     !> Two patches at the place of most edges if the search for neighbours ended early, so that
     !> edges have no neighbour though there is one; 0 otherwise.
     integer :: crowded(2) = 0
@@ -105,6 +115,7 @@ contains
     end do
     call find_neighbours(self)
     call set_bands(self)
+    call set_border(self)
   end subroutine join_patches
 
   !> Return the length of edge k, mm.
@@ -252,5 +263,42 @@ contains
       end do
     end do
   end subroutine set_bands
+
+  !> Set the edges of the border.
+  subroutine set_border(self)
+    type(surface_t), intent(inout) :: self
+
+    real(wp), allocatable :: point(:, :)
+    integer :: i, k, n
+
+    allocate (self%border(count(self%edge%patch == 0 .and. .not. self%edge%pole)))
+    n = 0
+    do i = 1, size(self%patch)
+      do k = 1, 4
+        if (self%edge(k, i)%patch > 0 .or. self%edge(k, i)%pole) cycle
+        point = edge_control(self%patch(i), k)
+        n = n + 1
+        self%border(n) = border_edge_t(i, k, minval(point, dim=2), maxval(point, dim=2))
+      end do
+    end do
+  end subroutine set_border
+
+  !> Return the control points of an edge, mm.
+  pure function edge_control(patch, k) result(point)
+    type(patch_t), intent(in) :: patch
+    integer, intent(in) :: k
+    real(wp), allocatable :: point(:, :)
+
+    select case (k)
+    case (1)
+      point = patch%control(:, 0, :)
+    case (2)
+      point = patch%control(:, patch%degree(1), :)
+    case (3)
+      point = patch%control(:, :, 0)
+    case default
+      point = patch%control(:, :, patch%degree(2))
+    end select
+  end function edge_control
 
 end module dd3_contact_surface

@@ -4,11 +4,12 @@
 module dd3_contact_tool
   use dd3_base_kinds, only : wp
   use dd3_contact_closest, only : border_t, find_contact, hint_t, hit_t
+  use dd3_contact_crossing, only : crossing_t, find_crossing
   use dd3_contact_placement, only : placement_t
   use dd3_contact_surface, only : surface_t
   implicit none
   private
-  public :: tool_t, find_on_tool
+  public :: tool_t, find_on_tool, find_crossing_on_tool
 
   !> A rigid tool; it moves by translation.
   type :: tool_t
@@ -51,5 +52,31 @@ contains
     hit%gap_gradient = placement%vector_to_global(hit%gap_gradient)
     hit%dnormal = placement%tensor_to_global(hit%dnormal)
   end subroutine find_on_tool
+
+  !> Find where an edge of the mesh crosses the border of a tool in its place, as `find_crossing` does
+  !> on its surface.
+  pure subroutine find_crossing_on_tool(tool, placement, ends, outward, border, largest, crossing)
+    type(tool_t), intent(in) :: tool
+    type(placement_t), intent(in) :: placement
+    !> Ends of the edge, mm, and the outward normal of the sheet.
+    real(wp), intent(in) :: ends(3, 2), outward(3)
+    type(border_t), intent(in) :: border
+    !> Largest gap, mm.
+    real(wp), intent(in) :: largest
+    !> Vectors in the global frame.
+    type(crossing_t), intent(out) :: crossing
+
+    call find_crossing(tool%surface, reshape([placement%to_tool(ends(:, 1)), &
+        placement%to_tool(ends(:, 2))], [3, 2]), placement%vector_to_tool(outward), border, &
+        largest, crossing)
+    if (.not. crossing%found) return
+    crossing%normal = placement%vector_to_global(crossing%normal)
+    crossing%by_point = placement%vector_to_global(crossing%by_point)
+    crossing%by_edge = placement%vector_to_global(crossing%by_edge)
+    crossing%weight_by_point = placement%vector_to_global(crossing%weight_by_point)
+    crossing%weight_by_edge = placement%vector_to_global(crossing%weight_by_edge)
+    crossing%dnormal = placement%tensor_to_global(crossing%dnormal)
+    crossing%along = placement%vector_to_global(crossing%along)
+  end subroutine find_crossing_on_tool
 
 end module dd3_contact_tool

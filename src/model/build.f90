@@ -321,7 +321,8 @@ contains
         "elements with eight nodes", "points = 1, or one element through the thickness", &
         code="E148")
     if (errors%count > 0) return
-    call set_contact_points(model, points)
+    call set_contact_points(model, points, &
+        .not. all([(case%phase(i)%contact%mixed, i=1, size(case%phase))]))
     model%tool_digest = [(tool_digest(model, t), t=1, model%n_tool)]
     pressed = .false.
     do i = 1, size(case%phase)

@@ -107,7 +107,7 @@ contains
 
     missing = 0.0_wp
     sums = 0.0_wp
-    do c = 1, model%n_contact
+    do c = 1, model%n_contact_fixed
       if (.not. model%candidate(tool, c)) cycle
       layer = layer_at(model, phase, c)
       hint = hint_t()
@@ -146,7 +146,7 @@ contains
 
     allocate (offset(model%n_contact), source=-1.0_wp)
     if (phase%mixed) return
-    do c = 1, model%n_contact
+    do c = 1, model%n_contact_fixed
       associate (point => model%contact_point(c))
         if (.not. all(any(phase%prescribed(:, point%node(:point%n_surface)), dim=1))) cycle
         layer = layer_at(model, phase, c)

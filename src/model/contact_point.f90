@@ -14,7 +14,7 @@ module dd3_model_contact_point
   use dd3_linalg_tensor, only : identity
   implicit none
   private
-  public :: contact_point_t, most_point_nodes, node_point, edge_point, face_point
+  public :: contact_point_t, most_point_nodes, node_point, edge_point, face_point, crossing_point
 
   !> Largest number of nodes that a point depends on.
   integer, parameter :: most_point_nodes = 8
@@ -31,7 +31,11 @@ module dd3_model_contact_point
     real(wp) :: weight(most_point_nodes/2) = 0.0_wp
     !> s_ab: the column of node a, the node b.
     real(wp) :: slope(most_point_nodes/2, most_point_nodes/2) = 0.0_wp
+    !> Whether it is where an edge of the mesh crosses the border of a tool: its place on the edge
+    !> is part of the state.
+    logical :: moves = .false.
   contains
+    procedure :: at_place
     procedure :: position
     procedure :: gradient
     procedure :: change
@@ -64,6 +68,29 @@ contains
     self%weight(:2) = [1.0_wp - xi, xi]
     call bend_edge(self, 1, 2, xi, 1.0_wp)
   end function edge_point
+
+  !> Make the contact point of an edge of the mesh that may cross the border of a tool. The edge is
+  !> straight.
+  pure type(contact_point_t) function crossing_point(node) result(self)
+    !> Ends of the edge.
+    integer, intent(in) :: node(2)
+
+    self%n_surface = 2
+    self%n_node = 2
+    self%node(:2) = node
+    self%weight(:2) = 0.5_wp
+    self%moves = .true.
+  end function crossing_point
+
+  !> Return the point with its place on the edge, if that moves.
+  pure type(contact_point_t) function at_place(self, place) result(point)
+    class(contact_point_t), intent(in) :: self
+    !> 0 at the first node, 1 at the second.
+    real(wp), intent(in) :: place
+
+    point = self
+    if (self%moves) point%weight(:2) = [1.0_wp - place, place]
+  end function at_place
 
   !> Make a contact point on a face.
   pure type(contact_point_t) function face_point(node, opposite, xi, eta) result(self)

@@ -5,7 +5,8 @@
 !> over the faces, so that a uniform pressure gives the consistent forces on the nodes.
 module dd3_model_contact_points
   use dd3_base_kinds, only : wp
-  use dd3_model_contact_point, only : contact_point_t, edge_point, face_point, node_point
+  use dd3_model_contact_point, only : contact_point_t, crossing_point, edge_point, &
+      face_point, node_point
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
   use dd3_model_part, only : of_points
@@ -13,30 +14,38 @@ module dd3_model_contact_points
   private
   public :: set_contact_points, set_point_owners, keep_own_points, point_areas, nodal_areas
 
+  !> Length over the thickness beyond which an edge of the mesh has contact with borders of its own.
+  !> The nodes of shorter ones follow the rounding of the border, whose radius is half a thickness.
+  real(wp), parameter :: long_edge = 2.0_wp
+
   !> Points of a list, each once.
   type :: point_list_t
     integer :: n = 0
     type(contact_point_t), allocatable :: point(:)
     !> First point of each node as lower end of an edge, and the next one of the same node.
     integer, allocatable :: first(:), next(:)
+    !> Elements of the points that move.
+    integer, allocatable :: element(:)
   end type point_list_t
 
 contains
 
   !> Set the contact faces, whose nodes are all candidates of the same tool, and the contact points
   !> with their areas, stiffnesses and tools.
-  subroutine set_contact_points(model, divisions)
+  subroutine set_contact_points(model, divisions, crossings)
     !> Has the candidates of the tools.
     type(model_t), intent(inout) :: model
     !> Number of parts of an edge of a face with four nodes.
     integer, intent(in) :: divisions
+    !> Whether edges of the mesh touch borders of tools; not by default.
+    logical, intent(in), optional :: crossings
 
     type(point_list_t) :: list
     integer :: i, c, f, most
 
     model%contact_face = pack([(f, f=1, model%face%n)], &
         [(any(all(model%member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
-    most = model%n_node + (divisions - 1)*(divisions + 3)*size(model%contact_face)
+    most = model%n_node + max(4, (divisions - 1)*(divisions + 3))*size(model%contact_face)
     allocate (list%point(most))
     allocate (list%next(most), list%first(model%n_node), source=0)
     allocate (model%candidate_of(model%n_node), source=0)
@@ -52,6 +61,10 @@ contains
     do f = 1, size(model%contact_face)
       call add_face(list, model, model%contact_face(f), divisions, model%face_point(:, f))
     end do
+    model%n_contact_fixed = list%n
+    if (present(crossings)) then
+      if (crossings .and. divisions == 1) call add_crossings(list, model)
+    end if
     model%n_contact = list%n
     model%contact_point = list%point(:list%n)
     model%contact_node = model%contact_point%node(1)
@@ -66,6 +79,9 @@ contains
       associate (element => model%face%element(model%contact_face(f)))
         model%contact_point(model%face_point(:, f))%element = element
       end associate
+    end do
+    do c = model%n_contact_fixed + 1, model%n_contact
+      model%contact_point(c)%element = list%element(c)
     end do
     call set_stiffness(model, point_areas(model, model%x0))
     call set_elements(model)
@@ -106,6 +122,7 @@ contains
       model%face_point(:, c) = number(model%face_point(:, c))
     end do
     model%n_contact_node = count(kept <= model%n_contact_node)
+    model%n_contact_fixed = count(kept <= model%n_contact_fixed)
     model%n_contact = size(kept)
   end subroutine keep_own_points
 
@@ -214,6 +231,37 @@ contains
     end subroutine add_edge
 
   end subroutine add_face
+
+  !> Add the long edges of the contact faces, which may cross the border of a tool.
+  subroutine add_crossings(list, model)
+    type(point_list_t), intent(inout) :: list
+    type(model_t), intent(in) :: model
+
+    integer, parameter :: next(4) = [2, 3, 4, 1]
+    integer :: f, i, p, ends(2)
+
+    allocate (list%element(size(list%point)), source=0)
+    if (size(model%face%node, 1) > 4) return
+    do f = 1, size(model%contact_face)
+      associate (corner => model%face%corner(:, model%contact_face(f)))
+        do i = 1, 4
+          ends = [min(corner(i), corner(next(i))), max(corner(i), corner(next(i)))]
+          p = list%first(ends(1))
+          do while (p > 0)
+            if (list%point(p)%node(2) == ends(2)) exit
+            p = list%next(p)
+          end do
+          if (p > 0) cycle
+          if (norm2(model%x0(:, ends(2)) - model%x0(:, ends(1))) &
+              <= long_edge*model%thickness_at(ends(1))) cycle
+          call add_point(list, crossing_point(ends))
+          list%element(list%n) = model%face%element(model%contact_face(f))
+          list%next(list%n) = list%first(ends(1))
+          list%first(ends(1)) = list%n
+        end do
+      end associate
+    end do
+  end subroutine add_crossings
 
   !> Set the nodes opposite to those of the contact faces, across their elements.
   subroutine set_opposites(model)

@@ -75,7 +75,7 @@ contains
 
     allocate (hit(model%n_contact))
     facing = 0.0_wp
-    do c = 1, model%n_contact
+    do c = 1, model%n_contact_fixed
       if (.not. model%candidate(tool, c)) cycle
       hint = hint_t()
       if (present(outward)) facing = outward(:, c)
@@ -95,7 +95,7 @@ contains
 
     area = nodal_areas(model, state%x)
     pressure = sum(nodal_normals(model, state%x) &
-        *model%nodal_contact_forces(state%x, state%lambda), dim=1)
+        *model%nodal_contact_forces(state%x, state%lambda, state%place), dim=1)
     where (area > 0.0_wp)
       pressure = pressure/max(area, tiny(1.0_wp))
     elsewhere

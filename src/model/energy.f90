@@ -4,9 +4,10 @@ module dd3_model_energy
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_closest, only : hint_t, hit_t
-  use dd3_contact_compliant, only : layer_energy, layer_t
+  use dd3_contact_compliant, only : fraction_of, layer_energy, layer_t
+  use dd3_contact_crossing, only : crossing_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_tool, only : find_on_tool
+  use dd3_contact_tool, only : find_crossing_on_tool, find_on_tool
   use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
   use dd3_model_contact_layer, only : border_at, layer_at
@@ -52,6 +53,8 @@ contains
     type(layer_t) :: layer
     type(hint_t) :: hint
     type(hit_t) :: hit
+    type(crossing_t) :: crossing
+    real(wp), parameter :: no_direction(3) = 0.0_wp
     real(wp) :: energy(1)
     integer :: c
 
@@ -62,6 +65,14 @@ contains
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
       associate (tool => state%contact_tool(c), phase => model%phase(state%phase))
         layer = layer_at(model, phase, c)
+        if (model%contact_point(c)%moves) then
+          call find_crossing_on_tool(model%tool(tool), state%placement(tool), &
+              state%x(:, model%contact_point(c)%node(:2)), no_direction, &
+              border_at(model, phase, c), layer%height, crossing)
+          if (crossing%found) energy = energy + layer_energy(fraction_of(layer, crossing%weight), &
+              -dot_product(crossing%normal, state%lambda(:, c)))
+          cycle
+        end if
         hint = state%hint(tool, c)
         call find_on_tool(model%tool(tool), state%placement(tool), &
             model%contact_point(c)%position(state%x), hint, layer%height, &

@@ -87,6 +87,8 @@ module dd3_model_model
     integer, allocatable :: contact_node(:)
     !> Number of contact points at nodes.
     integer :: n_contact_node = 0
+    !> Number of those that do not move on edges of the mesh, which come first.
+    integer :: n_contact_fixed = 0
     !> Contact point at each node, `(n_node)`; 0 for none on this rank.
     integer, allocatable :: candidate_of(:)
     !> Nodes that can touch each tool, `(n_tool, n_node)`, and the number of contact points that
@@ -155,33 +157,39 @@ contains
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
   !> contact points of all ranks.
-  function nodal_contact_forces(self, x, point_force) result(force)
+  function nodal_contact_forces(self, x, point_force, place) result(force)
     class(model_t), intent(in) :: self
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> `(3, n_contact)`, N.
     real(wp), intent(in) :: point_force(:, :)
+    !> Of the points that move, `(n_contact)`.
+    real(wp), intent(in) :: place(:)
     real(wp) :: force(3, self%n_node)
 
-    force = self%own_contact_forces(x, point_force)
+    force = self%own_contact_forces(x, point_force, place)
     call sum_over_ranks(size(force), force)
   end function nodal_contact_forces
 
   !> Return what the contact points of this rank contribute to the forces on the nodes.
-  pure function own_contact_forces(self, x, point_force) result(force)
+  pure function own_contact_forces(self, x, point_force, place) result(force)
     class(model_t), intent(in) :: self
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> `(3, n_contact)`, N.
     real(wp), intent(in) :: point_force(:, :)
+    !> Of the points that move, `(n_contact)`.
+    real(wp), intent(in) :: place(:)
     real(wp) :: force(3, self%n_node)
 
+    type(contact_point_t) :: point
     integer :: c
 
     force = 0.0_wp
     do c = 1, self%n_contact
       if (all(abs(point_force(:, c)) <= 0.0_wp)) cycle
-      call self%contact_point(c)%add_nodal_forces(x, point_force(:, c), force)
+      point = self%contact_point(c)%at_place(place(c))
+      call point%add_nodal_forces(x, point_force(:, c), force)
     end do
   end function own_contact_forces
 

@@ -91,6 +91,8 @@ module dd3_model_state
     integer, allocatable :: status(:)
     !> Nearest tool of each candidate, `(n_contact)`; 0 for none.
     integer, allocatable :: contact_tool(:)
+    !> Place of each candidate on its edge of the mesh, if that moves, `(n_contact)`.
+    real(wp), allocatable :: place(:)
     !> Last closest point on each tool, `(n_tool, n_contact)`.
     type(hint_t), allocatable :: hint(:, :)
     !> Forces of the nodes on lost constraints that are left, with those that lay a sheet down,
@@ -191,6 +193,7 @@ contains
       allocate (self%fading_tool(model%n_node), source=0)
       allocate (self%hint(n_tool, n_contact))
       allocate (self%slip_path(n_contact), source=0.0_wp)
+      allocate (self%place(n_contact), source=0.5_wp)
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), source=0.0_wp)
       allocate (self%tool_centre(3, n_tool), self%tool_angle(n_tool), source=0.0_wp)
       self%tool_rotation = spread(identity, 3, n_tool)

@@ -83,6 +83,7 @@ contains
       call visitor%reals_of_items(of_points, "lambda", 3, n, state%lambda)
       call visitor%integers_of_items(of_points, "status", 1, n, state%status)
       call visitor%integers_of_items(of_points, "contact_tool", 1, n, state%contact_tool)
+      call visitor%reals_of_items(of_points, "place", 1, n, state%place)
       call visit_hints("hint", size(state%hint, 1), n, state%hint, visitor)
       call visitor%reals_of_items(of_points, "slip_path", 1, n, state%slip_path)
     end associate

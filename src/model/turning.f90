@@ -6,6 +6,7 @@ module dd3_model_turning
   use dd3_contact_operator, only : status_gap
   use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross, rotation_about
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -103,6 +104,7 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
 
+    type(contact_point_t) :: point
     real(wp) :: centre(3), axis(3), moment(1)
     integer :: i, c
 
@@ -116,7 +118,8 @@ contains
     moment = 0.0_wp
     do c = 1, model%n_contact
       if (state%contact_tool(c) /= tool .or. state%status(c) == status_gap) cycle
-      moment = moment + dot_product(axis, cross(model%contact_point(c)%position(state%x) - centre, &
+      point = model%contact_point(c)%at_place(state%place(c))
+      moment = moment + dot_product(axis, cross(point%position(state%x) - centre, &
           state%lambda(:, c)))
     end do
     call sum_over_ranks(1, moment)

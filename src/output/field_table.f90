@@ -217,7 +217,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: value(:, :)
 
-    value = 0.0_wp - model%nodal_contact_forces(state%x, state%lambda)
+    value = 0.0_wp - model%nodal_contact_forces(state%x, state%lambda, state%place)
   end subroutine fill_contact_force
 
   !> Evaluate the contact status.

@@ -244,7 +244,7 @@ contains
 
     reaction = state%internal_force - state%external_force
     where (spread(state%fading_tool == 0, 1, 3)) reaction = reaction - state%fading
-    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
+    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
   end function reactions
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.

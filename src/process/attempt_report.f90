@@ -79,7 +79,7 @@ contains
       row%solver = attempt%solver%solver(:len(row%solver))
       row%perturbed = attempt%solver%perturbed%blocks
       associate (status => stepper%system%contact%status)
-        row%gap = count_over_ranks(count(status == status_gap))
+        row%gap = count_over_ranks(count(status(:model%n_contact_fixed) == status_gap))
         row%stick = count_over_ranks(count(status == status_stick))
         row%slip = count_over_ranks(count(status == status_slip))
       end associate

@@ -132,14 +132,14 @@ contains
         call evaluate_external(model, trial)
     associate (problem => system%problem, contact => system%contact, &
         phase => model%phase(trial%phase), force => trial%tool_force)
-      contact_forces = model%own_contact_forces(trial%x, trial%lambda)
+      contact_forces = model%own_contact_forces(trial%x, trial%lambda, trial%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
       problem%residual = trial%internal_force - trial%external_force
       problem%residual = problem%residual + contact_forces
       if (any(problem%damping > 0.0_wp)) problem%residual = problem%residual &
           + spread(problem%damping, 1, 3)*(trial%x - committed%x)
       problem%contact_residual = contact%force - trial%lambda
-      contact_forces = model%own_contact_forces(trial%x, problem%contact_residual)
+      contact_forces = model%own_contact_forces(trial%x, problem%contact_residual, trial%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
       problem%law_residual = problem%residual + contact_forces
       force = 0.0_wp

@@ -9,6 +9,7 @@ module dd3_process_limiters
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -326,6 +327,7 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
+    type(contact_point_t) :: point
     real(wp) :: approach, depth, bound
     logical :: touching(model%n_tool)
     integer :: c, node, tool
@@ -342,9 +344,10 @@ contains
         if (tool == 0 .or. contact%status(c) /= status_gap) cycle
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
+        point = model%contact_point(c)%at_place(contact%place(c))
         approach = dot_product(step%tool(:, tool) &
             + stepper%prediction%progress*contact%turning(:, c) &
-            - model%contact_point(c)%change(state%x, step%x), contact%normal(:, c))
+            - point%change(state%x, step%x), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle
         if (touching(tool) .and. .not. allowed%active) cycle
         depth = merge(allowed%value*model%thickness, 0.5_wp*model%tolerance%touch, touching(tool))

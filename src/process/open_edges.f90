@@ -89,7 +89,7 @@ contains
     call sum_over_ranks(1, total)
     least = notable_force*total(1)/real(max(1, count_over_ranks(count(force > 0.0_wp))), wp)
     associate (distance => model%tolerance%tool_search)
-      do c = 1, model%n_contact
+      do c = 1, model%n_contact_fixed
         if (force(c) <= least) cycle
         hint = state%hint(tool, c)
         call find_on_tool(model%tool(tool), placement, model%contact_point(c)%position(x), hint, &

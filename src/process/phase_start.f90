@@ -9,6 +9,7 @@ module dd3_process_phase_start
   use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy, elastic_energy
@@ -210,7 +211,7 @@ contains
     if (number > 1) freed = model%phase(number - 1)%prescribed
     freed = freed .and. .not. model%phase(number)%prescribed
     reaction = state%internal_force - state%external_force
-    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda)
+    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
     where (.not. freed) reaction = 0.0_wp
     where (all(abs(state%fading) <= 0.0_wp, dim=1)) state%fading_tool = 0
     state%fading = state%fading - reaction
@@ -241,6 +242,7 @@ contains
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state
 
+    type(contact_point_t) :: point
     integer :: c, tool
     logical :: released
 
@@ -250,10 +252,9 @@ contains
       tool = state%contact_tool(c)
       if (tool == 0) cycle
       if (phase%active(tool)) cycle
-      call model%contact_point(c)%add_nodal_forces(state%x, state%lambda(:, c), state%fading)
-      associate (point => model%contact_point(c))
-        state%fading_tool(point%node(:point%n_surface)) = tool
-      end associate
+      point = model%contact_point(c)%at_place(state%place(c))
+      call point%add_nodal_forces(state%x, state%lambda(:, c), state%fading)
+      state%fading_tool(point%node(:point%n_surface)) = tool
       state%lambda(:, c) = 0.0_wp
       state%status(c) = status_gap
       state%contact_tool(c) = 0

@@ -189,7 +189,7 @@ contains
     real(wp) :: direction(3), normal(3)
     integer :: c, d
 
-    do c = 1, model%n_contact
+    do c = 1, model%n_contact_fixed
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
       associate (x => model%contact_point(c)%position(state%x), phase => model%phase(state%phase))
         if (state%contact_tool(c) == tool .and. norm2(state%lambda(:, c)) > 0.0_wp) then

@@ -6,6 +6,7 @@ module dd3_process_work
   use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap, status_slip
   use dd3_contact_placement, only : point_displacement
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -47,8 +48,8 @@ contains
 
     force = old%external_force + new%external_force
     reaction = old%internal_force + new%internal_force - force
-    reaction = reaction + model%nodal_contact_forces(old%x, old%lambda) &
-        + model%nodal_contact_forces(new%x, new%lambda)
+    reaction = reaction + model%nodal_contact_forces(old%x, old%lambda, old%place) &
+        + model%nodal_contact_forces(new%x, new%lambda, new%place)
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
     new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
@@ -86,6 +87,7 @@ contains
     type(state_t), intent(in) :: old
     type(state_t), intent(inout) :: new
 
+    type(contact_point_t) :: point
     real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance, work(2)
     integer :: c, tool
 
@@ -96,10 +98,10 @@ contains
       tool = contact%tool(c)
       if (tool == 0) cycle
       force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
+      point = model%contact_point(c)%at_place(new%place(c))
       tool_motion = point_displacement(old%placement(tool), new%placement(tool), &
-          model%contact_point(c)%position(new%x))
-      slip = model%contact_point(c)%position(new%x) - model%contact_point(c)%position(old%x) &
-          - tool_motion
+          point%position(new%x))
+      slip = point%position(new%x) - point%position(old%x) - tool_motion
       normal = contact%normal(:, c)
       if (contact%committed_tool(c) == tool) then
         ! The chord along which a point slides over a radius is at right angles to the mean normal.

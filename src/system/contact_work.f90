@@ -24,6 +24,14 @@ module dd3_system_contact_work
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
     real(wp), allocatable :: d(:, :, :), e(:, :, :)
+    !> Places of the points that move, and their gradients in the displacements of the point and of
+    !> one end less the other, `(3, 2, n_contact)`, 1/mm.
+    real(wp), allocatable :: place(:), by_place(:, :, :)
+    !> Derivative of the force of such a point in the displacement of one end less the other, N/mm,
+    !> `(3, 3, n_contact)`.
+    real(wp), allocatable :: by_edge(:, :, :)
+    !> Whether a point that moves may come to a border in the increment, `(n_contact)`.
+    logical, allocatable :: near(:)
     !> Contact in the committed state: tool, `(n_contact)`, its normal and the contact force, N,
     !> `(3, n_contact)`.
     integer, allocatable :: committed_tool(:)
@@ -55,6 +63,9 @@ contains
     allocate (self%distance(n_contact), self%onset(n_contact), self%committed_turn(n_contact), &
         source=0.0_wp)
     allocate (self%normal(3, n_contact), self%force(3, n_contact), source=0.0_wp)
+    allocate (self%place(n_contact), source=0.5_wp)
+    allocate (self%by_place(3, 2, n_contact), self%by_edge(3, 3, n_contact), source=0.0_wp)
+    allocate (self%near(n_contact), source=.false.)
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
     allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), &
         self%turning(3, n_contact), source=0.0_wp)
@@ -71,6 +82,8 @@ contains
     self%force(:, c) = 0.0_wp
     self%d(:, :, c) = 0.0_wp
     self%e(:, :, c) = 0.0_wp
+    self%by_place(:, :, c) = 0.0_wp
+    self%by_edge(:, :, c) = 0.0_wp
   end subroutine open_candidate
 
 end module dd3_system_contact_work

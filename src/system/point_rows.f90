@@ -47,8 +47,9 @@ contains
         end if
         e = 0
         if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
-        call add_point(point(c), contact, c, problem%contact_residual(:, c), motion, x, &
-            point(c)%node, system%position, e, system%matrix, problem%rhs)
+        call add_point(point(c)%at_place(contact%place(c)), contact, c, &
+            problem%contact_residual(:, c), motion, x, point(c)%node, system%position, e, &
+            system%matrix, problem%rhs)
         if (contact%status(c) == status_gap) cycle
         if (phase%pressed(contact%tool(c))) call add_to_tool(system, model, phase, c, x)
       end do
@@ -84,6 +85,8 @@ contains
     call add_force(point, b, matmul(stiffness, motion) - matmul(weight, residual), row, rhs)
     if (point%n_node > 1) then
       call add_stiffness(matrix, point, position(:, :, e), x, b, stiffness, contact%force(:, c))
+      if (point%moves) call add_crossing_stiffness(matrix, point, position(:, :, e), contact, c, &
+          matmul(weight, contact%by_edge(:, :, c)))
     else
       associate (block => matrix%value(:, :, matrix%diagonal(row(1))))
         block = block + stiffness
@@ -101,9 +104,11 @@ contains
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
 
+    type(contact_point_t) :: point
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
 
-    associate (tool => system%contact%tool(c), point => model%contact_point(c))
+    point = model%contact_point(c)%at_place(system%contact%place(c))
+    associate (tool => system%contact%tool(c))
       call eliminate(system%contact, c, weight, stiffness)
       call add_to_balance(system%problem%rhs, model%tool_row(tool), phase%direction(:, tool), &
           matmul(weight - identity, system%problem%contact_residual(:, c)))
@@ -158,6 +163,36 @@ contains
       end do
     end associate
   end subroutine add_stiffness
+
+  !> Add what a point that moves on its edge has besides: the change of its force as the edge turns,
+  !> and that of its place.
+  pure subroutine add_crossing_stiffness(matrix, point, position, contact, c, by_edge)
+    type(block_matrix_t), intent(inout) :: matrix
+    type(contact_point_t), intent(in) :: point
+    !> Of the blocks of its element.
+    integer, intent(in) :: position(:, :)
+    type(contact_work_t), intent(in) :: contact
+    integer, intent(in) :: c
+    !> Derivative of the force in the displacement of the second end less the first, N/mm.
+    real(wp), intent(in) :: by_edge(3, 3)
+
+    real(wp), parameter :: sides(2) = [-1.0_wp, 1.0_wp]
+    real(wp) :: by_place(3)
+    integer :: i, j, k, m
+
+    associate (force => contact%force(:, c), w => point%weight)
+      do j = 1, 2
+        by_place = w(j)*contact%by_place(:, 1, c) + sides(j)*contact%by_place(:, 2, c)
+        do i = 1, 2
+          k = position(point%local(i), point%local(j))
+          do m = 1, 3
+            matrix%value(:, m, k) = matrix%value(:, m, k) + w(i)*sides(j)*by_edge(:, m) &
+                + sides(i)*force*by_place(m)
+          end do
+        end do
+      end do
+    end associate
+  end subroutine add_crossing_stiffness
 
   !> Add the force of a point to the right-hand side of the force balance of its pressed tool.
   pure subroutine add_to_balance(rhs, block, line, force)
@@ -225,25 +260,35 @@ contains
     step%lambda = -state%lambda
     do c = 1, model%n_contact
       if (system%contact%status(c) == status_gap) cycle
-      motion = model%contact_point(c)%change(state%x, step%x) &
-          - step%tool(:, system%contact%tool(c))
+      motion = -step%tool(:, system%contact%tool(c))
       step%lambda(:, c) = force_change(system%contact, c, system%problem%contact_residual(:, c), &
-          motion)
+          model%contact_point(c), state%x, step%x, motion)
     end do
   end subroutine set_point_forces
 
   !> Return the increment of the force of a point in contact, N.
-  pure function force_change(contact, c, residual, motion) result(change)
+  pure function force_change(contact, c, residual, contact_point, x, displacement, motion) &
+      result(change)
     type(contact_work_t), intent(in) :: contact
     integer, intent(in) :: c
-    !> F - lambda, N, and the displacement of the point relative to the tool, mm.
-    real(wp), intent(in) :: residual(3), motion(3)
+    !> F - lambda, N.
+    real(wp), intent(in) :: residual(3)
+    type(contact_point_t), intent(in) :: contact_point
+    !> Positions and displacements of the nodes of the sheet, `(3, n_node)`, and the displacement
+    !> of the tool, the other way, mm.
+    real(wp), intent(in) :: x(:, :), displacement(:, :), motion(3)
     real(wp) :: change(3)
 
-    real(wp) :: weight(3, 3), stiffness(3, 3)
+    type(contact_point_t) :: point
+    real(wp) :: weight(3, 3), stiffness(3, 3), turn(3)
 
     call eliminate(contact, c, weight, stiffness)
-    change = matmul(weight, residual) + matmul(stiffness, motion)
+    point = contact_point%at_place(contact%place(c))
+    change = matmul(weight, residual) &
+        + matmul(stiffness, point%change(x, displacement) + motion)
+    if (.not. point%moves) return
+    turn = displacement(:, point%node(2)) - displacement(:, point%node(1))
+    change = change + matmul(weight, matmul(contact%by_edge(:, :, c), turn))
   end function force_change
 
 end module dd3_system_point_rows

@@ -17,6 +17,7 @@ module dd3_system_region
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_contact, only : evaluate_contact
@@ -155,7 +156,7 @@ contains
     end do
     call sum_over_ranks(size(self%force), self%force)
     call evaluate_contact(system%contact, model, committed, trial, self%point)
-    contact_force = point_forces(self, model, trial%x, system%contact%force)
+    contact_force = point_forces(self, model, trial%x, system%contact%force, trial%place)
     call sum_over_ranks(size(contact_force), contact_force)
     self%residual = merge(self%force - trial%external_force(:, self%node) + contact_force, &
         0.0_wp, self%free)
@@ -170,22 +171,26 @@ contains
   end function threads_of
 
   !> Return the forces of the contact points of this rank on the nodes, `(3, n)`, N.
-  pure function point_forces(self, model, x, point_force) result(force)
+  pure function point_forces(self, model, x, point_force, place) result(force)
     type(region_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> `(3, n_contact)`, N.
     real(wp), intent(in) :: point_force(:, :)
+    !> Of the points that move, `(n_contact)`.
+    real(wp), intent(in) :: place(:)
     real(wp) :: force(3, size(self%node))
 
+    type(contact_point_t) :: point
     real(wp), allocatable :: nodal(:, :)
     integer :: k
 
     allocate (nodal(3, model%n_node), source=0.0_wp)
     do k = 1, size(self%point)
       associate (c => self%point(k))
-        call model%contact_point(c)%add_nodal_forces(x, point_force(:, c), nodal)
+        point = model%contact_point(c)%at_place(place(c))
+        call point%add_nodal_forces(x, point_force(:, c), nodal)
       end associate
     end do
     force = nodal(:, self%node)
@@ -229,7 +234,7 @@ contains
     end do
     !$omp end parallel do
     call clear(self%matrix)
-    residual = point_forces(self, model, trial%x, trial%lambda)
+    residual = point_forces(self, model, trial%x, trial%lambda, trial%place)
     if (this_rank() == 0) residual = residual + self%force - trial%external_force(:, self%node)
     do k = 1, size(self%element)
       call add_element(self%matrix, model%element%n_node, self%position(:, :, k), stiffness(:, k))
@@ -272,7 +277,7 @@ contains
     do k = 1, size(self%point)
       associate (c => self%point(k), point => model%contact_point(self%point(k)))
         if (point%n_node > 1) e = findloc(self%element, model%part%place(point%element), dim=1)
-        call add_point(point, contact, c, contact%force(:, c) - trial%lambda(:, c), no_motion, &
+        call add_point(point%at_place(contact%place(c)), contact, c, contact%force(:, c) - trial%lambda(:, c), no_motion, &
             trial%x, self%number(point%node(:point%n_node)), self%position, e, self%matrix, rhs)
       end associate
     end do
@@ -301,6 +306,7 @@ contains
     type(state_t), intent(in) :: trial
     type(contact_work_t), intent(in) :: contact
 
+    real(wp), parameter :: no_motion(3) = 0.0_wp
     real(wp), allocatable :: displacement(:, :)
     integer :: k
 
@@ -310,8 +316,8 @@ contains
       associate (c => self%point(k))
         self%step%lambda(:, k) = -trial%lambda(:, c)
         if (contact%status(c) /= status_gap) self%step%lambda(:, k) = force_change(contact, c, &
-            contact%force(:, c) - trial%lambda(:, c), &
-            model%contact_point(c)%change(trial%x, displacement))
+            contact%force(:, c) - trial%lambda(:, c), model%contact_point(c), trial%x, &
+            displacement, no_motion)
       end associate
     end do
   end subroutine set_forces

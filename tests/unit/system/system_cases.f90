@@ -159,7 +159,7 @@ contains
       tool_residual(t) = dot_product(model%phase(trial%phase)%direction(:, t), &
           trial%tool_load(:, t))
     end do
-    residual = residual + model%nodal_contact_forces(trial%x, trial%lambda)
+    residual = residual + model%nodal_contact_forces(trial%x, trial%lambda, trial%place)
     do c = 1, model%n_contact
       t = system%contact%tool(c)
       if (t == 0) cycle
