@@ -84,7 +84,7 @@ contains
     end do
     grid%origin = minval(x, dim=2)
     ! Not so small that the numbers of the cells overflow.
-    grid%size = max(total/max(1, n), 1.0e-6_wp*maxval(maxval(x, dim=2) - grid%origin), &
+    grid%size = max(total/real(max(1, n), wp), 1.0e-6_wp*maxval(maxval(x, dim=2) - grid%origin), &
         tiny(1.0_wp))
     grid%point = pack([(i, i=1, size(x, 2))], outer)
     allocate (grid%first(max(16, 2*size(grid%point))), grid%next(size(x, 2)), source=0)
@@ -111,7 +111,7 @@ contains
 
     integer(i8), parameter :: factor(3) = [73856093_i8, 19349663_i8, 83492791_i8]
 
-    place = 1 + int(modulo(sum(factor*cell), size(grid%first, kind=i8)))
+    place = 1 + int(modulo(sum(factor*int(cell, i8)), size(grid%first, kind=i8)))
   end function place_of
 
   !> Add the nodes on a face that do not belong to its element.
@@ -137,7 +137,7 @@ contains
     upper = maxval(corner, dim=2) + near
     first = cell_of(grid, lower)
     last = cell_of(grid, upper)
-    if (product(real(last - first + 1, wp)) > size(grid%point)) then
+    if (product(real(last - first + 1, wp)) > real(size(grid%point), wp)) then
       do i = 1, size(grid%point)
         call try(grid%point(i))
       end do

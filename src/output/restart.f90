@@ -31,7 +31,7 @@ module dd3_output_restart
   !> Mark of the file, and the version of its format. Version 1 holds the components of `state_t` by
   !> name; a change of their meaning makes a new version.
   character(len=*), parameter :: mark = "dd3imp restart"
-  integer, parameter :: format_version = 2
+  integer, parameter :: format_version = 3
   !> Room on the disk for what is not the values, bytes.
   integer(i8), parameter :: overhead = 300000_i8
 

@@ -4,7 +4,7 @@
 """The release of drawn parts by `unload`, beside tools withdrawn one after another by `move`, with contact and friction.
 
     release.py --program build/release/dd3imp --work build/release_orders            print the table
-    release.py --program build/release/dd3imp --work build/release_orders
+    release.py --program build/release/dd3imp --work build/release_orders --write    put it into docs/reports/release.md
 """
 import pathlib
 import sys
@@ -58,6 +58,15 @@ def last(folder):
     return fields.points(fields.count - 1)
 
 
+def slope(folder):
+    """Return the slope of the rim of a strip along x at the end of a run, degrees, over its last two elements."""
+    fields = Fields(folder)
+    start, points = fields.points(0), fields.points(fields.count - 1)
+    columns = np.unique(np.round(start[:, 0], 6))[[-3, -1]]
+    first, rim = (points[np.abs(start[:, 0] - x) < 1e-6].mean(axis=0) for x in columns)
+    return float(np.degrees(np.arctan2(rim[2] - first[2], rim[0] - first[0])))
+
+
 def distance_of(points, others):
     """Return the root mean square of the distances of nodes after the best rigid motion, mm."""
     return float(np.sqrt(np.mean(np.sum((best_fit(points, others) - others)**2, axis=1))))
@@ -79,12 +88,13 @@ def main():
             codes = {warning["code"] for warning in made.job["warnings"]} & {"W106", "W107", "W116"}
             job = read_job(made.folder)
             rows.append([part if number == 0 else "", order, f"{distance_of(last(drawn.folder), shapes[order]):.3f}",
+                         "" if part.startswith("rail") else f"{slope(made.folder):.2f}",
                          *(f"{distance_of(shapes[order], shapes[other]):.4f}" if other in shapes and other != order else ""
                            for other in list(ORDERS)[:2]),
                          str(len(made.history) - before), str(sum(phase["result"]["iterations"] for phase in job["phases"]
                                                                   if phase["result"].get("iterations"))),
                          " ".join(sorted(codes))])
-    text = table(["part", "release", "change of shape, mm", "from `unload`, mm", "from punch, then holder, mm",
+    text = table(["part", "release", "change of shape, mm", "rim, degrees", "from `unload`, mm", "from punch, then holder, mm",
                   "increments", "iterations", "warnings"], rows)
     print(text)
     if options.write:

@@ -38,7 +38,7 @@ input file; expected values are computed by scripts that do not use the program.
 
     tests/verification/run.py --program build/release/dd3imp --work build/verification --slow --write
 
-runs all cases and writes this page; without `--slow` the quick ones only, in less than a minute. The tests
+runs all cases and writes this page; without `--slow` the quick ones only, in about two minutes. The tests
 `verification` and `verification_slow` compare the page with the program: each error must be within the tolerance.
 
 The numbers are those of a list from which some cases went elsewhere: V3 is in unit tests, V26, V28 and V30 are the
