@@ -74,7 +74,7 @@ MISTAKES = (
     ("--criterion hill48 --r 100:1.79", "angle = 100 is out of range\n  100:1.79\n  ^^^\n"),
     ("--criterion hill48 --r 1.79", "r has too few numbers\n  1.79\n      ^\n"),
     ("--criterion hill48 --stress 0:250 90:260", "stress = 250 is out of range"),
-    ("--criterion hill48 --stress 0:nan", "stress = nan is out of range"),
+    ("--criterion hill48 --stress 0:nan", "--stress: error: 'nan' is not a number\n  0:nan\n    ^^^\n"),
     ("--criterion hill48 --r 0:1:2:3", "r has too many numbers\n  0:1:2:3\n        ^\n"),
     ("--criterion hill48 --r 0:1:0 45:1:0 90:1:0", "all weights are 0"),
     ("--criterion hill48 --r 0:x 100:-2", "--r: error: 'x' is not a number\n  0:x\n    ^\n"),

@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from dd3 import __version__
 from dd3.errors import Problem
 
 NAME = "restart.h5"
@@ -72,7 +73,7 @@ def write_state(folder: Path, sheet: SheetState) -> None:
     own = np.swapaxes(sheet.axes, 2, 3) @ sheet.stress @ sheet.axes
     kelvin = np.stack([own[..., i, j] for i, j in PLACE], axis=-1) * FACTOR
     with h5py.File(folder / NAME, "w") as file:
-        file.attrs["program"], file.attrs["version"] = np.bytes_(MARK), np.bytes_(b"dd3 dynain")
+        file.attrs["program"], file.attrs["version"] = np.bytes_(MARK), np.bytes_(__version__.encode())
         file.attrs["format"] = np.array([FORMAT], np.int32)
         mesh, state = file.create_group("mesh"), file.create_group("state")
         mesh.attrs["element"] = np.bytes_(b"solid_shell")
