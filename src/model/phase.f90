@@ -110,6 +110,7 @@ module dd3_model_phase
     procedure :: fading
     procedure :: fading_rate
     procedure :: opened
+    procedure :: most_opened
     procedure :: tool_load
     procedure :: tool_load_rate
     procedure :: next_kink
@@ -178,14 +179,26 @@ contains
         fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
   end function fading_rate
 
-  !> Return the largest distance by which the withdrawn tools have moved at a progress, mm.
-  pure real(wp) function opened(self, progress)
+  !> Return the distance by which a withdrawn tool has moved at a progress, mm; 0 for others.
+  elemental real(wp) function opened(self, tool, progress)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: progress
+
+    opened = 0.0_wp
+    if (self%withdrawn(tool)) opened = max(0.0_wp, progress - self%opening) &
+        /(1.0_wp - self%opening)*norm2(self%move(:, tool))
+  end function opened
+
+  !> Return the largest of the distances by which withdrawn tools have moved at a progress, mm.
+  pure real(wp) function most_opened(self, progress)
     class(phase_t), intent(in) :: self
     real(wp), intent(in) :: progress
 
-    opened = max(0.0_wp, progress - self%opening)/(1.0_wp - self%opening) &
-        *maxval(norm2(self%move, dim=1), mask=self%withdrawn)
-  end function opened
+    integer :: t
+
+    most_opened = maxval([0.0_wp, (self%opened(t, progress), t=1, size(self%withdrawn))])
+  end function most_opened
 
   !> Return the directions that prescribed displacements and chosen supports hold, `(3, n_node)`.
   pure function held(self)

@@ -27,7 +27,7 @@ contains
 
     real(wp) :: distance
 
-    distance = model%phase(state%phase)%opened(state%progress)
+    distance = model%phase(state%phase)%most_opened(state%progress)
     support_stiffness = soft*10.0_wp**(decades*min(1.0_wp, distance/(opened*model%thickness))) &
         *bending_stiffness(model)
   end function support_stiffness

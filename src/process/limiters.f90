@@ -367,18 +367,17 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    real(wp) :: motion, made, bound
+    real(wp) :: motion, bound
     integer :: tool
 
     associate (phase => model%phase(state%phase))
-      made = max(0.0_wp, state%progress - phase%opening)/(1.0_wp - phase%opening)
       do tool = 1, model%n_tool
         if (.not. phase%withdrawn(tool)) cycle
         motion = norm2(stepper%prediction%step%tool(:, tool))
         if (.not. motion > 0.0_wp) cycle
         if (.not. (state%touches(tool) .or. presses_by_bead(model, state, tool))) cycle
         bound = min(opening_step*model%thickness, &
-            made*norm2(phase%move(:, tool)) + first*max(phase%layer, least_layer)*model%thickness)
+            phase%opened(tool, state%progress) + first*max(phase%layer, least_layer)*model%thickness)
         if (bound/motion < limit%r) limit = limit_t(r=bound/motion, tool=tool)
       end do
     end associate

@@ -32,19 +32,26 @@ contains
     grip = closed(model, state, bead, height)
   end function grip
 
-  !> Return the fraction that is left of what acts in a bead until the tools have opened by so many
-  !> thicknesses.
+  !> Return the fraction that is left of what acts in a bead until its tool, without one the farthest
+  !> of all, has opened by so many thicknesses.
   pure real(wp) function closed(model, state, bead, opening)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: bead
     real(wp), intent(in) :: opening
 
+    real(wp) :: distance
+
     closed = 1.0_wp
-    associate (phase => model%phase(state%phase))
-      if (phase%bead_leaves(bead)) &
-          closed = max(0.0_wp, 1.0_wp - phase%opened(state%progress)/(opening*model%thickness))
+    associate (phase => model%phase(state%phase), tool => model%drawbead(bead)%tool)
+      if (.not. phase%bead_leaves(bead)) return
+      if (tool > 0) then
+        distance = phase%opened(tool, state%progress)
+      else
+        distance = phase%most_opened(state%progress)
+      end if
     end associate
+    closed = max(0.0_wp, 1.0_wp - distance/(opening*model%thickness))
   end function closed
 
   !> Whether the normal force of a draw-bead of a withdrawn tool still acts.
