@@ -101,6 +101,8 @@ UNKNOWN = [
     ("a.msh", MSH + '$NodeData\n1\n"heat"\n1\n0\n3\n0\n1\n1\n1 5\n$EndNodeData\n', "a.msh:17: $NodeData")]
 CUT = [("a.stl", STL[:STL.index("endsolid")], "cut off"), ("a.stl", STL[:170], "inside outer of facet of solid"),
        ("a.ply", PLY[:-8], "cut off"),
+       ("a.ply", PLY.replace("element face 2", "element face ²"), "a.ply:7: error: 'element face"),
+       ("a.ply", PLY.replace("element face 2", "element face " + 5000 * "9"), "expected element, its name and its number"),
        ("a.ply", PLY.replace("element face", "element foo 1\nproperty int a\nelement face").replace("\n3 0 1 2", "\n7\n3 0 1 2"),
         "a.ply:7: element foo, 1: not read"), ("a.msh", MSH[:-16], "without its end: the file is cut off")]
 

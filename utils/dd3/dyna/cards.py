@@ -181,7 +181,7 @@ class Card:
 
     def whole(self, i: int, word: str) -> int:
         """Return the whole number of a word in a row, 0 for none."""
-        if word.isascii() and word.isdigit():
+        if word.isascii() and word.isdecimal():
             return int(word)
         value = plain(word, self.values, self.place_of(i)) if word else 0
         if value != int(value):

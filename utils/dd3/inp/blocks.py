@@ -108,7 +108,7 @@ def real(word: str, place: str, what: str) -> float:
 
 def whole(word: str, place: str, what: str) -> int:
     """Return an integer."""
-    if word.isascii() and word.isdigit() and len(word) < 10:
+    if word.isascii() and word.isdecimal() and len(word) < 10:
         return int(word)
     value = real(word, place, what) if word else 0.5
     if value != int(value) or abs(value) > LARGEST_LABEL:

@@ -221,7 +221,7 @@ class Model:
                 found.items.append(generated(block, row))
                 continue
             for word in filter(None, row.words):
-                if word.isdigit():
+                if word.isdecimal():
                     number = label(word, row.place, block.shown)
                     found.items.append(range(number, number + 1))
                 else:
@@ -240,7 +240,7 @@ class Model:
         """Add the members of another set, or those of an instance by its name, a point, and their label or set."""
         instance, point, rest = word.partition(".")
         if point and rest and instance in self.instances:
-            number = label(rest, row.place, block.shown) if rest.isdigit() else 0
+            number = label(rest, row.place, block.shown) if rest.isdecimal() else 0
             self.target(block, instance, of_nodes, name).items.append(range(number, number + 1) if number else word)
             return
         # In the assembly a set may have members in several instances.
@@ -256,7 +256,7 @@ class Model:
 def line_of(place: str) -> tuple[str, int]:
     """Return file and line of a place."""
     path, _, number = place.rpartition(":")
-    return (path, int(number)) if path and number.isdigit() else (place, 0)
+    return (path, int(number)) if path and number.isdecimal() else (place, 0)
 
 
 def joined(rows: list[Row]) -> Iterator[tuple[str, list[str]]]:

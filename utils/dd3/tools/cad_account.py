@@ -101,7 +101,7 @@ def enter_iges(path: Path, account: Account) -> None:
         if text[72:73] != "D":
             continue
         word = text[:8].strip()
-        if not second and word.lstrip("-").isdigit():
+        if not second and word.removeprefix("-").isdecimal():
             types[int(word)].append(number)
         second = not second
     for kind, places in types.items():

@@ -364,6 +364,7 @@ def enter_data(path: Path, data: Any, account: Account, fields: bool) -> None:
             account.enter(str(path), f"{count} {name}").leave("no facets")
 
 
+MOST_DIGITS = 18
 PLY_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2,
              "double": 8, "float64": 8}
 
@@ -377,7 +378,9 @@ def enter_ply(path: Path, account: Account) -> int | None:
         words = line.split()
         if words[:1] == ["format"]:
             text = words[1:2] == ["ascii"]
-        elif words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
+        elif words[:1] == ["element"]:
+            if len(words) != 3 or not words[2].isdecimal() or len(words[2]) > MOST_DIGITS:
+                raise Problem(f"{path}:{number}: error: '{line.strip()}'; expected element, its name and its number")
             element, count = words[1], int(words[2])
             rows += count
             entry = account.enter(f"{path}:{number}", f"element {element}, {count}")

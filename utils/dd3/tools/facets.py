@@ -75,7 +75,7 @@ def choose(path: Path, mesh: Facets, wanted: list[str] | None) -> None:
     for word in wanted:
         found = [number for number, name in enumerate(mesh.names)
                  if word.lower() == str(name).lower() or word == str(name).split()[0]]
-        if not found and word.isdigit() and 0 < int(word) <= len(mesh.names):
+        if not found and word.isdecimal() and 0 < int(word) <= len(mesh.names):
             found = [int(word) - 1]
         if not found:
             there = ", ".join(f"{number} '{name}'" for number, name in enumerate(mesh.names, 1))
