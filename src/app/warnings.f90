@@ -78,6 +78,7 @@ contains
     call normal_warnings(case, model, warnings)
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
+    call check_single_columns(case, model, warnings)
     call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
     call check_drawbeads(case, model, warnings)
@@ -169,6 +170,30 @@ contains
       end associate
     end do
   end subroutine check_held_loads
+
+  !> Warn of supports in a direction at nodes of one column through the thickness only, where tools
+  !> are withdrawn: the column cannot turn, and bends the sheet around it when tools that leave push
+  !> it sideways.
+  subroutine check_single_columns(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(message_list_t), intent(inout) :: warnings
+
+    integer :: axis, i, k
+
+    if (.not. any([(any(model%phase(i)%withdrawn), i=1, size(model%phase))])) return
+    do axis = 1, 3
+      associate (node => pack([(i, i=1, model%n_node)], model%fixed(axis, :)))
+        if (size(node) < 2) cycle
+        if (any(model%column(1, node) /= model%column(1, node(1)))) cycle
+        k = findloc([(case%boundary(i)%fix(axis), i=1, size(case%boundary))], .true., dim=1)
+        call add(warnings, "W024", case%boundary(k)%source%at("fix"), "fix = "// &
+            axis_name(axis)//" of '"//case%boundary(k)%source%called()//"'", "the "// &
+            to_text(size(node))//" nodes of one column through the thickness are held, which "// &
+            "then cannot turn: tools that are withdrawn would bend the sheet around it")
+      end associate
+    end do
+  end subroutine check_single_columns
 
   !> Warn of elements too long for bending.
   subroutine check_element_length(case, model, warnings)

@@ -52,7 +52,10 @@ module dd3_contact_global_search
   type :: candidate_t
     !> Its distance, and the one that is compared, in which points inside a patch are preferred, mm.
     real(wp) :: near, distance
-    !> False if the point is too far, or if the limits of the query exclude it.
+    !> False if the point is too far, or if the limits of the query exclude it. One that is outside
+    !> by more than the search distance is accepted without being found: there is no contact, and a
+    !> node outside the nearest part of the surface that faces the sheet is not inside another one,
+    !> whose border it is nearest to.
     logical :: accepted
     !> Only set if accepted.
     type(hit_t) :: hit
@@ -69,6 +72,14 @@ contains
         sqrt(2.0_wp)*query%border%radius + query%border%reach)
   end function search_radius
 
+  !> Whether the surface faces the sheet at a hit.
+  pure logical function faces(hit, query)
+    type(hit_t), intent(in) :: hit
+    type(query_t), intent(in) :: query
+
+    faces = dot_product(hit%normal, query%outward) <= 0.0_wp
+  end function faces
+
   !> Discard a hit that is too far outside, too deep inside, or from which the sheet faces away.
   pure subroutine apply_limits(hit, query)
     type(hit_t), intent(inout) :: hit
@@ -76,7 +87,7 @@ contains
 
     if (hit%border) hit%found = hit%found .and. hit%distance < query%border%reach
     hit%found = hit%found .and. hit%distance <= query%search_distance &
-        .and. hit%distance > -query%depth .and. dot_product(hit%normal, query%outward) <= 0.0_wp
+        .and. hit%distance > -query%depth .and. faces(hit, query)
   end subroutine apply_limits
 
   !> Search the patches whose boxes are near, nearest first. The result is that of `search_all`, bit
@@ -177,8 +188,10 @@ contains
     associate (hit => candidate%hit)
       call new_hit(hit, surface, k, query%x, projection, query%border%radius)
       if (.not. hit%found) return
+      candidate%accepted = hit%border .or. (faces(hit, query) .and. &
+          hit%distance > query%search_distance)
       call apply_limits(hit, query)
-      candidate%accepted = hit%found .or. hit%border
+      candidate%accepted = candidate%accepted .or. hit%found
     end associate
   end subroutine examine
 

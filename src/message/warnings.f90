@@ -71,7 +71,11 @@ contains
           "`density` in t/mm3: 7.85e-9 for steel, 2.7e-9 for aluminium."), &
       row("W023", "unusual gravity", &
           "It lies outside a tenth to ten times that of the earth: most often another unit.", &
-          "`gravity` in mm/s2: 9810 on the earth.")]
+          "`gravity` in mm/s2: 9810 on the earth."), &
+      row("W024", "support of a single column", &
+          "A direction is held at nodes of one column through the thickness only, and tools are "// &
+          "withdrawn: the column cannot turn with the sheet.", "One node of the column in the "// &
+          "set, or a row of columns, such as a plane of symmetry.")]
   end function input_warnings
 
   !> Return the warnings during a run.
