@@ -8,7 +8,7 @@ module dd3_process_equilibrium
       section_material
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
-  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
+  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
   use dd3_model_model, only : model_t
@@ -48,6 +48,9 @@ module dd3_process_equilibrium
     type(solve_info_t) :: solver
     !> Whether the stiffness of the trial state is assembled.
     logical, private :: assembled = .false.
+    !> Node that moves farthest in the solution of the last linearisation, and by how much, mm.
+    integer, private :: farthest = 0
+    real(wp), private :: farthest_moved = 0.0_wp
   contains
     procedure :: begin
     procedure :: evaluate
@@ -62,8 +65,9 @@ module dd3_process_equilibrium
 
   !> Work of the residual in a step that is round-off, over the norms of internal forces and step.
   real(wp), parameter :: negligible_work = 1.0e-12_wp
-  !> Largest displacement of a node in an iteration, over the thickness of the sheet.
-  real(wp), parameter :: largest_step = 20.0_wp
+  !> Largest displacement of a node in an iteration, and that of a nearly singular tangent, over the
+  !> thickness of the sheet.
+  real(wp), parameter :: longest_step = 1.0_wp, nearly_singular = 20.0_wp
   !> Number of contact status kept, and the value before the first.
   integer, parameter :: n_kept = 3, unknown = -1
 
@@ -127,7 +131,7 @@ contains
   !> Linearise at the trial state and solve for the step.
   subroutine linearise(self, verdict)
     class(equilibrium_t), intent(inout) :: self
-    !> Retry if there is no solution, or if it moves a node too far.
+    !> Retry if there is no solution.
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: residual(3, self%model%n_node)
@@ -155,7 +159,7 @@ contains
       self%step%enhanced = self%step%enhanced - system%enhanced%offset
       system%problem%residual = residual
     end associate
-    call check_step(self, verdict)
+    call limit_step(self)
   end subroutine linearise
 
   !> Keep the trial state before a step.
@@ -169,19 +173,27 @@ contains
     end associate
   end subroutine keep_start
 
-  !> Set a verdict to retry if the step moves a node too far.
-  subroutine check_step(self, verdict)
-    class(equilibrium_t), intent(in) :: self
-    type(verdict_t), intent(inout) :: verdict
+  !> Shorten a step that moves a node farther than the sheet is thick. Where nodes have lost contact
+  !> for an iteration the tangent is nearly singular, and its step moves the sheet to where no
+  !> contact is found again.
+  !> Source: A. R. Conn, N. I. M. Gould, Ph. L. Toint, Trust-Region Methods, SIAM 2000, section 6.1.
+  subroutine limit_step(self)
+    class(equilibrium_t), intent(inout) :: self
 
-    associate (largest => maxval(abs(self%step%x), dim=1))
-      if (maxval(largest) <= largest_step*self%model%thickness) return
-      verdict%outcome = verdict_retry
-      verdict%cause = cause_large_step
-      verdict%node = maxloc(largest, dim=1)
-      verdict%value(1) = maxval(largest)
+    real(wp) :: fraction
+
+    associate (step => self%step, moved => maxval(abs(self%step%x), dim=1))
+      self%farthest = maxloc(moved, dim=1)
+      self%farthest_moved = moved(self%farthest)
+      if (self%farthest_moved <= longest_step*self%model%thickness) return
+      fraction = longest_step*self%model%thickness/self%farthest_moved
+      step%x = fraction*step%x
+      step%enhanced = fraction*step%enhanced
+      step%lambda = fraction*step%lambda
+      step%tool = fraction*step%tool
+      self%system%problem%missed = .true.
     end associate
-  end subroutine check_step
+  end subroutine limit_step
 
   !> Set the trial state to that before the step and a fraction of the step. A fraction may miss the
   !> prescribed positions.
@@ -279,15 +291,19 @@ contains
         self%status /= spread(self%status(:, 1), 2, n_kept), dim=2)))
   end function changing
 
-  !> Set the cause why the trial state is not in equilibrium: a pressed tool without contact, a node
-  !> led into a tool, a contact status that has not settled, the force on a tool, or the residual of
-  !> a node.
+  !> Set the cause why the trial state is not in equilibrium: a nearly singular tangent, a pressed
+  !> tool without contact, a node led into a tool, a contact status that has not settled, the force
+  !> on a tool, or the residual of a node.
   subroutine explain(self, verdict)
     class(equilibrium_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
     associate (model => self%model, trial => self%trial, &
         phase => self%model%phase(self%trial%phase), imbalance => self%system%problem%tool_residual)
+      verdict%node = self%farthest
+      verdict%value(1) = self%farthest_moved
+      verdict%cause = cause_large_step
+      if (self%farthest_moved > nearly_singular*model%thickness) return
       verdict%tool = lost_tool(model, trial)
       verdict%cause = cause_lost_tool
       if (verdict%tool > 0) return
