@@ -181,6 +181,7 @@ contains
 
     integer :: axis, i, k
 
+    if (size(case%boundary) == 0) return
     if (.not. any([(any(model%phase(i)%withdrawn), i=1, size(model%phase))])) return
     do axis = 1, 3
       associate (node => pack([(i, i=1, model%n_node)], model%fixed(axis, :)))

@@ -8,12 +8,13 @@ module dd3_process_equilibrium
       section_material
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
-  use dd3_base_verdict, only : verdict_converged, verdict_t, cause_large_step, &
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_contact_closest, only : hint_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
+  use dd3_process_damping, only : is_release
   use dd3_process_elimination, only : find_worst, local_equilibrium_t
   use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
@@ -131,7 +132,7 @@ contains
   !> Linearise at the trial state and solve for the step.
   subroutine linearise(self, verdict)
     class(equilibrium_t), intent(inout) :: self
-    !> Retry if there is no solution.
+    !> Retry if there is no solution, or if it shows that a sheet that is released snaps.
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: residual(3, self%model%n_node)
@@ -159,7 +160,7 @@ contains
       self%step%enhanced = self%step%enhanced - system%enhanced%offset
       system%problem%residual = residual
     end associate
-    call limit_step(self)
+    call limit_step(self, verdict)
   end subroutine linearise
 
   !> Keep the trial state before a step.
@@ -175,23 +176,32 @@ contains
 
   !> Shorten a step that moves a node farther than the sheet is thick. Where nodes have lost contact
   !> for an iteration the tangent is nearly singular, and its step moves the sheet to where no
-  !> contact is found again.
+  !> contact is found again. In a release it is the sign of a snap, which viscous forces follow.
   !> Source: A. R. Conn, N. I. M. Gould, Ph. L. Toint, Trust-Region Methods, SIAM 2000, section 6.1.
-  subroutine limit_step(self)
+  subroutine limit_step(self, verdict)
     class(equilibrium_t), intent(inout) :: self
+    !> Retry in a release without viscous forces if the tangent is nearly singular.
+    type(verdict_t), intent(inout) :: verdict
 
     real(wp) :: fraction
 
-    associate (step => self%step, moved => maxval(abs(self%step%x), dim=1))
+    associate (step => self%step, moved => maxval(abs(self%step%x), dim=1), &
+        problem => self%system%problem, thickness => self%model%thickness)
       self%farthest = maxloc(moved, dim=1)
       self%farthest_moved = moved(self%farthest)
-      if (self%farthest_moved <= longest_step*self%model%thickness) return
-      fraction = longest_step*self%model%thickness/self%farthest_moved
+      if (self%farthest_moved <= longest_step*thickness) return
+      if (is_release(self%model, self%trial) .and. .not. any(problem%damping > 0.0_wp)) then
+        if (self%farthest_moved <= nearly_singular*thickness) return
+        verdict%outcome = verdict_retry
+        call explain(self, verdict)
+        return
+      end if
+      fraction = longest_step*thickness/self%farthest_moved
       step%x = fraction*step%x
       step%enhanced = fraction*step%enhanced
       step%lambda = fraction*step%lambda
       step%tool = fraction*step%tool
-      self%system%problem%missed = .true.
+      problem%missed = .true.
     end associate
   end subroutine limit_step
 
