@@ -142,6 +142,7 @@ def test_cad(tmp_path):
         assert f"left out: more.step:{number}: {kind}: no geometry of a part" in said, said
     assert "NOTHING" not in said
     assert f"more.step:{number}: COLOUR_RGB" in call("curve", "more.step", "x.txt", expect=2)
+    assert f"left out: more.step:{number}: COLOUR_RGB" in call("unfold", "more.step", "x.txt", expect=2)
     # A surface of a kind that is not known: OpenCASCADE leaves out its face and says nothing.
     (tmp_path / "lost.step").write_text(text.replace("= PLANE(", "= FOO_SURFACE(", 1).replace("=PLANE(", "=FOO_SURFACE(", 1))
     assert "of the 6 faces of the file are not read" in call("tool", "lost.step", expect=2)

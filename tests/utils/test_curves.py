@@ -127,6 +127,18 @@ def test_units_and_layers(tmp_path):
     assert np.allclose(found, 9 * math.pi, rtol=1e-4)
     assert "CIRCLE on layer CORE of block HOLE: not on layer TRIM" in said and "LWPOLYLINE on layer OTHER" in said
     assert np.allclose(areas(layers, tmp_path, "--layer", "CORE", "--chord", 1e-5)[0], math.pi, rtol=1e-4)
+
+    def invisible(document, space):
+        document.layers.add("OFF").off()
+        document.layers.add("COLD").freeze()
+        space.add_lwpolyline(SQUARE, close=True)
+        for layer in ("OFF", "COLD"):
+            space.add_circle((5, 5), 2, dxfattribs={"layer": layer})
+    found, said = areas(invisible, tmp_path)
+    assert np.allclose(found, 200)
+    for layer in ("OFF", "COLD"):
+        assert f"CIRCLE on layer {layer}: layer {layer} is not visible in the drawing; --layer takes it" in said
+        assert np.allclose(areas(invisible, tmp_path, "--layer", layer, "--chord", 1e-4)[0], 4 * math.pi, rtol=1e-4)
     large = areas(lambda _, space: space.add_circle((0, 0), 500), tmp_path, "--chord", 1e-4)[0]
     assert np.allclose(large, math.pi * 500**2, rtol=1e-6)
 

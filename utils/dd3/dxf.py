@@ -138,12 +138,23 @@ def walk(drawing: Drawing, layout: Any, matrix: Any, layer: str | None, inserted
         if entity.dxf.get("invisible", 0):
             entry.leave("invisible")
             continue
+        if drawing.layer is None and hidden(layout.doc, own):
+            entry.leave(f"layer {own} is not visible in the drawing; --layer takes it")
+            continue
         found = [piece for piece in points_of(drawing, entity, matrix, entry) if len(piece) > 1]
         if len(drawing.pieces) > MOST:
             raise Problem(f"{drawing.path}: more than {MOST} curves")
         if found:
             entry.use()
             drawing.pieces += found
+
+
+def hidden(document: Any, layer: str) -> bool:
+    """Whether a layer is off or frozen; one that the drawing does not define is not."""
+    if not document.layers.has_entry(layer):
+        return False
+    entry = document.layers.get(layer)
+    return bool(entry.is_off() or entry.is_frozen())
 
 
 def insert(drawing: Drawing, entity: Any, matrix: Any, layer: str, inserted: set[str], above: tuple[str, ...]) -> None:

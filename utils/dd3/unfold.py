@@ -27,12 +27,14 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
+from dd3.account import Account
 from dd3.command import new_parser
 from dd3.curve import write_curves
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.tools import faces as cad_faces
 from dd3.tools.cad import load, sew
+from dd3.tools.cad_account import enter_cad
 from dd3.tools.facet_files import SUFFIXES, read_facets
 
 NEAR = 1e-5  # distance of nodes that are one, and of those on a plane of symmetry, over the size of the part
@@ -82,7 +84,10 @@ def of_cad(path: Path, size: float | None, side: str | None, words: Sequence[str
     """Return the faces of a CAD file as triangles with sides of `size` mm, or a fiftieth of its largest extent."""
     with session() as gmsh:
         load(gmsh, path)
-        sew(gmsh, path, 0.01, wanted=False)
+        account = Account()
+        enter_cad(path, account, len(gmsh.model.getEntities(2)))
+        print(*(f"left out: {item}\n" for item in account.left_out()),
+              *(f"note: {note}\n" for note in sew(gmsh, path, 0.01, wanted=False)), sep="", end="")
         tags = [tag for _, tag in gmsh.model.getEntities(2)]
         if words:
             tags = cad_faces.chosen(gmsh, path, tags, words, smooth=True)
