@@ -26,7 +26,7 @@ INPUTS = ROOT / "input_files"
 # Deck, values of its parameters, distance by which a tool is withdrawn, mm, further keys of the release.
 PARTS = {"draw bending, holder 2.45 kN": ("draw_bending/draw_bending.dat", {}, 90, ""),
          "draw bending, holder 19.6 kN": ("draw_bending/draw_bending.dat", {"holder": "-280"}, 90, ""),
-         "draw bending with a draw-bead": ("draw_bending/draw_bead.dat", {}, 90, ""),
+         "draw bending with a draw-bead": ("draw_bending/draw_bead.dat", {}, 70, ""),
          "hat": ("hat/hat.dat", {}, 70, "  gravity = 0 0 0\n"),
          "rail, DP600": ("rail/rail.dat", {}, 50, ""),
          "rail, DC06": ("rail/rail.dat", {"material": "dc06"}, 50, "")}
