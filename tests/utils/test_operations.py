@@ -13,6 +13,7 @@ from helpers import call
 
 import dd3
 from dd3.compensate import (
+    aligned,
     along_sheet,
     continued,
     divisions,
@@ -277,6 +278,22 @@ def short_hat(folder, gap="12"):
         text = text.replace(old, new)
     deck.write_text(text)
     return folder / "hat/hat.toml"
+
+
+def test_beyond_the_border():
+    """Nodes beyond the border of the wanted shape, here a quarter of a cylinder, are not compared."""
+    angle = np.radians(np.linspace(0, 90, 91))
+    arc = [np.stack((20 * np.sin(angle), np.full(91, y), 20 * np.cos(angle)), axis=1) for y in (0.0, 20.0, 40.0)]
+    number = np.arange(273).reshape(3, 91)
+    quads = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]), axis=-1).reshape(-1, 4)
+    wanted = pv.PolyData.from_regular_faces(np.concatenate(arc), quads).triangulate()
+    angle = np.radians(np.linspace(10, 96, 44))
+    part = np.concatenate([np.stack((20 * np.sin(angle), np.full(44, y), 20 * np.cos(angle)), axis=1)
+                           for y in (1.0, 10.0, 20.0, 30.0, 39.0)])
+    place, goal, compared = aligned(part, part, wanted, [], 0.25)
+    assert (compared == (np.tile(angle, 5) <= np.radians(90.5))).all()
+    assert np.linalg.norm(goal - place, axis=1)[compared].max() < 0.005
+    assert np.linalg.norm(goal - place, axis=1)[~compared].max() == 0
 
 
 def test_no_room(tmp_path, program):

@@ -6,10 +6,11 @@
 
 The displacement adjustment: where the free part, aligned as a whole, lies beside the wanted shape, the surface of the
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
-at the end of the draw in the first loop; the free part is that at the end of the last operation. The displacement is a
-smooth function along the drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between
-tools stay. Where a run stops with the corrected tools, half of the correction is tried, then a quarter. The input files
-place blank and tools; at the start they need room for what the surfaces are moved by.
+at the end of the draw in the first loop; the free part is that at the end of the last operation. What reaches beyond
+the rim of the wanted shape, where less was drawn in, is not compared. The displacement is a smooth function along the
+drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between tools stay. Where a run
+stops with the corrected tools, half of the correction is tried, then a quarter. The input files place blank and tools;
+at the start they need room for what the surfaces are moved by.
 --mirror names the planes of symmetry x = 0, y = 0.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
@@ -61,6 +62,7 @@ MOST_POINTS = 2000  # of the smooth function
 ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the places
 FARTHEST = 3.0  # points in a mean, over its standard deviation
 BEYOND = 50.0  # continuation of the sheet for the tools, over its thickness
+BORDER = 0.25  # largest distance beside the border of the wanted shape at which a node is compared, over the thickness
 MOST_FITS, SETTLED = 100, 1e-5  # iterations of the alignment, and the relative gain of one that ends it
 PARTS = (1.0, 0.5, 0.25)  # of a correction, one after the other until the process runs to its end
 UNKNOWN = "E115"  # code of the error of a parameter that an input file does not have
@@ -150,30 +152,34 @@ def continued(points: np.ndarray, quads: np.ndarray, length: float) -> tuple[np.
             np.vstack((quads, np.stack((b, a, number[a], number[b]), axis=1))))
 
 
-def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return a free part in the place that fits a surface best, and the closest points of the surface.
+def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str], border: float
+            ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a free part in the place that fits a surface best, the closest points of the surface, and which nodes
+    reach beyond its border by no more than a length: only these are compared.
 
     The iteration over closest points starts from the place that fits the drawn part best, node by node.
     Source: Besl and McKay, IEEE Trans. Pattern Anal. Mach. Intell. 14 (1992) 239-256.
     """
     place, last = best_fit(free, drawn, mirror), np.inf
-    goal = normal_feet(place, wanted)
+    goal, beyond = normal_feet(place, wanted)
     for _ in range(MOST_FITS):
+        goal[beyond > border] = place[beyond > border]
         mean = float(np.linalg.norm(goal - place, axis=1).mean())
         if mean > (1 - SETTLED) * last:
             break
         last = mean
         place = best_fit(place, goal, mirror)
-        goal = normal_feet(place, wanted)
-    return place, goal
+        goal, beyond = normal_feet(place, wanted)
+    return place, goal, beyond <= border
 
 
-def normal_feet(points: np.ndarray, surface: Any) -> np.ndarray:
-    """Return points moved along the normals of a surface by their distances along these: where the sheet reaches beyond
-    the border of the surface, that is in its continuation."""
+def normal_feet(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return points moved along the normals of a surface by their distances along these, and the distances by which
+    they are beside it: where the sheet reaches beyond the border of the surface, the feet are in its continuation."""
     cells, closest = surface.find_closest_cell(points, return_closest_point=True)
     normals = np.asarray(surface.face_normals)[cells]
-    return np.asarray(points + ((closest - points) * normals).sum(axis=1)[:, None] * normals)
+    along = ((closest - points) * normals).sum(axis=1)[:, None] * normals
+    return np.asarray(points + along), np.linalg.norm(closest - points - along, axis=1)
 
 
 def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -339,17 +345,18 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     stopped: Problem | None = None
     while True:
         shapes = shapes_of(process)
-        place, goal = aligned(shapes.free, shapes.drawn, wanted, mirror)
-        deviation = np.linalg.norm(goal - place, axis=1)
+        place, goal, compared = aligned(shapes.free, shapes.drawn, wanted, mirror, BORDER * thickness)
+        deviation = np.linalg.norm(goal - place, axis=1)[compared]
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
         print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
-              f"{found[-1].rms:.4g} mm", flush=True)
+              f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
+              * bool(sum(~compared)), flush=True)
         if found[-1].largest <= tolerance or len(found) > loops:
             break
         folder = made_folder(work / f"loop_{len(found)}")
         surface = drawn_surface(process, BEYOND * thickness)
         for part in PARTS:
-            field = smooth_field(shapes.drawn, part * factor * (goal - place), mirror, length)
+            field = smooth_field(shapes.drawn[compared], part * factor * (goal - place)[compared], mirror, length)
             tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")
