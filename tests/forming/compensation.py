@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_compensation_hat", "arguments": ["hat"], "labels": ["slow"], "timeout": 1200, "cost": 120}
-#: {"name": "forming_compensation_rail", "arguments": ["rail", "--divisions", "40 24 1"], "labels": ["slow"],
-#:  "timeout": 3600, "cost": 480}
+#: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600, "cost": 600}
 """Tools that are corrected for springback.
 
     compensation.py hat --program build/release/dd3imp --work build/compensation
@@ -43,7 +42,7 @@ def compensate_rail(options):
     """Correct the tools of the rail, and write them as STEP files."""
     rail = copied(options.work, "rail")
     process = read_process(rail / "rail.toml")
-    process.operations[0].settings["divisions"] = options.divisions
+    process.operations[0].settings["divisions"] = "60 36 1"
     found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None)
     check(min(found)[0] <= 0.1, f"rail: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))
@@ -54,7 +53,6 @@ def main():
     """Run one of them."""
     parser = parser_of_runs(__doc__)
     parser.add_argument("part", choices=["hat", "rail"])
-    parser.add_argument("--divisions", default="60 36 1", help="elements of the rail (60 36 1)")
     options = parser.parse_args()
     compensate_hat(options) if options.part == "hat" else compensate_rail(options)
     sys.stdout.flush()
