@@ -8,13 +8,13 @@ module dd3_app_warnings
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : axis_name, to_text
   use dd3_input_case, only : case_t
-  use dd3_model_settings_report, only : initial_bead_lengths
   use dd3_model_element_length, only : element_length_t, excess_moment, &
       longest_known, measure_elements
   use dd3_model_held_loads, only : find_held_loads, held_load_t
   use dd3_model_model, only : model_t
   use dd3_model_sheet_normal, only : normal_warnings
-  use dd3_model_tool_report, only : tool_warnings
+  use dd3_report_settings_report, only : initial_bead_lengths
+  use dd3_report_tool_report, only : tool_warnings
   implicit none
   private
   public :: unit_warnings

@@ -6,8 +6,6 @@ module dd3_model_build
   use dd3_base_ranks, only : n_ranks
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : same_name, text_buffer_t, to_text
-  use dd3_contact_closest, only : hit_t
-  use dd3_contact_placement, only : placement_t
   use dd3_element_kinematics, only : element_gradients
   use dd3_element_work, only : element_work_t, new_element_work
   use dd3_base_verdict, only : verdict_t, verdict_converged
@@ -39,6 +37,8 @@ module dd3_model_build
   use dd3_sheet_curves, only : curve_t, read_curves
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   use dd3_sheet_trim, only : trim_sheet
+  use dd3_tools_closest, only : hit_t
+  use dd3_tools_placement, only : placement_t
   implicit none
   private
   public :: new_model

@@ -7,13 +7,13 @@
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
-  use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
+  use dd3_tools_closest, only : border_t, hint_t, hit_t
+  use dd3_tools_tool, only : find_on_tool
   implicit none
   private
   public :: layer_at, border_at, contact_penalty, starting_offset, held_offsets

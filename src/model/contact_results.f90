@@ -4,15 +4,15 @@
 module dd3_model_contact_results
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, largest_over_ranks, rank_of_smallest, sum_over_ranks
-  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_placement, only : placement_t
-  use dd3_contact_tool, only : find_on_tool
   use dd3_model_contact_layer, only : border_at
   use dd3_model_contact_points, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals, outward_normals
   use dd3_model_state, only : state_t
+  use dd3_tools_closest, only : hint_t, hit_t
+  use dd3_tools_placement, only : placement_t
+  use dd3_tools_tool, only : find_on_tool
   implicit none
   private
   public :: candidate_hits, nearest_candidate, nearest_t

@@ -3,16 +3,16 @@
 module dd3_model_energy
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
-  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_compliant, only : fraction_of, layer_energy, layer_t
-  use dd3_contact_crossing, only : crossing_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_tool, only : find_crossing_on_tool, find_on_tool
   use dd3_element_kinematics, only : point_volumes
   use dd3_material_elasticity, only : elastic_strain
   use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_tools_closest, only : hint_t, hit_t
+  use dd3_tools_crossing, only : crossing_t
+  use dd3_tools_tool, only : find_crossing_on_tool, find_on_tool
   implicit none
   private
   public :: contact_energy, elastic_energy, energy_error, plastic_work_increment

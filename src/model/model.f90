@@ -9,7 +9,6 @@ module dd3_model_model
   use dd3_input_case, only : fields_at, fields_every, fields_increments, history_spec_t, &
       output_spec_t
   use dd3_material_material, only : material_t
-  use dd3_contact_tool, only : tool_t
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
@@ -18,6 +17,7 @@ module dd3_model_model
   use dd3_model_phase, only : phase_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
+  use dd3_tools_tool, only : tool_t
   implicit none
   private
   public :: model_t, history_set_t, node_set_t

@@ -4,7 +4,6 @@
 module dd3_model_phases
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
-  use dd3_contact_separation, only : offset_at_gap
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
@@ -15,6 +14,7 @@ module dd3_model_phases
   use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_turn, only : new_turn, turn_t
   use dd3_model_withdrawal, only : withdrawal
+  use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
   public :: new_phases

@@ -7,12 +7,12 @@
 module dd3_model_state
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank
-  use dd3_contact_closest, only : hint_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_sheet_sheet, only : sheet_t
+  use dd3_tools_closest, only : hint_t
+  use dd3_tools_placement, only : placement_t
   implicit none
   private
   public :: state_t, phase_start_t, new_state

@@ -4,9 +4,9 @@
 !> one place only.
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp
-  use dd3_contact_closest, only : hint_t
   use dd3_model_part, only : of_elements, of_points
   use dd3_model_state, only : phase_start_t, state_t
+  use dd3_tools_closest, only : hint_t
   implicit none
   private
   public :: state_visitor_t, visit_state

@@ -4,9 +4,9 @@ module dd3_model_tool_surface
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
-  use dd3_contact_bezier, only : patch_t, new_patch, normal_at, largest_degree
-  use dd3_contact_surface, only : surface_t, join_patches
   use dd3_input_bezier_file, only : patch_spec_t, read_patches, push_file_errors
+  use dd3_tools_bezier, only : patch_t, new_patch, normal_at, largest_degree
+  use dd3_tools_surface, only : surface_t, join_patches
   implicit none
   private
   public :: read_tool_surface

@@ -4,12 +4,12 @@ module dd3_model_turning
   use dd3_base_kinds, only : pi, wp
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_placement, only : placement_t
   use dd3_linalg_tensor, only : cross, rotation_about
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_tools_placement, only : placement_t
   implicit none
   private
   public :: begin_turns, set_rotations, turning_rate, tool_origins, turned_angle, torque

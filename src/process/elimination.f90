@@ -8,13 +8,13 @@ module dd3_process_elimination
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_t
-  use dd3_contact_closest, only : hint_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_newton, only : newton_converged, newton_course_t, newton_problem_t, solve
   use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_region, only : new_region, region_t
   use dd3_system_system, only : system_t
+  use dd3_tools_closest, only : hint_t
   implicit none
   private
   public :: local_equilibrium_t, find_worst

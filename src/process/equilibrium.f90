@@ -10,7 +10,6 @@ module dd3_process_equilibrium
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
-  use dd3_contact_closest, only : hint_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
@@ -25,6 +24,7 @@ module dd3_process_equilibrium
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
+  use dd3_tools_closest, only : hint_t
   implicit none
   private
   public :: equilibrium_t

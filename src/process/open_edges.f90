@@ -5,13 +5,13 @@ module dd3_process_open_edges
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_integers, count_over_ranks, rank_of_smallest, sum_over_ranks
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
-  use dd3_contact_placement, only : placement_t
-  use dd3_contact_surface, only : edge_parameters, surface_t
-  use dd3_contact_tool, only : find_on_tool
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_tools_closest, only : hint_t, hit_t
+  use dd3_tools_placement, only : placement_t
+  use dd3_tools_surface, only : edge_parameters, surface_t
+  use dd3_tools_tool, only : find_on_tool
   implicit none
   private
   public :: passage_t, find_passage, observe_passages, edge_name, open_edge_at

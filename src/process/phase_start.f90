@@ -6,7 +6,6 @@ module dd3_process_phase_start
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks, this_rank
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
-  use dd3_contact_closest, only : hint_t, hit_t
   use dd3_contact_operator, only : status_gap
   use dd3_input_case, only : until_force
   use dd3_model_contact_point, only : contact_point_t
@@ -23,6 +22,7 @@ module dd3_process_phase_start
   use dd3_process_forces, only : evaluate_external
   use dd3_process_phase_end, only : until_value
   use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
+  use dd3_tools_closest, only : hint_t, hit_t
   implicit none
   private
   public :: begin_phase, check_returns, gap_of_tool, return_tools

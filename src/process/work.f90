@@ -5,12 +5,12 @@ module dd3_process_work
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap, status_slip
-  use dd3_contact_placement, only : point_displacement
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
+  use dd3_tools_placement, only : point_displacement
   implicit none
   private
   public :: add_work

@@ -9,7 +9,7 @@ module dd3_run_file_phase
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_output_run_summary, only : phase_summary_t
-  use dd3_process_attempt_report, only : tool_name
+  use dd3_report_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
   use dd3_run_file_sheet, only : add_axes
   implicit none

@@ -17,7 +17,7 @@ module dd3_run_file_writer
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_run_summary, only : phase_summary_t, run_summary_t
-  use dd3_process_job_size, only : job_size_t
+  use dd3_report_job_size, only : job_size_t
   use dd3_run_file_head, only : add_head, command_t, is_whole
   use dd3_run_file_input, only : add_input, add_location
   use dd3_run_file_material, only : add_materials, add_points

@@ -5,13 +5,9 @@ module dd3_system_contact
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank
   use dd3_base_threads, only : least_nodes, threads_for
-  use dd3_contact_closest, only : border_t, hint_t, hit_t
   use dd3_contact_compliant, only : compliant_operator, fraction_of, layer_t, rotated
-  use dd3_contact_crossing, only : crossing_t, near_border
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, &
       round_off, status_gap, status_slip, status_stick
-  use dd3_contact_placement, only : placement_t, relative_displacement
-  use dd3_contact_tool, only : find_crossing_on_tool, find_on_tool
   use dd3_model_contact_layer, only : border_at, contact_penalty, layer_at
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
@@ -20,6 +16,10 @@ module dd3_system_contact
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
   use dd3_system_contact_work, only : contact_work_t, open_candidate
+  use dd3_tools_closest, only : border_t, hint_t, hit_t
+  use dd3_tools_crossing, only : crossing_t, near_border
+  use dd3_tools_placement, only : placement_t, relative_displacement
+  use dd3_tools_tool, only : find_crossing_on_tool, find_on_tool
   implicit none
   private
   public :: evaluate_contact, predictor_contact

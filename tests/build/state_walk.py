@@ -35,7 +35,7 @@ def main():
     missing = []
     for source, type_name, variable in [("src/model/state.f90", "state_t", "state"),
                                         ("src/model/state.f90", "phase_start_t", "start"),
-                                        ("src/contact/closest.f90", "hint_t", "hint")]:
+                                        ("src/tools/closest.f90", "hint_t", "hint")]:
         names = components(ROOT / source, type_name)
         if not names:
             sys.exit(f"error: no components of {type_name} found in {source}")

@@ -126,10 +126,10 @@ def broken_examples(program, text):
 def missing_remedies():
     """Yield the remedies of messages that docs/status.md does not contain."""
     text = " ".join((ROOT / "docs" / "status.md").read_text(encoding="utf-8").split())
-    source = (ROOT / "src" / "process" / "attempt_report.f90").read_text(encoding="utf-8")
+    source = (ROOT / "src" / "report" / "attempt_report.f90").read_text(encoding="utf-8")
     found = ["".join(re.findall(r'"(.*?)"', value)) for value in REMEDY.findall(source)]
     if not found:
-        yield "src/process/attempt_report.f90 has no remedy"
+        yield "src/report/attempt_report.f90 has no remedy"
     for remedy in found:
         if remedy not in text:
             yield f"docs/status.md does not contain the remedy {remedy!r}"

@@ -1,0 +1,228 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Warnings about the tools at the end of a phase, or of a run that stops within one: without
+!> contact, entered between the nodes of the sheet, left over an open edge, ironing with contact
+!> points between nodes, crossed.
+module dd3_report_tool_warnings
+  use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks
+  use dd3_base_message, only : message_list_t
+  use dd3_base_text, only : to_text
+  use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_process_open_edges, only : edge_name
+  use dd3_report_tool_crossing, only : crossing_t, find_crossing
+  use dd3_tools_closest, only : hit_t
+  implicit none
+  private
+  public :: add_tool_warnings
+
+  !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
+  !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
+  !> quarter circle. A smaller depth than `slight_depth` thicknesses is not reported.
+  real(wp), parameter :: notable_depth = 0.1_wp, notable_slope = acos(-1.0_wp)/64.0_wp
+  real(wp), parameter :: slight_depth = 0.02_wp
+
+contains
+
+  !> Add the warnings.
+  subroutine add_tool_warnings(model, state, ended, warnings)
+    type(model_t), intent(in) :: model
+    !> Last state of the phase.
+    type(state_t), intent(in) :: state
+    !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
+    logical, intent(in) :: ended
+    type(message_list_t), intent(inout) :: warnings
+
+    integer :: a, b
+
+    associate (phase => model%phase(state%phase), active => model%phase(state%phase)%active)
+      do a = 1, model%n_tool
+        if (.not. active(a)) cycle
+        if (ended .and. .not. phase%withdrawn(a)) &
+            call add("W108", contact_warning(model, state, a))
+        if (.not. phase%withdrawn(a)) call add("W109", depth_warning(model, state, a))
+        call add("W110", edge_warning(model, state, a))
+        do b = a + 1, model%n_tool
+          if (.not. active(b)) cycle
+          call add("W111", crossing_warning(model, state, a, b))
+          call add("W112", ironing_warning(model, state, a, b))
+        end do
+      end do
+    end associate
+
+  contains
+
+    !> Add a warning that is not empty.
+    subroutine add(code, text)
+      character(len=*), intent(in) :: code, text
+
+      if (len(text) > 0) call warnings%add_new(code, "in phase '"// &
+          model%phase(state%phase)%name//"' "//text)
+    end subroutine add
+
+  end subroutine add_tool_warnings
+
+  !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
+  function contact_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    type(hit_t), allocatable :: hit(:)
+    type(nearest_t) :: nearest
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      if (state%touched(tool)) return
+      if (.not. phase%pressed(tool) .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
+    end associate
+    associate (distance => model%tolerance%tool_search)
+      hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
+    end associate
+    nearest = nearest_candidate(model, hit%distance, abs(hit%distance), hit%found)
+    text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
+    if (nearest%node > 0) then
+      text = text//"the nearest candidate, node "//to_text(nearest%node)//", is "// &
+          to_text(abs(nearest%distance), 3)//" mm "// &
+          trim(merge("behind   ", "in front ", nearest%distance < 0.0_wp))//" of its surface"
+    else
+      text = text//"no candidate lies in front of its surface"
+    end if
+    if (state%largest_depth(tool) > 0.0_wp) then
+      text = text//"; it passed between the nodes"
+    else
+      text = text//"; check its place, its normals and its set of candidates"
+    end if
+  end function contact_warning
+
+  !> Return a warning if a tool has entered the faces of the sheet notably between their nodes.
+  function depth_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    real(wp) :: edge(3, 4), length
+
+    text = ""
+    if (state%deepest_face(tool) == 0) return
+    associate (depth => state%largest_depth(tool)/model%thickness, &
+        face => model%face%corner(:, state%deepest_face(tool)))
+      edge = state%x(:, face) - state%x(:, cshift(face, 1))
+      length = maxval(norm2(edge, dim=1))
+      if (depth < slight_depth) return
+      if (depth < notable_depth .and. state%largest_depth(tool) < notable_slope*length) return
+      text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
+          to_text(state%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
+          " thicknesses), at the face of element "// &
+          to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "// &
+          to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "// &
+          suitable_mesh(state%deepest_radius(tool), length**2/(8.0_wp*state%largest_depth(tool)), &
+          model%thickness)
+    end associate
+  end function depth_warning
+
+  !> Return the mesh with which a radius of a tool gives no warning: the depth l**2/(8R) of elements
+  !> of length l is slight, or notable neither for the thickness nor for the length. Where the tool
+  !> is curved in two directions, or along the diagonal of a face, the depth is that of a smaller
+  !> radius.
+  function suitable_mesh(radius, radius_of_depth, thickness) result(text)
+    !> Radius of curvature, mm; huge for an edge without radius. Radius of a cylinder that enters
+    !> the elements as deep, mm.
+    real(wp), intent(in) :: radius, radius_of_depth
+    real(wp), intent(in) :: thickness
+    character(len=:), allocatable :: text
+
+    real(wp) :: length, smaller
+
+    text = "a line of nodes along the edge of the tool, or a radius there"
+    if (radius >= huge(1.0_wp)) return
+    smaller = min(radius, radius_of_depth)
+    length = max(sqrt(8.0_wp*smaller*slight_depth*thickness), &
+        min(sqrt(8.0_wp*smaller*notable_depth*thickness), 8.0_wp*smaller*notable_slope))
+    text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
+        to_text(radius, 3)//" mm"
+  end function suitable_mesh
+
+  !> Return a warning if the sheet has left a tool under pressure where its surface ends.
+  function edge_warning(model, state, tool) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    text = ""
+    associate (place => state%open_edge(:, tool), moved => state%open_edge_displacement(tool))
+      if (place(1) == 0) return
+      text = "the sheet left tool '"//model%tool(tool)%name//"' under pressure over the open "// &
+          edge_name(place(1), place(2))//", first at node "//to_text(place(3))
+      if (moved > 0.0_wp) text = text//" after "//to_text(moved, 4)//" mm of the tool"
+    end associate
+    if (model%phase(state%phase)%mixed) then
+      text = text//"; there is no contact beyond it"
+    else
+      text = text//"; it is rounded by half the thickness of the sheet"
+    end if
+    text = text//": if the tool goes on, continue its surface"
+  end function edge_warning
+
+  !> Return a warning if two tools have crossed in the phase.
+  function crossing_warning(model, state, a, b) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: a, b
+    character(len=:), allocatable :: text
+
+    type(crossing_t) :: crossing
+
+    text = ""
+    crossing = find_crossing(model, state, a, b)
+    if (crossing%depth <= 0.0_wp) return
+    text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
+        "' crossed each other: they overlap by "//to_text(crossing%depth, 3)//" mm near "// &
+        to_text(crossing%x(1), 4)//" "//to_text(crossing%x(2), 4)//" "//to_text(crossing%x(3), 4)
+  end function crossing_warning
+
+  !> Return a warning if two tools that move relative to each other pinch the sheet in a given
+  !> clearance and contact points lie between its nodes too: there the transverse shear of a column
+  !> of nodes, which ironing grades along the sheet, is taken for a curvature of the surface, and
+  !> the points thin the sheet too much.
+  function ironing_warning(model, state, a, b) result(text)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tools.
+    integer, intent(in) :: a, b
+    character(len=:), allocatable :: text
+
+    !> Tool in contact with each node; 0 for none.
+    integer :: touching(model%n_node)
+    integer :: node, pinched
+
+    text = ""
+    if (model%part%n_point == count(any(model%member, dim=1))) return
+    associate (phase => model%phase(state%phase))
+      if (any(phase%pressed([a, b]))) return
+      if (norm2(phase%move(:, a) - phase%move(:, b)) <= 0.0_wp) return
+    end associate
+    touching = 0
+    associate (n => model%n_contact_node)
+      touching(model%contact_node(:n)) = &
+          merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap)
+    end associate
+    call largest_over_ranks(size(touching), touching)
+    pinched = 0
+    do node = 1, model%n_node
+      if (touching(node) /= a .or. model%opposite(node) == 0) cycle
+      if (touching(model%opposite(node)) == b) pinched = pinched + 1
+    end do
+    if (pinched == 0) return
+    text = "tools '"//model%tool(a)%name//"' and '"//model%tool(b)%name// &
+        "' pinch the sheet at "//to_text(pinched)//" columns of nodes: where it is ironed, "// &
+        "forces are too low with contact points between the nodes; compare with points = 1 in "// &
+        "*CONTACT"
+  end function ironing_warning
+
+end module dd3_report_tool_warnings

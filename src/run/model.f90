@@ -1,0 +1,359 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Run of a job: phase by phase, increment by increment, with its records.
+module dd3_run_model
+  use dd3_base_kinds, only : wp
+  use dd3_base_cause_text, only : cause_code, cause_text
+  use dd3_base_clock, only : section_output, wall_time
+  use dd3_base_error, only : error_t, fatal_error, keep_first
+  use dd3_base_interrupt, only : interrupted, interruption, interruption_code
+  use dd3_base_log, only : log_t
+  use dd3_base_message, only : message_list_t
+  use dd3_base_ranks, only : largest_over_ranks, n_ranks
+  use dd3_base_text, only : axis_name, to_text
+  use dd3_base_threads, only : set_threads
+  use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
+      cause_beyond_until, cause_no_progress
+  use dd3_input_case, only : solver_spec_t
+  use dd3_linalg_solver, only : linear_solver_t, solver_options_t
+  use dd3_linalg_solver_registry, only : solver_names
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  use dd3_output_progress, only : progress_t, progress_view_t
+  use dd3_output_records, only : records_t
+  use dd3_output_run_summary, only : run_summary_t
+  use dd3_output_status, only : status_row_t
+  use dd3_process_increment, only : accept_increment, prepare_increment, try_increment
+  use dd3_process_phase_end, only : next_output_progress, phase_is_over, progress_tolerance, &
+      until_fraction
+  use dd3_process_phase_start, only : begin_phase, check_returns, return_tools
+  use dd3_process_predictor, only : new_prediction
+  use dd3_process_taken_over, only : balance_sheet
+  use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
+  use dd3_report_tool_depth, only : observe_tools
+  use dd3_report_attempt_report, only : failure_message, status_row
+  use dd3_report_phase_warnings, only : end_notes, start_notes
+  use dd3_system_system, only : new_system
+  implicit none
+  private
+  public :: run_model, run_start_t, solver_options
+
+  !> Initial data of a run.
+  type :: run_start_t
+    !> Initial state, or that of a restart.
+    type(state_t) :: state
+    !> Restart file, and folder of the records to be continued; not allocated if a new run starts.
+    character(len=:), allocatable :: restart, source
+    !> Settings of the linear solver.
+    type(solver_spec_t) :: solver
+    integer :: threads = 1
+    !> What has been done to the sheet before, a line each.
+    character(len=:), allocatable :: sheet_report
+    !> Folder of the results; it exists.
+    character(len=:), allocatable :: directory
+  end type run_start_t
+
+  !> Data of a run.
+  type :: run_t
+    type(state_t) :: committed, trial
+    type(stepper_t) :: stepper
+    type(records_t) :: records
+    type(progress_t) :: progress
+    type(run_summary_t) :: summary
+    !> Whether the log has told of a perturbed pivot.
+    logical :: told_perturbed = .false.
+  end type run_t
+
+contains
+
+  !> Run a model from a state to the end of its last phase. The records are complete also if the run
+  !> stops before.
+  subroutine run_model(model, start, solver, log, summary, error)
+    type(model_t), intent(in) :: model
+    !> Its state is released.
+    type(run_start_t), intent(inout) :: start
+    !> Linear solver, as `find_job_size` returns it; moved into the run.
+    class(linear_solver_t), allocatable, intent(inout) :: solver
+    type(log_t), intent(inout) :: log
+    type(run_summary_t), intent(out) :: summary
+    !> Set if the run stopped before the end.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(run_t) :: run
+    character(len=:), allocatable :: note
+    real(wp) :: began
+    integer :: number, stressed(1)
+
+    began = wall_time()
+    call set_threads(start%threads)
+    run%committed = start%state
+    start%state = state_t()
+    call summary%start(size(model%phase), run%committed)
+    run%summary = summary
+    call new_system(run%stepper%system, model, solver_options(start), error, solver)
+    if (allocated(error)) return
+    call log%note("linear solver: "//trim(run%stepper%system%solver%description))
+    if (model%part%divided) call log%note(model%part%report())
+    call new_prediction(run%stepper%prediction, model)
+    stressed = merge(1, 0, any(abs(run%committed%stress) > 0.0_wp))
+    call largest_over_ranks(1, stressed)
+    if (.not. run%committed%begun .and. stressed(1) > 0) then
+      call balance_sheet(model, run%stepper%system, run%committed, note, error)
+      if (allocated(error)) return
+      call log%report("N106", note)
+    end if
+    call open_records(run, model, start, log, error)
+    if (.not. allocated(error)) then
+      call run%progress%start(model)
+      do number = run%committed%phase, size(model%phase)
+        log%phase = model%phase(number)%name
+        run%summary%phase(number)%state = "running"
+        call run_phase(run, model, number, log, error)
+        call run%summary%phase(number)%finish(run%committed, error)
+        if (allocated(error)) exit
+      end do
+      call run%progress%finish(log)
+      call run%records%close(model, run%committed, error)
+    end if
+    call run%stepper%system%solver%release()
+    summary = run%summary
+    summary%profile = run%stepper%system%profile
+    summary%seconds = wall_time() - began
+  end subroutine run_model
+
+  !> Return the options of the linear solver. Several ranks need one that works on distributed
+  !> matrices.
+  type(solver_options_t) function solver_options(start)
+    type(run_start_t), intent(in) :: start
+
+    character(len=16), allocatable :: distributed(:)
+
+    solver_options%method = start%solver%method
+    distributed = solver_names(distributed=.true.)
+    if (n_ranks() > 1 .and. solver_options%method == "auto") solver_options%method = distributed(1)
+    solver_options%ilu_level = start%solver%ilu_level
+    solver_options%tolerance = start%solver%tolerance
+    solver_options%iterations = start%solver%iterations
+    solver_options%ordering = start%solver%ordering
+    solver_options%threads = start%threads
+    solver_options%keeps_matrix = n_ranks() == 1
+    if (start%solver%factors == "disk") solver_options%factor_folder = start%directory
+  end function solver_options
+
+  !> Open the records, or continue those of a restart.
+  subroutine open_records(run, model, start, log, error)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    type(run_start_t), intent(in) :: start
+    type(log_t), intent(inout) :: log
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: lost
+
+    if (allocated(start%source)) then
+      call run%records%resume(model, start%source, start%directory, run%committed, lost, error)
+      log%increment = run%committed%increment
+      call log%say("restart after increment "//to_text(run%committed%increment)//" of phase '"// &
+          model%phase(run%committed%phase)%name//"'")
+      if (len(lost) > 0) call log%report("W101", "these records begin at the restart, as those "// &
+          "of the earlier run are missing or have other columns:"//lost// &
+          "; earlier files in the folder are kept as *.until_<increment>")
+    else
+      call run%records%open(model, start%directory, run%committed, error)
+    end if
+    run%trial = run%committed
+  end subroutine open_records
+
+  !> Run one phase to its end.
+  subroutine run_phase(run, model, number, log, error)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    !> Number of the phase; a restart continues in the middle of it.
+    integer, intent(in) :: number
+    type(log_t), intent(inout) :: log
+    !> Set if the run stopped.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(error_t), allocatable :: late
+    type(message_list_t) :: notes
+    real(wp) :: next_output
+    logical :: ended
+    integer :: done
+
+    associate (phase => model%phase(number), committed => run%committed)
+      if (.not. committed%begun .or. committed%phase /= number) then
+        call return_tools(model, number, committed)
+        call check_returns(model, number, committed, error)
+        if (allocated(error)) return
+        call begin_phase(model, number, committed)
+        call start_notes(model, committed, notes)
+        call tell_all(log, notes)
+      end if
+      do while (.not. phase_is_over(model, committed))
+        next_output = next_output_progress(model%output, phase, committed)
+        done = committed%increment
+        call run_increment(run, model, error)
+        call note_solution(run, model, log)
+        if (committed%increment > done) then
+          call write_increment(run, model, next_output, log, late)
+          call keep_first(error, late)
+        end if
+        if (allocated(error)) exit
+        if (.not. interrupted()) cycle
+        call set_interruption(committed, error)
+        exit
+      end do
+      ended = .not. allocated(error)
+      call end_notes(model, committed, ended, notes)
+      call tell_all(log, notes)
+      if (ended) call run%records%write_phase_end(model, committed, error)
+    end associate
+  end subroutine run_phase
+
+  !> Log a change of the number of threads, and the first pivot that was perturbed.
+  subroutine note_solution(run, model, log)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+
+    associate (threads => run%stepper%system%threads, &
+        perturbed => run%stepper%attempt%solver%perturbed)
+      if (len_trim(threads%news) > 0) call log%note(trim(threads%news))
+      threads%news = ""
+      if (run%told_perturbed .or. perturbed%blocks == 0) return
+      run%told_perturbed = .true.
+      if (perturbed%row == 0) then
+        call log%report("W114", "linear system: "//to_text(perturbed%blocks)//" pivots vanished "// &
+            "and were perturbed; the solver does not tell which")
+      else
+        call log%report("W114", "linear system: the pivot of "//row_name(model, perturbed%row)// &
+            " along "//axis_name(perturbed%component)//" vanished and was perturbed")
+      end if
+    end associate
+  end subroutine note_solution
+
+  !> Return the name of a block row of the reduced system.
+  function row_name(model, row) result(name)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: row
+    character(len=:), allocatable :: name
+
+    if (row <= model%n_node) then
+      name = "node "//to_text(row)
+    else
+      name = "tool '"//trim(model%tool(findloc(model%tool_row, row, 1))%name)//"'"
+    end if
+  end function row_name
+
+  !> Log notes and warnings.
+  subroutine tell_all(log, notes)
+    type(log_t), intent(inout) :: log
+    type(message_list_t), intent(in) :: notes
+
+    integer :: i
+
+    do i = 1, notes%count
+      call log%tell(notes%item(i))
+    end do
+  end subroutine tell_all
+
+  !> Make one increment in as many attempts as allowed. A converged one is accepted even if its row
+  !> of status.csv cannot be written.
+  subroutine run_increment(run, model, error)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    !> Set if the increment failed.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(status_row_t) :: row
+    real(wp) :: began
+    logical :: predicted, again
+
+    associate (stepper => run%stepper, attempt => run%stepper%attempt, &
+        phase => model%phase(run%committed%phase), totals => run%summary%phase(run%committed%phase))
+      began = wall_time()
+      call prepare_increment(model, run%committed, stepper)
+      predicted = attempt%verdict%outcome == verdict_converged
+      if (predicted .and. .not. makes_progress(attempt, stepper%prediction%progress)) then
+        attempt%verdict%cause = cause_no_progress
+        call fatal_error(error, failure_message(model, run%committed, stepper), &
+            cause_code(attempt%verdict))
+        return
+      end if
+      do
+        if (predicted) call try_increment(model, run%committed, run%trial, stepper)
+        if (interrupted() .and. attempt%verdict%outcome /= verdict_converged) then
+          call set_interruption(run%committed, error)
+          return
+        end if
+        row = status_row(model, run%committed, stepper)
+        row%seconds = wall_time() - began
+        began = wall_time()
+        again = .false.
+        if (predicted .and. phase%newton%cutback .and. attempt%verdict%outcome == verdict_retry) &
+            call cut_back(attempt, again)
+        if (attempt%verdict%outcome == verdict_converged) then
+          call return_to_until(attempt, until_fraction(phase, run%committed, run%trial), again)
+          if (again) row%reason = cause_text(verdict_t(cause=cause_beyond_until), "")
+        end if
+        if (again) again = makes_progress(attempt, stepper%prediction%progress)
+        if (again) row%outcome = "retry"
+        call run%records%add_attempt(row, error)
+        call totals%add(row)
+        if (allocated(error) .or. .not. again) exit
+        if (attempt%verdict%outcome /= verdict_converged) totals%retries = totals%retries + 1
+      end do
+      if (attempt%verdict%outcome == verdict_converged) then
+        call accept_increment(model, run%trial, stepper, run%committed)
+        run%summary%increments = run%committed%increment
+      else if (.not. allocated(error)) then
+        call fatal_error(error, failure_message(model, run%committed, stepper), &
+            cause_code(attempt%verdict))
+      end if
+    end associate
+  end subroutine run_increment
+
+  !> Set the error of a run that was interrupted.
+  subroutine set_interruption(committed, error)
+    type(state_t), intent(in) :: committed
+    type(error_t), allocatable, intent(out) :: error
+
+    call fatal_error(error, interruption()//" after increment "//to_text(committed%increment), &
+        interruption_code)
+  end subroutine set_interruption
+
+  !> Write an accepted increment to the records and show it.
+  subroutine write_increment(run, model, next_output, log, error)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    !> Progress of the phase at which fields were due.
+    real(wp), intent(in) :: next_output
+    type(log_t), intent(inout) :: log
+    !> Set if a record cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(progress_view_t) :: view
+
+    call run%stepper%system%profile%start()
+    call observe_tools(model, run%committed)
+    log%increment = run%committed%increment
+    associate (state => run%committed, phase => model%phase(run%committed%phase), &
+        attempt => run%stepper%attempt)
+      call run%records%write_increment(model, state, &
+          state%progress >= next_output - progress_tolerance, error)
+      if (allocated(error)) return
+      view%phase = state%phase
+      view%progress = state%progress
+      view%travel = state%travel
+      view%increment = state%increment
+      view%r = attempt%limit%r
+      view%limiter = trim(attempt%limit%limiter)
+      view%iterations = size(attempt%course%norm)
+      if (phase%control > 0) view%force = &
+          dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
+      call run%progress%update(log, view)
+    end associate
+    call run%stepper%system%profile%add(section_output)
+  end subroutine write_increment
+
+end module dd3_run_model

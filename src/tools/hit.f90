@@ -1,0 +1,303 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Gap, normal and gradient of the normal at the closest point.
+!>
+!> Inside a patch, with a_ab = y_,a . y_,b, b_ab = y_,ab . n and A = a - d b:
+!>     dn/dx = - y_,c (a^-1 b A^-1)^cd y_,d^T,
+!> which is P/(R + d) on a sphere. On a sharp inner edge, with t the edge's tangent and r = x - y,
+!> n = +- r/|r| and
+!>     dn/dx = (I - n n^T - t t^T / (t.t - r.y_,tt)) / d.
+!> At the border the surface is rounded: with the unit normal m of the patch at the closest point y
+!> of the border and the radius R,
+!>     c = y - R m,    d = |x - c| - R,    n = (x - c)/|x - c|,
+!>     dn/dx = (I - n n^T - (1 + R m.y_,tt/t.t) t t^T / (t.t - r.y_,tt)) / |x - c|.
+!> Gap and normal are those of the patch where the node passes the border, and the derivatives are
+!> exact where m does not turn about the border. A node beside the border farther than a given gap
+!> has no contact.
+!> Source: Wriggers, Computational Contact Mechanics, 2nd ed. (2006), chapter 4; Konyukhov and
+!> Schweizerhof, Comput. Mech. 35 (2005) 190-213; for signs at edges Baerentzen and Aanaes, IEEE
+!> Trans. Vis. Comput. Graph. 11 (2005) 243-253.
+module dd3_tools_hit
+  use dd3_base_kinds, only : wp
+  use dd3_tools_bezier, only : patch_t, evaluate, normal_at, unit_normal
+  use dd3_tools_projection, only : projection_t
+  use dd3_tools_surface, only : surface_t, edge_number, edge_parameters
+  implicit none
+  private
+  public :: border_t, hit_t, new_hit, on_border, projection_location
+
+  !> Location of a closest point: inside its patch or at a smooth edge; on a sharp inner edge or the
+  !> outer border, with the node beside the patch.
+  integer, parameter :: on_patch = 0, on_sharp_edge = 1, on_border = 2
+
+  !> A node is beside the border or a sharp edge from this tangential distance on, relative to the
+  !> surface's size.
+  real(wp), parameter :: beside_border = 1.0e-6_wp, beside_sharp_edge = 1.0e-9_wp
+  !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
+  real(wp), parameter :: smallest_determinant = 1.0e-8_wp
+
+  !> Contact beside the border of a surface.
+  type :: border_t
+    !> Radius of the border, mm.
+    real(wp) :: radius = 0.0_wp
+    !> Gap below which there is contact, mm; none by default.
+    real(wp) :: reach = 0.0_wp
+    !> Largest angle by which the normal turns from that of the surface; no limit by default.
+    real(wp) :: turn = huge(1.0_wp)
+  end type border_t
+
+  !> Closest point of a surface to a node.
+  type :: hit_t
+    !> True if the node can touch the surface there.
+    logical :: found = .false.
+    !> True if the node is beside the surface, its closest point on the border.
+    logical :: border = .false.
+    !> Patch of the closest point, or 0.
+    integer :: patch = 0
+    !> Parameters of the closest point.
+    real(wp) :: u = 0.0_wp, v = 0.0_wp
+    !> Gap, negative inside the tool, mm.
+    real(wp) :: distance = huge(1.0_wp)
+    !> Closest point, mm.
+    real(wp) :: point(3) = 0.0_wp
+    !> Outward unit normal: the direction of the force without friction.
+    real(wp) :: normal(3) = 0.0_wp
+    !> Gradient of the gap: the normal, but where the turn of the normal beside the border is
+    !> limited.
+    real(wp) :: gap_gradient(3) = 0.0_wp
+    !> Angle between the normals of the rounded border and of the surface.
+    real(wp) :: turn = 0.0_wp
+    !> Gradient of the normal, dn/dx, symmetric, 1/mm.
+    real(wp) :: dnormal(3, 3) = 0.0_wp
+  end type hit_t
+
+contains
+
+  !> Make a hit from a projection.
+  pure subroutine new_hit(hit, surface, k, x, projection, radius)
+    !> `found` whatever its distance.
+    type(hit_t), intent(inout) :: hit
+    type(surface_t), intent(in) :: surface
+    !> Number of the patch.
+    integer, intent(in) :: k
+    !> Position of the node, mm.
+    real(wp), intent(in) :: x(3)
+    type(projection_t), intent(in) :: projection
+    !> Radius of the border, mm.
+    real(wp), intent(in) :: radius
+
+    real(wp) :: normal(3), first(3, 2), second(3, 3)
+    integer :: location
+    logical :: regular
+
+    location = on_patch
+    if (any(projection%active /= 0)) location = projection_location(surface, k, projection)
+    hit%patch = k
+    hit%u = projection%uv(1)
+    hit%v = projection%uv(2)
+    hit%point = x + projection%offset
+    hit%border = location == on_border
+    hit%found = .true.
+    select case (location)
+    case (on_border)
+      call set_border_hit(hit, surface%patch(k), projection, radius)
+    case (on_sharp_edge)
+      call set_edge_hit(hit, surface, k, projection)
+    case default
+      call unit_normal(surface%patch(k), projection%first, normal, regular)
+      if (regular) then
+        call set_patch_hit(hit, surface%patch(k)%flat, normal, projection%offset, &
+            projection%first, projection%second)
+      else
+        call evaluate_near_pole(surface%patch(k), projection%uv, normal, first, second, hit%found)
+        call set_patch_hit(hit, .false., normal, projection%offset, first, second)
+      end if
+    end select
+  end subroutine new_hit
+
+  !> Return the location of a projection with active bounds.
+  pure integer function projection_location(surface, k, projection) result(location)
+    type(surface_t), intent(in) :: surface
+    !> Number of the patch.
+    integer, intent(in) :: k
+    type(projection_t), intent(in) :: projection
+
+    real(wp) :: tangential
+    integer :: a, e
+
+    location = on_patch
+    do a = 1, 2
+      if (projection%active(a) == 0) cycle
+      e = edge_number(a, projection%active(a) > 0)
+      if (surface%edge(e, k)%pole) cycle
+      tangential = abs(dot_product(projection%offset, projection%first(:, a))) &
+          /max(sqrt(dot_product(projection%first(:, a), projection%first(:, a))), tiny(1.0_wp))
+      if (surface%edge(e, k)%patch == 0) then
+        if (tangential > beside_border*surface%size) location = on_border
+      else if (.not. surface%edge(e, k)%smooth) then
+        if (tangential > beside_sharp_edge*surface%size) location = max(location, on_sharp_edge)
+      end if
+    end do
+  end function projection_location
+
+  !> Set gap, normal and its gradient on a smooth patch.
+  pure subroutine set_patch_hit(hit, flat, normal, offset, first, second)
+    type(hit_t), intent(inout) :: hit
+    !> True if the patch has no curvature.
+    logical, intent(in) :: flat
+    !> Unit normal.
+    real(wp), intent(in) :: normal(3)
+    !> Vector from the node to the closest point, mm.
+    real(wp), intent(in) :: offset(3)
+    !> S_u, S_v, mm.
+    real(wp), intent(in) :: first(3, 2)
+    !> S_uu, S_vv, S_uv, mm.
+    real(wp), intent(in) :: second(3, 3)
+
+    real(wp) :: a(3), b(3), c(3), m(2, 2), determinant(2)
+    integer :: i
+
+    hit%normal = normal
+    hit%distance = -dot_product(offset, normal)
+    hit%dnormal = 0.0_wp
+    if (flat) return
+    a(1) = dot_product(first(:, 1), first(:, 1))
+    a(2) = dot_product(first(:, 2), first(:, 2))
+    a(3) = dot_product(first(:, 1), first(:, 2))
+    do i = 1, 3
+      b(i) = dot_product(second(:, i), normal)
+    end do
+    c = a - hit%distance*b
+    determinant(1) = a(1)*a(2) - a(3)**2
+    determinant(2) = c(1)*c(2) - c(3)**2
+    if (min(c(1), c(2)) <= 0.0_wp .or. determinant(2) <= smallest_determinant*determinant(1)) then
+      c = a
+      determinant(2) = determinant(1)
+    end if
+    if (determinant(1) <= tiny(1.0_wp)) return
+    m(1, 1) = a(2)*b(1) - a(3)*b(3)
+    m(1, 2) = a(2)*b(3) - a(3)*b(2)
+    m(2, 1) = a(1)*b(3) - a(3)*b(1)
+    m(2, 2) = a(1)*b(2) - a(3)*b(3)
+    m = matmul(m, reshape([c(2), -c(3), -c(3), c(1)], [2, 2]))/(determinant(1)*determinant(2))
+    m(1, 2) = 0.5_wp*(m(1, 2) + m(2, 1))
+    do i = 1, 3
+      hit%dnormal(:, i) = -(m(1, 1)*first(i, 1) + m(1, 2)*first(i, 2))*first(:, 1) &
+          - (m(1, 2)*first(i, 1) + m(2, 2)*first(i, 2))*first(:, 2)
+    end do
+  end subroutine set_patch_hit
+
+  !> Evaluate normal and derivatives at a point near a pole.
+  pure subroutine evaluate_near_pole(patch, uv, normal, first, second, regular)
+    type(patch_t), intent(in) :: patch
+    !> Parameters of the pole.
+    real(wp), intent(in) :: uv(2)
+    !> Unit normal.
+    real(wp), intent(out) :: normal(3)
+    !> S_u, S_v near the pole, mm.
+    real(wp), intent(out) :: first(3, 2)
+    !> S_uu, S_vv, S_uv near the pole, mm.
+    real(wp), intent(out) :: second(3, 3)
+    !> False if there is no normal.
+    logical, intent(out) :: regular
+
+    real(wp), parameter :: step = 1.0e-3_wp
+    real(wp) :: point(3), near(2)
+
+    call normal_at(patch, uv(1), uv(2), normal, regular)
+    near = uv + step*(0.5_wp - uv)
+    call evaluate(patch, near(1), near(2), point, first, second)
+  end subroutine evaluate_near_pole
+
+  !> Set gap, normal and its gradient at a sharp inner edge or corner.
+  pure subroutine set_edge_hit(hit, surface, k, projection)
+    type(hit_t), intent(inout) :: hit
+    type(surface_t), intent(in) :: surface
+    !> Number of the patch.
+    integer, intent(in) :: k
+    type(projection_t), intent(in) :: projection
+
+    real(wp) :: mean(3)
+
+    mean = mean_normal(surface, k, projection)
+    hit%distance = sign(projection%distance, -dot_product(projection%offset, mean))
+    hit%normal = -projection%offset/hit%distance
+    call set_normal_gradient(hit, projection, hit%distance, [0.0_wp, 0.0_wp, 0.0_wp])
+  end subroutine set_edge_hit
+
+  !> Set gap, normal and its gradient beside the border.
+  pure subroutine set_border_hit(hit, patch, projection, radius)
+    type(hit_t), intent(inout) :: hit
+    type(patch_t), intent(in) :: patch
+    type(projection_t), intent(in) :: projection
+    !> Radius of the border, mm.
+    real(wp), intent(in) :: radius
+
+    real(wp) :: normal(3), distance
+
+    call normal_at(patch, projection%uv(1), projection%uv(2), normal, hit%found)
+    hit%normal = radius*normal - projection%offset
+    distance = norm2(hit%normal)
+    hit%found = hit%found .and. distance > smallest_determinant*radius
+    if (.not. hit%found) return
+    hit%normal = hit%normal/distance
+    hit%distance = distance - radius
+    call set_normal_gradient(hit, projection, distance, radius*normal)
+  end subroutine set_border_hit
+
+  !> Set the gradient of the normal at an edge or corner.
+  pure subroutine set_normal_gradient(hit, projection, distance, radius)
+    !> Has its normal.
+    type(hit_t), intent(inout) :: hit
+    type(projection_t), intent(in) :: projection
+    !> Distance of the node from the centre of the rounded edge, negative inside the tool, and
+    !> vector from the centre to the edge, mm.
+    real(wp), intent(in) :: distance, radius(3)
+
+    real(wp) :: tangent(3), square, stretch, along
+    integer :: a, i
+
+    hit%dnormal = 0.0_wp
+    do i = 1, 3
+      hit%dnormal(i, i) = 1.0_wp/distance
+      hit%dnormal(:, i) = hit%dnormal(:, i) - hit%normal*hit%normal(i)/distance
+    end do
+    do a = 1, 2
+      if (projection%active(a) /= 0) cycle
+      tangent = projection%first(:, a)
+      square = dot_product(tangent, tangent)
+      stretch = max(square + dot_product(projection%offset, projection%second(:, a)), &
+          smallest_determinant*square)
+      along = max(0.0_wp, 1.0_wp + dot_product(radius, projection%second(:, a))/square)
+      do i = 1, 3
+        hit%dnormal(:, i) = hit%dnormal(:, i) - along*tangent*tangent(i)/(stretch*distance)
+      end do
+    end do
+  end subroutine set_normal_gradient
+
+  !> Return the sum of the normals of a patch and of its neighbours across the active bounds.
+  pure function mean_normal(surface, k, projection) result(mean)
+    type(surface_t), intent(in) :: surface
+    !> Number of the patch.
+    integer, intent(in) :: k
+    type(projection_t), intent(in) :: projection
+    real(wp) :: mean(3)
+
+    real(wp) :: normal(3), uv(2), t
+    integer :: a, e
+    logical :: regular
+
+    call normal_at(surface%patch(k), projection%uv(1), projection%uv(2), mean, regular)
+    do a = 1, 2
+      if (projection%active(a) == 0) cycle
+      e = edge_number(a, projection%active(a) > 0)
+      associate (edge => surface%edge(e, k))
+        if (edge%patch == 0) cycle
+        t = projection%uv(3 - a)
+        uv = edge_parameters(edge%edge, merge(1.0_wp - t, t, edge%reversed))
+        call normal_at(surface%patch(edge%patch), uv(1), uv(2), normal, regular)
+      end associate
+      mean = mean + normal
+    end do
+  end function mean_normal
+
+end module dd3_tools_hit
