@@ -10,6 +10,7 @@ module dd3_model_energy
   use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_list, only : dissipated_work
   use dd3_tools_closest, only : hint_t, hit_t
   use dd3_tools_crossing, only : crossing_t
   use dd3_tools_tool, only : find_crossing_on_tool, find_on_tool
@@ -94,7 +95,7 @@ contains
     type(state_t), intent(in) :: state
 
     energy_error = state%tool_work + state%external_work - state%internal_work &
-        - state%friction_work - state%bead_work - state%damping_work - contact_energy(model, state)
+        - state%friction_work - dissipated_work(state%term) - contact_energy(model, state)
   end function energy_error
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of

@@ -1,20 +1,15 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Weight of the sheet: a load on all nodes by their masses, which are those of the initial
 !> elements, consistent with the shape functions.
-!>
-!> A sheet whose supports leave it free, above the tools or on a few points of them, has no
-!> equilibrium under its weight until it lies on the tools. Forces and springs at the nodes carry it
-!> at the start of the phase and fade: it is laid down.
 module dd3_model_gravity
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : determinant
-  use dd3_model_loads, only : load_set_t
+  use dd3_model_load_sets, only : load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_rigid_motion, only : new_supported_part, parts_of_nodes, rigid_motion_t
-  use dd3_model_state, only : state_t
   implicit none
   private
-  public :: gravity_name, new_weight_set, lay_down
+  public :: gravity_name, new_weight_set, is_free
 
   !> Name of the set of the weight, which no set of the input has.
   character(len=*), parameter :: gravity_name = "*gravity"
@@ -50,33 +45,13 @@ contains
     set%weight = mass/max(tiny(1.0_wp), set%scale)
   end subroutine new_weight_set
 
-  !> At the start of a phase, let the weight that it puts on a free sheet act at once, and forces
-  !> that fade carry it.
-  subroutine lay_down(model, state)
-    type(model_t), intent(in) :: model
-    !> With the loads at the start and at the end of the running phase.
-    type(state_t), intent(inout) :: state
-
-    integer :: i, s
-
-    do s = 1, size(model%load_set)
-      associate (set => model%load_set(s), from => state%start%load(:, s), &
-          to => state%start%load_end(:, s))
-        if (set%name /= gravity_name .or. norm2(from) > 0.0_wp .or. .not. norm2(to) > 0.0_wp) cycle
-        if (.not. is_free(model, state)) cycle
-        from = to
-        state%load(:, s) = to
-        do i = 1, size(set%node)
-          state%start%laying(:, set%node(i)) = set%weight(i)*to
-        end do
-      end associate
-    end do
-  end subroutine lay_down
-
   !> Whether the supports leave the sheet, or a part of it, free to move as a rigid body.
-  logical function is_free(model, state)
+  logical function is_free(model, number, x)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
 
     type(rigid_motion_t) :: body
     integer :: part(model%n_node), k
@@ -84,7 +59,7 @@ contains
     part = parts_of_nodes(model%connectivity, model%n_node)
     is_free = .false.
     do k = 1, maxval(part)
-      call new_supported_part(body, state%x, model%phase(state%phase)%held(), part == k)
+      call new_supported_part(body, x, model%phase(number)%held(), part == k)
       is_free = is_free .or. len(body%free_motion()) > 0
     end do
   end function is_free

@@ -12,7 +12,7 @@ module dd3_model_model
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_drawbead, only : drawbead_t
   use dd3_model_internal_variables, only : variable_t
-  use dd3_model_loads, only : load_set_t, pressure_set_t
+  use dd3_model_load_sets, only : load_set_t, pressure_set_t
   use dd3_model_part, only : part_t
   use dd3_model_phase, only : phase_t
   use dd3_model_sheet_faces, only : sheet_faces_t

@@ -7,7 +7,7 @@ module dd3_model_phases
   use dd3_input_case, only : case_t, phase_spec_t, until_never
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_displacements, only : set_displacements
-  use dd3_model_loads, only : face_load_weights, load_set_t, pressure_set_t
+  use dd3_model_load_sets, only : face_load_weights, load_set_t, pressure_set_t
   use dd3_model_gravity, only : gravity_name, new_weight_set
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t

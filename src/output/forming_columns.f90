@@ -7,6 +7,8 @@ module dd3_output_forming_columns
   use dd3_model_energy, only : contact_energy, elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_list, only : new_terms
+  use dd3_model_terms_term, only : term_box_t
   use dd3_output_csv, only : table_t
   implicit none
   private
@@ -25,20 +27,17 @@ contains
     !> Separated by commas.
     character(len=:), allocatable, intent(inout) :: names, units
 
+    type(term_box_t), allocatable :: terms(:)
     integer :: i
 
     do i = 1, model%n_tool
       names = names//","//trim(model%tool(i)%name)//"_area,"//trim(model%tool(i)%name)//"_pressure"
       units = units//",mm2,MPa"
     end do
-    if (allocated(model%drawbead)) then
-      do i = 1, size(model%drawbead)
-        names = names//","//model%drawbead(i)%name//"_restraint,"//model%drawbead(i)%name//"_length"
-        units = units//",N,mm"
-      end do
-      if (size(model%drawbead) > 0) names = names//",bead_work"
-      if (size(model%drawbead) > 0) units = units//",mJ"
-    end if
+    call new_terms(terms, model)
+    do i = 1, size(terms)
+      call terms(i)%of%columns(model, names, units)
+    end do
     do i = 1, size(energy_name)
       names = names//","//trim(energy_name(i))
       units = units//",mJ"
@@ -52,6 +51,7 @@ contains
     type(state_t), intent(in) :: state
 
     type(tool_contact_t) :: contact(model%n_tool)
+    real(wp), allocatable :: row(:)
     integer :: i
 
     if (model%n_tool > 0) contact = tool_contacts(model, state)
@@ -59,11 +59,11 @@ contains
       call table%add_real(contact(i)%area)
       call table%add_real(contact(i)%pressure)
     end do
-    do i = 1, size(state%bead_length)
-      call table%add_real(state%bead_restraint(i))
-      call table%add_real(state%bead_length(i))
+    row = [real(wp) ::]
+    do i = 1, size(state%term)
+      call state%term(i)%of%values(row)
     end do
-    if (size(state%bead_length) > 0) call table%add_real(state%bead_work)
+    call table%add_reals(row)
     call table%add_reals(energies(model, state))
   end subroutine add_forming_values
 

@@ -12,6 +12,7 @@ module dd3_output_history
   use dd3_model_model, only : model_t
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
+  use dd3_model_terms_released, only : released_tool, remaining_force
   use dd3_model_turning, only : torque, turned_angle
   use dd3_output_csv, only : table_t
   use dd3_output_forming_columns, only : add_forming_heading, add_forming_values
@@ -243,7 +244,8 @@ contains
     real(wp) :: reaction(3, model%n_node)
 
     reaction = state%internal_force - state%external_force
-    where (spread(state%fading_tool == 0, 1, 3)) reaction = reaction - state%fading
+    where (spread(released_tool(state%term) == 0, 1, 3)) &
+        reaction = reaction - remaining_force(state%term)
     reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
   end function reactions
 

@@ -14,7 +14,8 @@ module dd3_output_restart
   use dd3_model_model, only : model_t
   use dd3_model_part, only : part_t
   use dd3_model_state, only : new_state, state_t
-  use dd3_model_state_walk, only : state_visitor_t, visit_state
+  use dd3_model_state_visitor, only : state_visitor_t
+  use dd3_model_state_walk, only : visit_state
   use dd3_output_hdf5, only : integer_attribute, kind_int, kind_real, make_group, series_t, &
       start_hdf5, text_attribute
   use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integer_attribute, &
@@ -440,8 +441,8 @@ contains
     logical :: ok
 
     call dataset_size(self%file, "state/"//name, there)
-    if (any(name == [character(len=18) :: "load", "start_load", "start_load_end", "pressure", &
-        "start_pressure", "start_pressure_end"])) then
+    if (any(name == [character(len=18) :: "load", "start_load", "final_load", "pressure", &
+        "start_pressure", "final_pressure"])) then
       ok = there >= 0
     else
       ok = there == n

@@ -13,14 +13,14 @@ module dd3_process_equilibrium
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_state, only : state_t
-  use dd3_process_damping, only : is_release
+  use dd3_model_terms_list, only : add_stiffness
+  use dd3_model_terms_viscous, only : has_viscous
   use dd3_process_elimination, only : find_worst, local_equilibrium_t
   use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_norm, only : evaluate_norm, residual_t, tool_imbalance
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_linear_problem, only : unknowns_t
-  use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
   use dd3_system_system, only : system_t
@@ -47,6 +47,8 @@ module dd3_process_equilibrium
     integer, allocatable :: status(:, :)
     !> Work of the linear solver.
     type(solve_info_t) :: solver
+    !> Whether the phase releases the sheet.
+    logical :: releases = .false.
     !> Whether the stiffness of the trial state is assembled.
     logical, private :: assembled = .false.
     !> Node that moves farthest in the solution of the last linearisation, and by how much, mm.
@@ -147,7 +149,7 @@ contains
       call system%profile%start()
       if (.not. first) call assemble_stiffness(system, model, self%committed, trial)
       system%problem%residual = system%problem%residual - system%enhanced%force
-      call add_load_stiffness(system, model, trial)
+      call add_stiffness(trial%term, model, trial%configuration_t, system%matrix)
       if (system%problem%missed) then
         where (phase%prescribed) system%problem%prescribed = system%problem%target - trial%x
       end if
@@ -190,7 +192,7 @@ contains
       self%farthest = maxloc(moved, dim=1)
       self%farthest_moved = moved(self%farthest)
       if (self%farthest_moved <= longest_step*thickness) return
-      if (is_release(self%model, self%trial) .and. .not. any(problem%damping > 0.0_wp)) then
+      if (self%releases .and. .not. has_viscous(self%trial%term)) then
         if (self%farthest_moved <= nearly_singular*thickness) return
         verdict%outcome = verdict_retry
         call explain(self, verdict)
@@ -267,7 +269,7 @@ contains
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
       if (phase%mixed .or. .not. phase%newton%elimination) return
-      if (any(system%problem%damping > 0.0_wp)) return
+      if (has_viscous(trial%term)) return
       call system%profile%start()
       call find_worst(model, trial, system, chosen)
       if (any(chosen)) then

@@ -8,10 +8,12 @@ module dd3_process_increment
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_state, only : state_t
+  use dd3_model_terms_list, only : begin_increment
+  use dd3_model_terms_released, only : has_released
+  use dd3_model_terms_viscous, only : set_viscous, viscous_coefficients
   use dd3_model_turning, only : set_rotations
-  use dd3_process_damping, only : damping_coefficients, is_release
   use dd3_process_equilibrium, only : equilibrium_t
-  use dd3_process_forces, only : evaluate_external, set_loads
+  use dd3_process_forces, only : set_loads
   use dd3_process_limiters, only : limit_increment
   use dd3_process_newton, only : newton_converged, newton_diverging, newton_interrupted, &
       newton_slow, solve
@@ -32,11 +34,13 @@ contains
   !> prediction.
   subroutine prepare_increment(model, committed, stepper)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
+    !> Its terms get what is fixed in the increment.
+    type(state_t), intent(inout) :: committed
     type(stepper_t), intent(inout) :: stepper
 
-    stepper%attempt = attempt_t(releases=is_release(model, committed))
-    stepper%system%problem%damping = 0.0_wp
+    stepper%attempt = attempt_t(releases=has_released(committed%term) &
+        .or. any(model%phase(committed%phase)%withdrawn))
+    call begin_increment(committed%term, model, committed%configuration_t)
     stepper%system%contact%turn_limited = .false.
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt%solver, &
         stepper%attempt%verdict)
@@ -62,9 +66,9 @@ contains
     associate (prediction => stepper%prediction, attempt => stepper%attempt, &
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
-      if (attempt%after_failure .and. attempt%releases) &
-          equilibrium%system%problem%damping = damping_coefficients(model, committed, &
-          attempt%number - 1)
+      equilibrium%releases = attempt%releases
+      if (attempt%after_failure .and. attempt%releases) call set_viscous(trial%term, &
+          viscous_coefficients(model, committed, attempt%number - 1))
       equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
@@ -75,7 +79,6 @@ contains
       call set_rotations(phase, trial)
       call equilibrium%begin(prediction%step%scaled(r))
       call set_loads(model, trial)
-      call evaluate_external(model, trial)
       call set_target(model, trial, stepper%system%problem)
       call solve(equilibrium, convergence_tolerance(phase, trial), phase%newton%iterations, &
           phase%newton%line_search, attempt%course)
@@ -168,8 +171,6 @@ contains
     type(state_t), intent(inout) :: committed
 
     call add_work(model, stepper%system%contact, committed, trial)
-    trial%damping_work = committed%damping_work &
-        + sum(stepper%system%problem%damping*sum((trial%x - committed%x)**2, dim=1))
     call observe_passages(model, committed, trial)
     trial%open = has_opened(model, trial)
     committed = trial

@@ -13,9 +13,9 @@ module dd3_process_limiters
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_drawbeads, only : presses_by_bead
   use dd3_process_phase_end, only : next_output_progress, until_value
   use dd3_process_step_control, only : limit_t, stepper_t
-  use dd3_system_drawbead, only : presses_by_bead
   implicit none
   private
   public :: limit_increment

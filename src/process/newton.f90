@@ -130,7 +130,7 @@ contains
     !> Whether the trial solution has changed.
     logical, intent(out) :: eliminated
 
-    eliminated = self%scaled_norm < bound .and. .false.
+    eliminated = .false.
   end subroutine eliminate_nothing
 
   !> Iterate from the present trial solution.

@@ -12,16 +12,15 @@ module dd3_process_phase_start
   use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy, elastic_energy
-  use dd3_model_gravity, only : lay_down
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_list, only : external_forces
+  use dd3_model_terms_released, only : hold_released
   use dd3_model_turning, only : begin_turns
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
-  use dd3_process_forces, only : evaluate_external
   use dd3_process_phase_end, only : until_value
-  use dd3_system_drawbead, only : normal_fraction, remaining_bead_load
   use dd3_tools_closest, only : hint_t, hit_t
   implicit none
   private
@@ -44,14 +43,18 @@ contains
     !> The committed state.
     type(state_t), intent(inout) :: state
 
-    real(wp) :: stored
-    integer :: tool
+    real(wp) :: stored, force(3, model%n_node)
+    integer :: tool, k, released_by(model%n_node)
+    logical :: lost
 
     stored = contact_energy(model, state)
-    call free_directions(model, number, state)
-    call release_beads(model, number, state)
-    state%bead_normal = normal_fraction(state)
-    where (model%phase(number)%bead_new) state%bead_normal = 0.0_wp
+    force = 0.0_wp
+    lost = .false.
+    do k = 1, size(state%term)
+      call state%term(k)%of%lose(model, number, state%configuration_t, force, lost)
+      call state%term(k)%of%begin_phase(model, number, state%configuration_t)
+    end do
+    call free_directions(model, number, state, force, lost)
     do tool = 1, model%n_tool
       if (returns(model, number, tool)) state%hint(tool, :) = hint_t()
     end do
@@ -65,23 +68,15 @@ contains
     state%open_edge = 0
     state%open_edge_displacement = 0.0_wp
     associate (phase => model%phase(number), start => state%start)
-      start%load = state%load
-      start%load_end = phase%load_end
-      where (spread(phase%keeps_load, 1, 3)) start%load_end = start%load
-      start%pressure = state%pressure
-      start%pressure_end = phase%pressure_end
-      where (phase%keeps_pressure) start%pressure_end = start%pressure
       start%x = state%x
-      start%fading_turns = number > 1
-      start%laying = 0.0_wp
-      call lay_down(model, state)
       call begin_turns(phase, state)
       call set_tool_loads(phase, state)
       start%until_from_below = .true.
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
-      call release_contacts(model, phase, state)
-      if (any(phase%withdrawn)) state%plastic = .false.
+      call release_contacts(model, phase, state, force, released_by, lost)
+      call hold_released(state%term, force, released_by, turns=number > 1)
+      if (lost .or. any(phase%withdrawn)) state%plastic = .false.
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
@@ -91,10 +86,9 @@ contains
       start%tool_displacement = state%tool_displacement
       start%plastic_strain = state%internal_variables(1, :, :)
       start%elastic_energy = elastic_energy(model, state)
-      start%damping_work = state%damping_work
     end associate
     state%tool_work = state%tool_work + contact_energy(model, state) - stored
-    call evaluate_external(model, state)
+    state%external_force = external_forces(state%term, model, state%configuration_t)
   end subroutine begin_phase
 
   !> Whether a phase names a tool that an earlier one released, so that it has contact again.
@@ -197,12 +191,16 @@ contains
     end associate
   end subroutine set_tool_loads
 
-  !> Turn the reactions of the directions that the phase frees into fading forces.
-  subroutine free_directions(model, number, state)
+  !> Take the reactions of the directions that the phase frees from the forces of lost constraints.
+  subroutine free_directions(model, number, state, force, lost)
     type(model_t), intent(in) :: model
     integer, intent(in) :: number
     !> The state at the end of the phase before.
-    type(state_t), intent(inout) :: state
+    type(state_t), intent(in) :: state
+    !> Forces of the nodes on lost constraints, `(3, n_node)`, N.
+    real(wp), intent(inout) :: force(:, :)
+    !> Set where a direction is freed.
+    logical, intent(inout) :: lost
 
     real(wp) :: reaction(3, model%n_node)
     logical :: freed(3, model%n_node)
@@ -213,57 +211,45 @@ contains
     reaction = state%internal_force - state%external_force
     reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
     where (.not. freed) reaction = 0.0_wp
-    where (all(abs(state%fading) <= 0.0_wp, dim=1)) state%fading_tool = 0
-    state%fading = state%fading - reaction
-    if (any(freed)) state%plastic = .false.
+    force = force - reaction
+    lost = lost .or. any(freed)
   end subroutine free_directions
 
-  !> Turn the forces of draw-beads that no longer act into fading forces.
-  subroutine release_beads(model, number, state)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: number
-    !> The state at the end of the phase before.
-    type(state_t), intent(inout) :: state
-
-    real(wp), allocatable :: remaining(:, :)
-
-    if (size(state%bead_load) == 0 .or. number == 1) return
-    if (all(model%phase(number)%bead_active .or. .not. model%phase(number - 1)%bead_active)) return
-    remaining = remaining_bead_load(model, number, state)
-    state%fading = state%fading - (state%bead_load - remaining)
-    state%bead_load = remaining
-    state%plastic = .false.
-  end subroutine release_beads
-
-  !> Turn the contact forces of tools that still touched at the end of their withdrawal into fading
-  !> forces.
-  subroutine release_contacts(model, phase, state)
+  !> Add the contact forces of tools that still touched at the end of their withdrawal to the forces
+  !> of lost constraints.
+  subroutine release_contacts(model, phase, state, force, released_by, lost)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state
+    !> Forces of the nodes on lost constraints, `(3, n_node)`, N.
+    real(wp), intent(inout) :: force(:, :)
+    !> Tool that releases each node, `(n_node)`; 0 for none.
+    integer, intent(out) :: released_by(:)
+    !> Set where a tool is released.
+    logical, intent(inout) :: lost
 
     type(contact_point_t) :: point
     integer :: c, tool
     logical :: released
 
     released = .false.
-    if (this_rank() > 0) state%fading = 0.0_wp
+    released_by = 0
+    if (this_rank() > 0) force = 0.0_wp
     do c = 1, size(state%contact_tool)
       tool = state%contact_tool(c)
       if (tool == 0) cycle
       if (phase%active(tool)) cycle
       point = model%contact_point(c)%at_place(state%place(c))
-      call point%add_nodal_forces(state%x, state%lambda(:, c), state%fading)
-      state%fading_tool(point%node(:point%n_surface)) = tool
+      call point%add_nodal_forces(state%x, state%lambda(:, c), force)
+      released_by(point%node(:point%n_surface)) = tool
       state%lambda(:, c) = 0.0_wp
       state%status(c) = status_gap
       state%contact_tool(c) = 0
       released = .true.
     end do
-    call sum_over_ranks(size(state%fading), state%fading)
-    call largest_over_ranks(size(state%fading_tool), state%fading_tool)
-    state%start%fading = state%fading
-    if (any_rank(released)) state%plastic = .false.
+    call sum_over_ranks(size(force), force)
+    call largest_over_ranks(size(released_by), released_by)
+    lost = any_rank(released) .or. lost
   end subroutine release_contacts
 
   !> Move a pressed tool without contact along its line to first contact.

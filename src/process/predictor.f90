@@ -16,11 +16,9 @@ module dd3_process_predictor
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_forces, only : applied_forces, released_rate
+  use dd3_model_terms_list, only : add_stiffness, rate_of_forces
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
-  use dd3_system_drawbead, only : place_beads
-  use dd3_system_load_stiffness, only : add_load_stiffness
   use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_reduced, only : read_step
   use dd3_system_solve, only : solve_info_t, solve_reduced
@@ -85,14 +83,13 @@ contains
       self%plastic(:, :) = committed%plastic
       call system%profile%start()
       call predictor_contact(system%contact, model, committed)
-      call place_beads(system%bead, model, committed)
       call system%profile%add(section_contact)
       call impose_trial(self, model, phase, committed, system)
       do switch = 0, most_switches
         call continuum_tangents(self, model, committed, system)
         call system%profile%add(section_material)
         call assemble_stiffness(system, model, committed)
-        call add_load_stiffness(system, model, committed)
+        call add_stiffness(committed%term, model, committed%configuration_t, system%matrix)
         call system%profile%add(section_assembly)
         call solve_reduced(system, model, committed, solver, verdict)
         if (verdict%outcome /= verdict_converged) return
@@ -122,9 +119,8 @@ contains
 
     associate (problem => system%problem, start => committed%start, &
         factor => self%progress*phase%slope(committed%progress))
-      problem%residual = applied_forces(model, -factor*(start%load_end - start%load), &
-          -factor*(start%pressure_end - start%pressure), committed%x, &
-          self%progress*released_rate(model, committed))
+      problem%residual = -rate_of_forces(committed%term, model, committed%configuration_t, &
+          self%progress)
       call move_contacts(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)

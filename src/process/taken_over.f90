@@ -8,6 +8,7 @@ module dd3_process_taken_over
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_released, only : hold_released
   use dd3_system_internal, only : update_material
   use dd3_system_system, only : system_t
   implicit none
@@ -30,8 +31,8 @@ contains
 
     type(state_t) :: updated
     type(verdict_t) :: verdict
-    real(wp) :: size_of(model%n_node)
-    integer :: i, node
+    real(wp) :: force(3, model%n_node), size_of(model%n_node)
+    integer :: node
 
     updated = state
     call update_material(system, model, state, updated, .false., verdict)
@@ -43,9 +44,9 @@ contains
     state%stress = updated%stress
     state%internal_variables = updated%internal_variables
     state%internal_force = updated%internal_force
-    state%fading = -state%internal_force
-    where (model%phase(1)%prescribed) state%fading = 0.0_wp
-    size_of = [(norm2(state%fading(:, i)), i=1, model%n_node)]
+    force = merge(0.0_wp, -state%internal_force, model%phase(1)%prescribed)
+    call hold_released(state%term, force, spread(0, 1, model%n_node), turns=.false.)
+    size_of = norm2(force, dim=1)
     node = maxloc(size_of, dim=1)
     note = "the sheet that is taken over has forces out of balance of up to "// &
         to_text(size_of(node), 3)//" N, at node "//to_text(node)//", which fade over phase '"// &

@@ -26,6 +26,7 @@ contains
     type(state_t), intent(inout) :: new
 
     real(wp) :: moved(3, model%n_node)
+    integer :: k
 
     moved = new%x - old%x
     new%internal_work = old%internal_work &
@@ -33,7 +34,9 @@ contains
     new%plastic_work = old%plastic_work + plastic_work_increment(model, old, new)
     call add_external_work(model, old, moved, new)
     call add_contact_work(model, contact, old, new)
-    if (size(new%bead_load) > 0) call add_bead_work(model, old, moved, new)
+    do k = 1, size(new%term)
+      call new%term(k)%of%accept(model, old%configuration_t, new%configuration_t)
+    end do
   end subroutine add_work
 
   !> Add the work of loads and of supports that move.
@@ -53,31 +56,6 @@ contains
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
     new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
-
-  !> Add the work of the draw-beads: that of the tools that carry them, and what they dissipate. It
-  !> is part of the work of the external forces, from which it is taken.
-  pure subroutine add_bead_work(model, old, moved, new)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: old
-    !> Displacements in the increment, `(3, n_node)`, mm.
-    real(wp), intent(in) :: moved(:, :)
-    type(state_t), intent(inout) :: new
-
-    real(wp) :: work, tool_work
-    integer :: b
-
-    work = 0.5_wp*sum((old%bead_load + new%bead_load)*moved)
-    tool_work = 0.0_wp
-    do b = 1, size(model%drawbead)
-      associate (tool => model%drawbead(b)%tool)
-        if (tool > 0) tool_work = tool_work + 0.5_wp*dot_product(old%bead_total(:, b) &
-            + new%bead_total(:, b), new%tool_displacement(:, tool) - old%tool_displacement(:, tool))
-      end associate
-    end do
-    new%external_work = new%external_work - work
-    new%tool_work = new%tool_work + tool_work
-    new%bead_work = old%bead_work + tool_work - work
-  end subroutine add_bead_work
 
   !> Add the work of the tools, the friction work and the slip. A contact layer that advances to its
   !> place moves the sheet as the tool does, along its normal.

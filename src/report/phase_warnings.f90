@@ -18,6 +18,9 @@ module dd3_report_phase_warnings
   use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
       rigid_motion_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_loads, only : is_laid_down
+  use dd3_model_terms_released, only : has_released
+  use dd3_model_terms_viscous, only : viscous_work
   use dd3_model_tolerances, only : tangential
   use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
@@ -154,7 +157,7 @@ contains
     integer :: part(model%n_node), k, tool
 
     text = ""
-    if (any(abs(state%start%laying) > 0.0_wp)) return
+    if (is_laid_down(state%term)) return
     part = parts_of_nodes(model%connectivity, model%n_node)
     associate (phase => model%phase(state%phase))
       do k = 1, maxval(part)
@@ -225,7 +228,7 @@ contains
     integer :: e
 
     text = ""
-    if (all(abs(state%start%fading) <= 0.0_wp)) return
+    if (.not. has_released(state%term)) return
     associate (phase => model%phase(state%phase))
       if (phase%control > 0 .or. any(phase%pressed .or. phase%withdrawn)) return
     end associate
@@ -253,7 +256,7 @@ contains
     real(wp) :: work, released
 
     text = ""
-    work = state%damping_work - state%start%damping_work
+    work = viscous_work(state%term)
     released = max(state%start%elastic_energy - elastic, tiny(1.0_wp))
     if (work > notable_damping*released) text = "in phase '"//model%phase(state%phase)%name// &
         "' the sheet snapped: viscous forces took "//to_text(work, 3)//" mJ, "// &

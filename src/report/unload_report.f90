@@ -9,8 +9,8 @@ module dd3_report_unload_report
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
-  use dd3_model_support_springs, only : support_stiffness
-  use dd3_process_forces, only : applied_forces
+  use dd3_model_terms_floating, only : spring_force
+  use dd3_model_terms_list, only : external_forces, final_forces, largest_force
   implicit none
   private
   public :: imbalance_warning, add_reactions, unload_note
@@ -75,10 +75,9 @@ contains
     real(wp) :: force(3, model%n_node), resultant
 
     text = ""
-    associate (phase => model%phase(state%phase), start => state%start)
+    associate (phase => model%phase(state%phase))
       if (size(phase%support, 2) == 0) return
-      force = applied_forces(model, start%load_end, start%pressure_end, state%x, &
-          0.0_wp*start%fading)
+      force = final_forces(state%term, model, state%configuration_t)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) then
         text = "the loads on the sheet are not in equilibrium in phase '"//phase%name// &
@@ -86,7 +85,7 @@ contains
         return
       end if
       if (any(phase%withdrawn)) return
-      force = applied_forces(model, start%load, start%pressure, state%x, start%fading)
+      force = external_forces(state%term, model, state%configuration_t)
       resultant = free_resultant(model, state, force)
       if (resultant > notable*sum(norm2(force, dim=1))) text = &
           "the forces that fade in phase '"//phase%name// &
@@ -129,20 +128,18 @@ contains
     real(wp) :: scale
     integer :: k
 
-    associate (support => model%phase(state%phase)%support, start => state%start)
+    associate (support => model%phase(state%phase)%support)
       if (size(support, 2) == 0) return
       allocate (reaction(size(support, 2)))
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
           reaction(k) = state%internal_force(axis, node) - state%external_force(axis, node)
-          if (model%phase(state%phase)%floats) reaction(k) = support_stiffness(model, state) &
-              *(start%x(axis, node) - state%x(axis, node))
+          if (model%phase(state%phase)%floats) reaction(k) = spring_force(model, state, node, axis)
         end associate
       end do
       k = maxloc(abs(reaction), dim=1)
       scale = max(negligible_strain*model%least_shear()*model%thickness**2, &
-          maxval(norm2(start%fading, dim=1)), maxval([0.0_wp, norm2(start%load, dim=1)]), &
-          maxval([0.0_wp, norm2(start%load_end, dim=1)]))
+          largest_force(state%term))
       call notes%add_new(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
           "phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &

@@ -28,8 +28,6 @@ module dd3_system_linear_problem
     real(wp), allocatable :: residual(:, :), law_residual(:, :)
     !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: contact_residual(:, :)
-    !> Viscous force of each node over its displacement in the increment, `(n_node)`, N/mm.
-    real(wp), allocatable :: damping(:)
     !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: prescribed(:, :)
     !> Positions that the nodes with prescribed displacements have to reach, `(3, n_node)`, mm, and
@@ -67,7 +65,7 @@ contains
 
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
-    allocate (self%contact_residual(3, model%n_contact), self%damping(model%n_node), source=0.0_wp)
+    allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
         source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)

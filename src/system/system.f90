@@ -10,7 +10,6 @@ module dd3_system_system
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : new_linear_solver
   use dd3_element_work, only : element_work_t, new_element_work
-  use dd3_model_bead_points, only : bead_point_t
   use dd3_model_model, only : model_t
   use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
@@ -60,8 +59,6 @@ module dd3_system_system
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
     type(contact_work_t) :: contact
-    !> Points at which draw-beads act in the increment.
-    type(bead_point_t), allocatable :: bead(:)
     type(linear_problem_t) :: problem
     class(linear_solver_t), allocatable :: solver
     !> Time by section.
@@ -97,7 +94,6 @@ contains
     end do
     call new_enhanced(self%enhanced, model)
     call new_contact_work(self%contact, model%n_contact)
-    allocate (self%bead(0))
     call new_linear_problem(self%problem, model, self%matrix%n)
     if (present(solver)) call move_alloc(solver, self%solver)
     if (allocated(self%solver)) return

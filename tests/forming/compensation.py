@@ -43,7 +43,7 @@ def compensate_rail(options):
     rail = copied(options.work, "rail")
     process = read_process(rail / "rail.toml")
     process.operations[0].settings["divisions"] = "60 36 1"
-    found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None)
+    found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None, half_turn=True)
     check(min(found)[0] <= 0.1, f"rail: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))
     check(steps == ["die.step", "holder.step", "punch.step"], f"STEP files: {steps}")

@@ -242,6 +242,8 @@ def test_smooth_field():
     field = smooth_field(points, np.abs(points) * (0, 0, 1) + np.sin(points), ["x"], 4.0)
     places, mirrored = np.array([[10, 5, 2], [60, 5, 2], [20, 40, 2.0]]), np.array([-1, 1, 1])
     assert np.allclose(field(places * mirrored), field(places) * mirrored, atol=1e-6)
+    field = smooth_field(points, np.abs(points) + np.sin(points), [], 4.0, half_turn=True)
+    assert np.allclose(field(points * (-1, -1, 1)), field(points) * (-1, -1, 1), atol=1e-9)
     noise = smooth_field(points, rng.standard_normal(points.shape), [], 4.0)(points)
     assert np.sqrt((noise**2).mean()) < 0.2
 

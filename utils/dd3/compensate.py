@@ -11,7 +11,8 @@ the rim of the wanted shape, where less was drawn in, is not compared. The displ
 drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between tools stay. Where a run
 stops with the corrected tools, half of the correction is tried, then a quarter. The input files place blank and tools;
 at the start they need room for what the surfaces are moved by.
---mirror names the planes of symmetry x = 0, y = 0.
+--mirror names the planes of symmetry x = 0, y = 0; --half-turn tells that the whole part is its own image after half a
+turn about z.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
 in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
@@ -242,14 +243,21 @@ def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray)
     return Surface(from_nodes(nodes), np.array(face), [f"patch {number}" for number in range(1, len(patches) + 1)])
 
 
-def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float) -> Any:
-    """Return a smooth function of the place for a displacement at some points, symmetric to the planes given:
-    multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
+def turned(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors and their images after half a turn about z."""
+    return np.concatenate((vectors, vectors * (-1.0, -1.0, 1.0)))
+
+
+def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float,
+                 half_turn: bool = False) -> Any:
+    """Return a smooth function of the place for a displacement at some points, with the symmetries given: multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
     deviation `reach`, at places as far apart. Its slopes go on beyond the points and fade over some `reach`.
 
     Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
     """
     whole, given = np.concatenate(images(points, mirror)), np.concatenate(images(displacement, mirror))
+    if half_turn:
+        whole, given = turned(whole), turned(given)
     size = reach
     while True:
         _, cell, count = np.unique(np.floor(whole / size).astype(int), axis=0, return_inverse=True, return_counts=True)
@@ -330,7 +338,8 @@ def write_moved(folder: Path, loop: Loop, places: dict[str, np.ndarray], move: A
 
 
 def compensate(program: Path, process: Process, parameter: str, loops: int, tolerance: float, factor: float,
-               mirror: Sequence[str], size: float | None, threads: int | None = None) -> list[tuple[float, float]]:
+               mirror: Sequence[str], size: float | None, threads: int | None = None, half_turn: bool = False
+               ) -> list[tuple[float, float]]:
     """Run the loops; return the largest deviation of each and its root mean square, mm. Where the process stops with
     the corrected tools, the correction is halved."""
     work = made_folder(process.path.parent / f"{process.path.stem}.compensate")
@@ -356,7 +365,8 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         folder = made_folder(work / f"loop_{len(found)}")
         surface = drawn_surface(process, BEYOND * thickness)
         for part in PARTS:
-            field = smooth_field(shapes.drawn[compared], part * factor * (goal - place)[compared], mirror, length)
+            field = smooth_field(shapes.drawn[compared], part * factor * (goal - place)[compared], mirror, length,
+                                 half_turn)
             tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")
@@ -392,6 +402,8 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--factor", type=float, default=1.0, help="part of the deviation that is corrected (1)")
     parser.add_argument("--mirror", nargs="+", default=[], choices=list(AXES), metavar="AXIS",
                         help="planes of symmetry")
+    parser.add_argument("--half-turn", action="store_true",
+                        help="the whole part is its own image after half a turn about z")
     parser.add_argument("--size", type=float, metavar="LENGTH",
                         help="largest side of the patches that are moved, mm (5 thicknesses)")
     options = parser.parse_args(words)
@@ -399,6 +411,6 @@ def main(words: Sequence[str] | None = None) -> None:
         parser.error("--loops: takes 0 or more")
     process = read_process(options.file)
     compensate(find_program(options.program), process, options.tools, options.loops, options.tolerance, options.factor,
-               sorted(set(options.mirror)), options.size, options.threads)
+               sorted(set(options.mirror)), options.size, options.threads, options.half_turn)
     if options.report:
         print(write_report(process))

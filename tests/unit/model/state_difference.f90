@@ -3,7 +3,8 @@
 module state_difference
   use dd3_base_kinds, only : wp
   use dd3_model_state, only : state_t
-  use dd3_model_state_walk, only : state_visitor_t, visit_state
+  use dd3_model_state_visitor, only : state_visitor_t
+  use dd3_model_state_walk, only : visit_state
   implicit none
   private
   public :: first_difference
