@@ -18,7 +18,8 @@ module dd3_process_equilibrium
   use dd3_process_elimination, only : find_worst, local_equilibrium_t
   use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
-  use dd3_process_norm, only : evaluate_norm, residual_t, tool_imbalance
+  use dd3_process_norm, only : convergence_tolerance, norm_of, residual_t
+  use dd3_process_tool_balance, only : balance_tools
   use dd3_system_internal, only : assemble_stiffness, update_material
   use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_reduced, only : read_step
@@ -40,6 +41,8 @@ module dd3_process_equilibrium
     type(system_t), pointer :: system => null()
     !> Trial state before the last step, and that step.
     type(unknowns_t) :: start, step
+    !> Fraction of the step that was made.
+    real(wp), private :: made = 1.0_wp
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
     type(residual_t) :: residual
@@ -109,11 +112,31 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
-      call evaluate_norm(self%model, self%committed, self%trial, system, self%step, &
-          .not. with_stiffness, self%residual)
+      self%residual = norm(self)
+      if (self%model%phase(self%trial%phase)%mixed .and. .not. with_stiffness) call balance(self)
       self%scaled_norm = self%residual%scaled
     end associate
   end subroutine evaluate
+
+  !> Return the norm of the trial state after the step that was made.
+  type(residual_t) function norm(self)
+    class(equilibrium_t), intent(in) :: self
+
+    norm = norm_of(self%model, self%trial, self%system, self%made*norm2(self%step%lambda))
+  end function norm
+
+  !> Once all else has converged, balance the pressed tools by their motion alone.
+  subroutine balance(self)
+    class(equilibrium_t), intent(inout) :: self
+
+    logical :: moved
+
+    associate (phase => self%model%phase(self%trial%phase))
+      if (self%residual%sheet >= convergence_tolerance(phase, self%trial)) return
+    end associate
+    call balance_tools(self%model, self%committed, self%trial, self%system, moved)
+    if (moved) self%residual = norm(self)
+  end subroutine balance
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
   !> prescribed displacements have reached their positions.
@@ -218,6 +241,7 @@ contains
       trial%enhanced = start%enhanced + fraction*step%enhanced
       trial%lambda = start%lambda + fraction*step%lambda
       trial%tool_displacement = start%tool + fraction*step%tool
+      self%made = fraction
       if (fraction >= 1.0_wp) return
       trial%contact_tool = self%start_tool
       trial%hint = self%start_hint
@@ -281,7 +305,7 @@ contains
         call local%settle(chosen, eliminated)
         if (eliminated) then
           call evaluate_forces(model, self%committed, trial, system)
-          call evaluate_norm(model, self%committed, trial, system, self%step, .true., self%residual)
+          self%residual = norm(self)
           eliminated = self%residual%scaled < min(bound, before%scaled)
           if (.not. eliminated) then
             call local%restore()
@@ -326,7 +350,7 @@ contains
       if (self%changing() > 0) return
       verdict%cause = cause_residual
       verdict%value(1) = self%residual%worst
-      if (tool_imbalance(model, trial, self%system) < self%scaled_norm) return
+      if (self%residual%tools < self%residual%sheet) return
       verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
       if (verdict%tool == 0) return
       verdict%cause = cause_tool_force

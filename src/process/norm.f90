@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Norm that decides the convergence of a trial state: the residuals of nodes, contact and enhanced
-!> strains, the balance of the pressed tools, and the free body in springback. All its factors and
-!> tolerances stand here; they have no unit.
+!> strains, and the balance of the pressed tools. It is a function of the state evaluated and of the
+!> last step. All its factors and tolerances stand here; they have no unit.
 !> Source: Oliveira and Menezes 2004, eq. (19), scaled by the norm of the internal forces where it
 !> exceeds that of the contact forces, and such that a residual that is round-off has converged.
 !> Round-off: a node's position is the multiple of `spacing` nearest to the solution, and the
@@ -16,24 +16,22 @@ module dd3_process_norm
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, broadcast_reals, norm_over_ranks, rank_of_smallest, &
       sum_over_ranks, this_rank
-  use dd3_contact_operator, only : status_gap
   use dd3_linalg_partition, only : column_squares
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
-  use dd3_process_forces, only : evaluate_forces
-  use dd3_system_linear_problem, only : unknowns_t
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: residual_t, evaluate_norm, convergence_tolerance, attainable_residual, tool_imbalance
+  public :: residual_t, norm_of, convergence_tolerance, attainable_residual, pressed_force
 
   !> Norm of the residuals.
   type :: residual_t
     !> N.
     real(wp) :: norm = 0.0_wp
-    !> Norm of residuals and step over their scale.
-    real(wp) :: scaled = 0.0_wp
+    !> Norm of residuals and step over their scale, eq. (19); largest imbalance of a pressed tool over
+    !> its force, weighted; and the larger one.
+    real(wp) :: sheet = 0.0_wp, tools = 0.0_wp, scaled = 0.0_wp
     !> Node with the largest residual, and that residual, N.
     integer :: worst_node = 0
     real(wp) :: worst = 0.0_wp
@@ -54,17 +52,12 @@ module dd3_process_norm
   !> Residual that counts as zero, over the root mean square of the round-off. In S-shaped rails
   !> (input_files/rail, 48 to 1080 elements) residuals stall at 1.0 to 3.5 times the latter, as the
   !> parameters of the enhanced strains, the stresses and the forces are rounded too.
-  real(wp), parameter :: multiple = 5.0_wp
+  real(wp), parameter :: round_off_factor = 5.0_wp
   !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
   !> an increment is a step in the force of the next. Larger: smaller steps for more iterations.
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
-  real(wp), parameter :: small = 1.0e-3_wp
-  !> Residuals of a pressed tool, over its force, between which the motion of the tool alone reduces
-  !> it. Larger ones are left to the iterations, smaller ones balance.
-  real(wp), parameter :: largest = 1.0e-3_wp, balanced = 1.0e-6_wp
-  !> Largest number of such motions.
-  integer, parameter :: most_motions = 4
+  real(wp), parameter :: least_force = 1.0e-3_wp
 
 contains
 
@@ -83,38 +76,24 @@ contains
     end if
   end function convergence_tolerance
 
-  !> Evaluate the norm: eq. (19), or the imbalance of a pressed tool if that is larger and the
-  !> former has met the tolerance.
-  subroutine evaluate_norm(model, committed, trial, system, step, balance, residual)
+  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool where that is
+  !> larger.
+  type(residual_t) function norm_of(model, trial, system, step) result(residual)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    type(state_t), intent(inout) :: trial
+    type(state_t), intent(in) :: trial
     !> Evaluated at the trial state.
-    type(system_t), intent(inout) :: system
-    !> The last step.
-    type(unknowns_t), intent(in) :: step
-    !> Whether the tools are balanced first.
-    logical, intent(in) :: balance
-    type(residual_t), intent(out) :: residual
-
-    logical :: moved
+    type(system_t), intent(in) :: system
+    !> Norm of the last change of the contact forces of this rank, N.
+    real(wp), intent(in) :: step
 
     call evaluate_residual(model, trial, system, residual)
     call scale_norm(model, trial, system, step, residual)
-    associate (phase => model%phase(trial%phase))
-      if (residual%scaled >= convergence_tolerance(phase, trial)) return
-      moved = .false.
-      if (balance .and. phase%mixed) call balance_tools(model, committed, trial, system, moved)
-    end associate
-    if (moved) then
-      call evaluate_residual(model, trial, system, residual)
-      call scale_norm(model, trial, system, step, residual)
-    end if
-    residual%scaled = max(residual%scaled, tool_imbalance(model, trial, system))
-  end subroutine evaluate_norm
+    residual%tools = tool_weight*tool_imbalance(model, trial, system)
+    residual%scaled = max(residual%sheet, residual%tools)
+  end function norm_of
 
   !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
-  !> of the enhanced strains and of the pressed tools in contact.
+  !> and of the enhanced strains.
   subroutine evaluate_residual(model, trial, system, found)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -122,7 +101,7 @@ contains
     type(residual_t), intent(out) :: found
 
     real(wp) :: contribution(model%n_node), square(1), worst(2)
-    integer :: node, c, tool, rank
+    integer :: node, c, rank
 
     rank = this_rank()
     associate (phase => model%phase(trial%phase), problem => system%problem)
@@ -141,10 +120,6 @@ contains
       found%worst = sqrt(max(worst(2), 0.0_wp))
       square = sum(contribution) + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
       call sum_over_ranks(1, square)
-      do tool = 1, model%n_tool
-        if (.not. phase%pressed(tool)) cycle
-        if (trial%touches(tool)) square = square + problem%tool_residual(tool)**2
-      end do
     end associate
     found%norm = sqrt(square(1))
   end subroutine evaluate_residual
@@ -155,14 +130,14 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(system_t), intent(in) :: system
-    type(unknowns_t), intent(in) :: step
+    real(wp), intent(in) :: step
     type(residual_t), intent(inout) :: residual
 
     real(wp), allocatable :: square(:, :)
     real(wp) :: force, scale, round_off
 
     associate (phase => model%phase(trial%phase))
-      force = agreed(norm_over_ranks(norm2(step%lambda)) + residual%norm)
+      force = agreed(norm_over_ranks(step) + residual%norm)
       scale = agreed(max(norm_over_ranks(norm2(trial%lambda)), norm2(trial%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase, trial)*scale) then
@@ -177,7 +152,7 @@ contains
         scale = max(scale, round_off/convergence_tolerance(phase, trial))
       end if
     end associate
-    residual%scaled = force/scale
+    residual%sheet = force/scale
   end subroutine scale_norm
 
   !> Return the norm of the residual below which it is round-off, N.
@@ -193,47 +168,10 @@ contains
 
     variance = sum(square*(spacing(x)**2/12.0_wp))
     call sum_over_ranks(1, variance)
-    residual = multiple*sqrt(variance(1))
+    residual = round_off_factor*sqrt(variance(1))
   end function attainable_residual
 
-  !> Balance the forces of the pressed tools by the motion of the tools alone, once all else has
-  !> converged. Where many nodes lie flat under a tool, the last of them open and close for many
-  !> iterations with forces far below the tolerance of the nodes, but not below that of the tool. An
-  !> increment that began with a tool out of balance would take many iterations too.
-  subroutine balance_tools(model, committed, trial, system, moved)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: committed
-    type(state_t), intent(inout) :: trial
-    type(system_t), intent(inout) :: system
-    !> A tool was moved.
-    logical, intent(out) :: moved
-
-    real(wp) :: fraction, distance
-    integer :: k, tool
-    logical :: moves
-
-    moved = .false.
-    associate (phase => model%phase(trial%phase))
-      do k = 1, most_motions
-        moves = .false.
-        do tool = 1, model%n_tool
-          if (.not. phase%pressed(tool)) cycle
-          fraction = abs(system%problem%tool_residual(tool))/pressed_force(trial, tool)
-          if (fraction <= balanced .or. fraction > largest) cycle
-          distance = distance_to_balance(system, phase%direction(:, tool), tool)
-          moves = moves .or. abs(distance) > 0.0_wp
-          trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
-              + distance*phase%direction(:, tool)
-        end do
-        if (.not. moves) exit
-        moved = .true.
-        call evaluate_forces(model, committed, trial, system)
-      end do
-    end associate
-  end subroutine balance_tools
-
-  !> Return the largest weighted residual of a pressed tool in contact, over its force; 0 if all
-  !> balance.
+  !> Return the largest residual of a pressed tool in contact, over its force.
   real(wp) function tool_imbalance(model, trial, system) result(imbalance)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -247,8 +185,6 @@ contains
       if (trial%touches(tool)) imbalance = max(imbalance, &
           abs(system%problem%tool_residual(tool))/pressed_force(trial, tool))
     end do
-    if (imbalance <= balanced) imbalance = 0.0_wp
-    imbalance = tool_weight*imbalance
   end function tool_imbalance
 
   !> Return the scale of the force on a pressed tool, N. The scale of one that is eased to zero is a
@@ -258,30 +194,9 @@ contains
     integer, intent(in) :: tool
 
     pressed_force = max(norm2(trial%tool_load(:, tool)), &
-        small*norm2(trial%start%tool_load(:, tool)), &
-        small*norm2(trial%start%tool_load_end(:, tool)), small*norm2(trial%internal_force), &
+        least_force*norm2(trial%start%tool_load(:, tool)), &
+        least_force*norm2(trial%start%tool_load_end(:, tool)), least_force*norm2(trial%internal_force), &
         tiny(1.0_wp))
   end function pressed_force
-
-  !> Return the distance along its line at which the force of a pressed tool is balanced, mm; zero
-  !> if nothing resists it.
-  real(wp) function distance_to_balance(system, line, tool) result(distance)
-    type(system_t), intent(in) :: system
-    !> Unit vector along the line of motion.
-    real(wp), intent(in) :: line(3)
-    integer, intent(in) :: tool
-
-    real(wp) :: stiffness(1)
-    integer :: c
-
-    stiffness = 0.0_wp
-    do c = 1, size(system%contact%tool)
-      if (system%contact%tool(c) /= tool .or. system%contact%status(c) == status_gap) cycle
-      stiffness = stiffness + dot_product(line, matmul(system%contact%d(:, :, c), line))
-    end do
-    call sum_over_ranks(1, stiffness)
-    distance = 0.0_wp
-    if (stiffness(1) > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness(1)
-  end function distance_to_balance
 
 end module dd3_process_norm
