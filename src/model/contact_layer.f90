@@ -49,7 +49,7 @@ contains
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: c
 
-    if (phase%mixed) return
+    if (.not. phase%layer > 0.0_wp) return
     associate (thickness => model%thickness_at(model%contact_node(c)))
       border = border_t(border_radius*thickness, phase%layer*thickness)
     end associate
@@ -145,7 +145,7 @@ contains
     integer :: c, t, i
 
     allocate (offset(model%n_contact), source=-1.0_wp)
-    if (phase%mixed) return
+    if (.not. phase%layer > 0.0_wp) return
     do c = 1, model%n_contact_fixed
       associate (point => model%contact_point(c))
         if (.not. all(any(phase%prescribed(:, point%node(:point%n_surface)), dim=1))) cycle

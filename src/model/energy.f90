@@ -60,7 +60,7 @@ contains
     integer :: c
 
     contact_energy = 0.0_wp
-    if (model%phase(state%phase)%mixed) return
+    if (.not. model%phase(state%phase)%layer > 0.0_wp) return
     energy = 0.0_wp
     do c = 1, model%n_contact
       if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle

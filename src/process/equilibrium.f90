@@ -113,7 +113,7 @@ contains
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
       self%residual = norm(self)
-      if (self%model%phase(self%trial%phase)%mixed .and. .not. with_stiffness) call balance(self)
+      if (system%formulation%balances_tools .and. .not. with_stiffness) call balance(self)
       self%scaled_norm = self%residual%scaled
     end associate
   end subroutine evaluate
@@ -292,7 +292,7 @@ contains
     eliminated = .false.
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
-      if (phase%mixed .or. .not. phase%newton%elimination) return
+      if (.not. (system%formulation%eliminates .and. phase%newton%elimination)) return
       if (has_viscous(trial%term)) return
       call system%profile%start()
       call find_worst(model, trial, system, chosen)

@@ -44,7 +44,7 @@ contains
     real(wp) :: nearest(1), contact_forces(3, model%n_node)
     integer :: c, k, tool
 
-    call evaluate_contact(system%contact, model, committed, trial)
+    call evaluate_contact(system, model, committed, trial)
     call evaluate_terms(trial%term, model, committed%configuration_t, trial%configuration_t)
     trial%external_force = external_forces(trial%term, model, trial%configuration_t)
     associate (problem => system%problem, contact => system%contact, &

@@ -16,7 +16,6 @@ module dd3_process_norm
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, broadcast_reals, norm_over_ranks, rank_of_smallest, &
       sum_over_ranks, this_rank
-  use dd3_linalg_partition, only : column_squares
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -124,8 +123,7 @@ contains
     found%norm = sqrt(square(1))
   end subroutine evaluate_residual
 
-  !> Set the norm of residuals and step over their scale, eq. (19). In the compliant formulation the
-  !> reduced matrix is that of the sheet and the contact layers.
+  !> Set the norm of residuals and step over their scale, eq. (19).
   subroutine scale_norm(model, trial, system, step, residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -133,7 +131,6 @@ contains
     real(wp), intent(in) :: step
     type(residual_t), intent(inout) :: residual
 
-    real(wp), allocatable :: square(:, :)
     real(wp) :: force, scale, round_off
 
     associate (phase => model%phase(trial%phase))
@@ -141,14 +138,8 @@ contains
       scale = agreed(max(norm_over_ranks(norm2(trial%lambda)), norm2(trial%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase, trial)*scale) then
-        if (allocated(system%stiffness%value) .and. phase%mixed) then
-          square = column_squares(system%stiffness, model%n_node)
-        else if (allocated(system%matrix%value)) then
-          square = column_squares(system%matrix, model%n_node)
-        else
-          square = system%column_square
-        end if
-        round_off = attainable_residual(square + system%enhanced%unfollowed_square, trial%x)
+        round_off = attainable_residual(system%column_square + system%enhanced%unfollowed_square, &
+            trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase, trial))
       end if
     end associate

@@ -132,7 +132,7 @@ contains
         begins = phase%active(tool) .and. (number == 1 .or. returns(model, number, tool))
         if (number > 1) begins = begins .or. phase%layer > model%phase(number - 1)%layer
         if (begins) state%layer_offset(tool) = starting_offset(model, phase, state, tool)
-        if (phase%mixed) state%layer_offset(tool) = 0.0_wp
+        if (.not. phase%layer > 0.0_wp) state%layer_offset(tool) = 0.0_wp
       end do
     end associate
   end subroutine place_layers

@@ -82,7 +82,7 @@ contains
       self%progress = phase%trial
       self%plastic(:, :) = committed%plastic
       call system%profile%start()
-      call predictor_contact(system%contact, model, committed)
+      call predictor_contact(system, model, committed)
       call system%profile%add(section_contact)
       call impose_trial(self, model, phase, committed, system)
       do switch = 0, most_switches

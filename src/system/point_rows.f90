@@ -17,8 +17,7 @@ module dd3_system_point_rows
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
-  use dd3_system_linear_problem, only : unknowns_t
-  use dd3_system_system, only : system_t
+  use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
   use dd3_system_tool_rows, only : add_to_tool_row, force_row
   implicit none
   private
@@ -27,8 +26,12 @@ module dd3_system_point_rows
 contains
 
   !> Add the contributions of the points of this rank to matrix and right-hand side.
-  subroutine add_points(system, model, phase, x)
-    type(system_t), intent(inout) :: system
+  subroutine add_points(matrix, problem, contact, position, model, phase, x)
+    type(block_matrix_t), intent(inout) :: matrix
+    type(linear_problem_t), intent(inout) :: problem
+    type(contact_work_t), intent(in) :: contact
+    !> Of the blocks of the elements in the matrix.
+    integer, intent(in) :: position(:, :, :)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     !> Positions of the nodes, `(3, n_node)`, mm.
@@ -37,7 +40,7 @@ contains
     real(wp) :: motion(3)
     integer :: c, e
 
-    associate (contact => system%contact, problem => system%problem, point => model%contact_point)
+    associate (point => model%contact_point)
       do c = 1, model%n_contact
         motion = 0.0_wp
         if (contact%status(c) == status_gap) then
@@ -48,10 +51,11 @@ contains
         e = 0
         if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
         call add_point(point(c)%at_place(contact%place(c)), contact, c, &
-            problem%contact_residual(:, c), motion, x, point(c)%node, system%position, e, &
-            system%matrix, problem%rhs)
+            problem%contact_residual(:, c), motion, x, point(c)%node, position, e, matrix, &
+            problem%rhs)
         if (contact%status(c) == status_gap) cycle
-        if (phase%pressed(contact%tool(c))) call add_to_tool(system, model, phase, c, x)
+        if (phase%pressed(contact%tool(c))) call add_to_tool(matrix, problem, &
+            contact, model, phase, c, x)
       end do
     end associate
   end subroutine add_points
@@ -95,8 +99,10 @@ contains
   end subroutine add_point
 
   !> Couple a point with its pressed tool.
-  subroutine add_to_tool(system, model, phase, c, x)
-    type(system_t), intent(inout) :: system
+  subroutine add_to_tool(matrix, problem, contact, model, phase, c, x)
+    type(block_matrix_t), intent(inout) :: matrix
+    type(linear_problem_t), intent(inout) :: problem
+    type(contact_work_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
     !> Number of the point.
@@ -107,13 +113,13 @@ contains
     type(contact_point_t) :: point
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
 
-    point = model%contact_point(c)%at_place(system%contact%place(c))
-    associate (tool => system%contact%tool(c))
-      call eliminate(system%contact, c, weight, stiffness)
-      call add_to_balance(system%problem%rhs, model%tool_row(tool), phase%direction(:, tool), &
-          matmul(weight - identity, system%problem%contact_residual(:, c)))
+    point = model%contact_point(c)%at_place(contact%place(c))
+    associate (tool => contact%tool(c))
+      call eliminate(contact, c, weight, stiffness)
+      call add_to_balance(problem%rhs, model%tool_row(tool), phase%direction(:, tool), &
+          matmul(weight - identity, problem%contact_residual(:, c)))
       call point%gradient(x, b)
-      call couple_tool(system, point, model%tool_row(tool), phase%direction(:, tool), b, stiffness)
+      call couple_tool(matrix, point, model%tool_row(tool), phase%direction(:, tool), b, stiffness)
     end associate
   end subroutine add_to_tool
 
@@ -209,8 +215,8 @@ contains
 
   !> Couple a point with its pressed tool: the tool's displacement in the rows of the nodes; theirs
   !> and its own in its force balance.
-  subroutine couple_tool(system, point, block, line, b, stiffness)
-    type(system_t), intent(inout) :: system
+  subroutine couple_tool(reduced, point, block, line, b, stiffness)
+    type(block_matrix_t), intent(inout) :: reduced
     type(contact_point_t), intent(in) :: point
     !> Block row of the tool.
     integer, intent(in) :: block
@@ -223,15 +229,13 @@ contains
     integer :: i, k, row
 
     row = force_row(line)
-    associate (reduced => system%matrix)
-      do i = 1, point%n_node
-        k = position_of(reduced, point%node(i), block)
-        reduced%value(:, :, k) = reduced%value(:, :, k) - matmul(transpose(b(:, :, i)), stiffness)
-        call add_to_tool_row(reduced, block, row, point%node(i), &
-            matmul(matmul(line, stiffness), b(:, :, i)))
-      end do
-      call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
-    end associate
+    do i = 1, point%n_node
+      k = position_of(reduced, point%node(i), block)
+      reduced%value(:, :, k) = reduced%value(:, :, k) - matmul(transpose(b(:, :, i)), stiffness)
+      call add_to_tool_row(reduced, block, row, point%node(i), &
+          matmul(matmul(line, stiffness), b(:, :, i)))
+    end do
+    call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
   end subroutine couple_tool
 
   !> Evaluate (I - E)^-1 and (I - E)^-1 D of a point in contact.
@@ -247,8 +251,9 @@ contains
   end subroutine eliminate
 
   !> Set the increments of the forces of the points.
-  pure subroutine set_point_forces(system, model, state, step)
-    type(system_t), intent(in) :: system
+  pure subroutine set_point_forces(contact, problem, model, state, step)
+    type(contact_work_t), intent(in) :: contact
+    type(linear_problem_t), intent(in) :: problem
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     !> Has the displacements.
@@ -259,9 +264,9 @@ contains
 
     step%lambda = -state%lambda
     do c = 1, model%n_contact
-      if (system%contact%status(c) == status_gap) cycle
-      motion = -step%tool(:, system%contact%tool(c))
-      step%lambda(:, c) = force_change(system%contact, c, system%problem%contact_residual(:, c), &
+      if (contact%status(c) == status_gap) cycle
+      motion = -step%tool(:, contact%tool(c))
+      step%lambda(:, c) = force_change(contact, c, problem%contact_residual(:, c), &
           model%contact_point(c), state%x, step%x, motion)
     end do
   end subroutine set_point_forces

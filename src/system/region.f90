@@ -155,7 +155,7 @@ contains
       end associate
     end do
     call sum_over_ranks(size(self%force), self%force)
-    call evaluate_contact(system%contact, model, committed, trial, self%point)
+    call evaluate_contact(system, model, committed, trial, self%point)
     contact_force = point_forces(self, model, trial%x, system%contact%force, trial%place)
     call sum_over_ranks(size(contact_force), contact_force)
     self%residual = merge(self%force - trial%external_force(:, self%node) + contact_force, &

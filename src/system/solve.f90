@@ -5,7 +5,6 @@ module dd3_system_solve
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_lost_tool, &
       cause_singular
-  use dd3_linalg_partition, only : column_squares
   use dd3_linalg_preconditioner, only : perturbed_pivots_t
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
@@ -48,7 +47,7 @@ contains
     call reduce(system, model, state)
     call system%profile%add(section_assembly)
     if (system%solver%needs_positions) system%solver%positions = state%x
-    if (model%part%divided) system%column_square = column_squares(system%matrix, model%n_node)
+    system%column_square = system%formulation%squares(system%matrix, model%n_node)
     call system%solver%factor(system%matrix, verdict)
     call system%profile%add(section_factorisation)
     call add_perturbed(system%solver%perturbed, info%perturbed)

@@ -13,6 +13,7 @@ module dd3_system_system
   use dd3_model_model, only : model_t
   use dd3_system_contact_work, only : contact_work_t, new_contact_work
   use dd3_system_enhanced, only : enhanced_t, new_enhanced
+  use dd3_system_formulation, only : formulation_t
   use dd3_system_partition, only : new_partition, partition_t, rows_held
   use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
   use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
@@ -36,15 +37,12 @@ module dd3_system_system
 
   !> Data of assembly and solution.
   type :: system_t
-    !> Matrix, with the rows that this rank holds: the stiffness of the sheet, once assembled, which
-    !> `reduce` makes the reduced matrix.
+    !> Matrix of the linear system, with the rows that this rank holds: sheet and terms add to it,
+    !> the contact, the pressed tools and the supports complete it (`reduce`).
     type(block_matrix_t) :: matrix
-    !> Sums of the squares in its columns of nodes over the rows of this rank, `(3, n_node)`, of
-    !> several ranks: the matrix has no values after its factorisation.
+    !> Sums of the squares in the columns of nodes of the last stiffness, over the rows of this rank,
+    !> `(3, n_node)`, (N/mm)2.
     real(wp), allocatable :: column_square(:, :)
-    !> Stiffness of the sheet, from which the contact forces of the mixed formulation follow; kept
-    !> in its phases alone.
-    type(block_matrix_t) :: stiffness
     type(partition_t) :: partition
     !> Position of the blocks of an element of the part in the matrix, `(n_element_node,
     !> n_element_node, n_element)`: row node, column node.
@@ -59,6 +57,8 @@ module dd3_system_system
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
     type(contact_work_t) :: contact
+    !> That of the phase, once its contact is evaluated.
+    class(formulation_t), allocatable :: formulation
     type(linear_problem_t) :: problem
     class(linear_solver_t), allocatable :: solver
     !> Time by section.
@@ -94,6 +94,7 @@ contains
     end do
     call new_enhanced(self%enhanced, model)
     call new_contact_work(self%contact, model%n_contact)
+    allocate (self%column_square(3, model%n_node), source=0.0_wp)
     call new_linear_problem(self%problem, model, self%matrix%n)
     if (present(solver)) call move_alloc(solver, self%solver)
     if (allocated(self%solver)) return

@@ -50,10 +50,10 @@ contains
       if (verdict%outcome /= verdict_converged) error stop "the strip cannot be bent"
       committed = trial
     end do
-    call predictor_contact(system%contact, model, committed)
+    call predictor_contact(system, model, committed)
     call settle_contact(model, system, committed, trial)
     committed = trial
-    call predictor_contact(system%contact, model, committed)
+    call predictor_contact(system, model, committed)
     allocate (noise(3, model%n_node))
     seed = 7
     call random_values(seed, noise)
@@ -94,7 +94,7 @@ contains
     logical :: regular
 
     do k = 1, 40
-      call evaluate_contact(system%contact, model, committed, state)
+      call evaluate_contact(system, model, committed, state)
       do c = 1, model%n_contact
         associate (contact => system%contact)
           if (contact%status(c) == status_gap) then
@@ -107,7 +107,7 @@ contains
         end associate
       end do
     end do
-    call evaluate_contact(system%contact, model, committed, state)
+    call evaluate_contact(system, model, committed, state)
   end subroutine settle_contact
 
 end module bent_strip

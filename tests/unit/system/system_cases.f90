@@ -118,7 +118,7 @@ contains
       system%contact%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     end do
     trial%hint%due = .true.
-    call evaluate_contact(system%contact, model, committed, trial)
+    call evaluate_contact(system, model, committed, trial)
     do c = 1, model%n_contact
       tangent = [1.0_wp, 0.4_wp, 0.2_wp]
       associate (normal => system%contact%normal(:, c))
@@ -129,7 +129,7 @@ contains
         trial%lambda(:, c) = 300.0_wp*tangent - pressure*normal
       end associate
     end do
-    call evaluate_contact(system%contact, model, committed, trial)
+    call evaluate_contact(system, model, committed, trial)
   end subroutine touch_all
 
   !> Evaluate the residuals of the mixed equations.
@@ -151,7 +151,7 @@ contains
 
     call update_material(system, model, committed, trial, .false., verdict)
     if (verdict%outcome /= verdict_converged) error stop "the stress update of the test failed"
-    call evaluate_contact(system%contact, model, committed, trial)
+    call evaluate_contact(system, model, committed, trial)
     residual = trial%internal_force - trial%external_force
     contact_residual = system%contact%force - trial%lambda
     tool_residual = 0.0_wp

@@ -1,0 +1,317 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Compliant formulation of the contact: the force of a point follows from the height of its layer
+!> that a tool compresses, and from its slip.
+module dd3_system_compliant_contact
+  use dd3_base_kinds, only : wp
+  use dd3_base_threads, only : least_nodes, threads_for
+  use dd3_contact_compliant, only : compliant_operator, fraction_of, layer_t, rotated
+  use dd3_contact_operator, only : status_gap, status_stick
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_model_contact_layer, only : layer_at
+  use dd3_model_contact_point, only : contact_point_t
+  use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
+  use dd3_model_state, only : state_t
+  use dd3_model_turning, only : turning_rate
+  use dd3_system_contact_search, only : crossing_hit, find_candidate, find_committed_candidate, &
+      find_nearest_border, may_cross
+  use dd3_system_contact_work, only : contact_work_t
+  use dd3_system_formulation, only : formulation_t
+  use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
+  use dd3_system_partition, only : partition_t
+  use dd3_system_point_rows, only : add_points, set_point_forces
+  use dd3_tools_closest, only : hit_t
+  use dd3_tools_crossing, only : crossing_t
+  use dd3_tools_placement, only : relative_displacement
+  implicit none
+  private
+  public :: compliant_contact_t
+
+  !> The formulation.
+  type, extends(formulation_t) :: compliant_contact_t
+  contains
+    procedure :: evaluate
+    procedure :: predict
+    procedure :: reduce
+    procedure :: read_forces
+  end type compliant_contact_t
+
+  !> Part of the layer that is left, where the predictor takes its stiffness at first contact.
+  real(wp), parameter :: at_onset = 0.5_wp
+  !> Points that a thread takes at a time.
+  integer, parameter :: chunk = 64
+
+contains
+
+  !> Evaluate the points in a trial state.
+  subroutine evaluate(self, contact, model, committed, trial, points)
+    class(compliant_contact_t), intent(in) :: self
+    type(contact_work_t), intent(inout) :: contact
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    integer, intent(in), optional :: points(:)
+
+    integer :: c
+
+    if (present(points)) then
+      do c = 1, size(points)
+        call evaluate_point(contact, model, committed, trial, points(c))
+      end do
+      return
+    end if
+    !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
+    !$omp& schedule(dynamic, chunk)
+    do c = 1, model%n_contact
+      call evaluate_point(contact, model, committed, trial, c)
+    end do
+    !$omp end parallel do
+  end subroutine evaluate
+
+  !> Evaluate the contact at a point.
+  subroutine evaluate_point(contact, model, committed, trial, c)
+    type(contact_work_t), intent(inout) :: contact
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    integer, intent(in) :: c
+
+    type(hit_t) :: hit
+    real(wp) :: slip(3)
+
+    if (model%contact_point(c)%moves) then
+      call evaluate_crossing(contact, model, committed, trial, c)
+      return
+    end if
+    call find_candidate(contact, model, committed, trial, c, hit, slip)
+    if (contact%tool(c) > 0) call evaluate_layer(contact, trial, c, &
+        layer_at(model, model%phase(trial%phase), c), hit, slip, &
+        model%tool(contact%tool(c))%friction)
+    trial%status(c) = contact%status(c)
+  end subroutine evaluate_point
+
+  !> Evaluate the contact of an edge of the mesh with the borders of the tools.
+  subroutine evaluate_crossing(self, model, committed, trial, c)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    integer, intent(in) :: c
+
+    type(contact_point_t) :: point
+    type(crossing_t) :: crossing
+    real(wp) :: slip(3)
+
+    call find_nearest_border(self, model, trial, c, crossing)
+    trial%contact_tool(c) = self%tool(c)
+    trial%status(c) = status_gap
+    if (self%tool(c) == 0) return
+    trial%place(c) = crossing%place
+    point = model%contact_point(c)%at_place(crossing%place)
+    associate (tool => self%tool(c), phase => model%phase(trial%phase))
+      slip = relative_displacement(committed%placement(tool), trial%placement(tool), &
+          point%position(committed%x), point%position(trial%x))
+      call evaluate_layer(self, trial, c, fraction_of(layer_at(model, phase, c), &
+          crossing%weight), crossing_hit(crossing), slip, model%tool(tool)%friction, crossing)
+    end associate
+    trial%status(c) = self%status(c)
+  end subroutine evaluate_crossing
+
+  !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
+  pure real(wp) function offset_at(state, tool, c)
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool, c
+
+    offset_at = state%layer_offset(tool)
+    if (state%start%held_offset(c) >= 0.0_wp) offset_at = state%start%held_offset(c)
+  end function offset_at
+
+  !> changes its tool has no tangential force of its history.
+  subroutine evaluate_layer(self, trial, c, layer, hit, slip, friction, crossing)
+    type(contact_work_t), intent(inout) :: self
+    type(state_t), intent(in) :: trial
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+    type(hit_t), intent(in) :: hit
+    !> Slip, mm, and coefficient of friction.
+    real(wp), intent(in) :: slip(3), friction
+    !> If the point is one; the layer is then its fraction by the weight.
+    type(crossing_t), intent(in), optional :: crossing
+
+    real(wp) :: gap, committed(3)
+
+    gap = hit%distance + offset_at(trial, self%tool(c), c)
+    committed = 0.0_wp
+    if (self%tool(c) == self%committed_tool(c)) committed = &
+        rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
+    self%status(c) = status_gap
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%lambda(:, c), committed, &
+        slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c), &
+        hit%gap_gradient)
+    if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
+        trial%lambda(:, c), committed, slip, friction)
+  end subroutine evaluate_layer
+
+  !> normal as the edge turns, and by the weight.
+  subroutine add_crossing_terms(self, c, layer, crossing, gap, lambda, committed, slip, friction)
+    !> Has force, status and derivatives of the law.
+    type(contact_work_t), intent(inout) :: self
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+    type(crossing_t), intent(in) :: crossing
+    !> mm.
+    real(wp), intent(in) :: gap
+    !> As for `compliant_operator`.
+    real(wp), intent(in) :: lambda(3), committed(3), slip(3), friction
+
+    real(wp), parameter :: still(3, 3) = 0.0_wp
+    real(wp) :: square, force(3), d(3, 3, 2), e(3, 3), change(3)
+    integer :: status, i
+
+    self%by_edge(:, :, c) = 0.0_wp
+    status = self%status(c)
+    if (status == status_gap) return
+    associate (along => crossing%along, n => crossing%normal)
+      square = dot_product(along, along)
+      if (square > tiny(1.0_wp)) then
+        call compliant_operator(layer, n, gap, still, lambda, committed, slip, friction, status, &
+            force, d(:, :, 1), e)
+        call compliant_operator(layer, n, gap, spread(along, 2, 3)*spread(along, 1, 3), lambda, &
+            committed, slip, friction, status, force, d(:, :, 2), e)
+        change = matmul(d(:, :, 2) - d(:, :, 1), along)/square
+        do i = 1, 3
+          self%by_edge(:, i, c) = -change*n(i)
+        end do
+      end if
+      ! On the line of the law's scale the normal force is proportional to the area as far as the
+      ! layer is softer than that.
+      change = self%force(:, c)
+      if (status == status_stick) change = dot_product(n, change)*n
+      change = (1.0_wp - dot_product(n, matmul(self%e(:, :, c), n)))/crossing%weight*change
+    end associate
+    do i = 1, 3
+      self%d(:, i, c) = self%d(:, i, c) + change*crossing%weight_by_point(i)
+      self%by_edge(:, i, c) = self%by_edge(:, i, c) + change*crossing%weight_by_edge(i)
+    end do
+  end subroutine add_crossing_terms
+
+  !> Evaluate the points at the committed state.
+  subroutine predict(self, contact, model, committed, touching)
+    class(compliant_contact_t), intent(in) :: self
+    type(contact_work_t), intent(inout) :: contact
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    logical, intent(in) :: touching(:)
+
+    type(hit_t) :: hit
+    integer :: c
+
+    !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c, hit) &
+    !$omp& schedule(dynamic, chunk)
+    do c = 1, model%n_contact
+      if (model%contact_point(c)%moves) then
+        contact%near(c) = may_cross(model, committed, c)
+        call predict_crossing(contact, model, committed, touching, c)
+        cycle
+      end if
+      call find_committed_candidate(contact, model, committed, c, hit)
+      if (contact%tool(c) > 0) call predict_layer(contact, model, committed, c, &
+          layer_at(model, model%phase(committed%phase), c), hit, touching(contact%tool(c)))
+    end do
+    !$omp end parallel do
+  end subroutine predict
+
+  !> Evaluate the contact of an edge of the mesh with borders in the predictor.
+  subroutine predict_crossing(self, model, committed, touching, c)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    !> Whether any candidate, of any rank, is in contact with each tool.
+    logical, intent(in) :: touching(:)
+    integer, intent(in) :: c
+
+    type(contact_point_t) :: point
+    type(crossing_t) :: crossing
+
+    self%place(c) = committed%place(c)
+    self%committed_tool(c) = 0
+    call find_nearest_border(self, model, committed, c, crossing)
+    self%status(c) = status_gap
+    if (self%tool(c) == 0) return
+    self%status(c) = committed%status(c)
+    point = model%contact_point(c)%at_place(crossing%place)
+    self%committed_x(:, c) = point%position(committed%x)
+    self%turning(:, c) = turning_rate(model%phase(committed%phase), committed, self%tool(c), &
+        self%committed_x(:, c))
+    self%committed_tool(c) = committed%contact_tool(c)
+    self%committed_normal(:, c) = crossing%normal
+    self%committed_force(:, c) = committed%lambda(:, c)
+    associate (phase => model%phase(committed%phase))
+      call predict_layer(self, model, committed, c, fraction_of(layer_at(model, phase, c), &
+          crossing%weight), crossing_hit(crossing), touching(self%tool(c)), crossing)
+    end associate
+  end subroutine predict_crossing
+
+  !> its slope is zero.
+  subroutine predict_layer(self, model, state, c, layer, hit, touching, crossing)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The committed state.
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: c
+    type(layer_t), intent(in) :: layer
+    type(hit_t), intent(in) :: hit
+    !> Whether any candidate is in contact with the tool.
+    logical, intent(in) :: touching
+    !> If the point is one; the layer is then its fraction by the weight.
+    type(crossing_t), intent(in), optional :: crossing
+
+    real(wp), parameter :: no_slip(3) = 0.0_wp
+    real(wp) :: gap, committed(3)
+
+    gap = hit%distance + offset_at(state, self%tool(c), c)
+    self%onset(c) = layer%height
+    self%distance(c) = gap - layer%height
+    if (.not. touching .and. self%distance(c) <= model%tolerance%touch) gap = &
+        min(gap, at_onset*layer%height)
+    committed = 0.0_wp
+    if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%lambda(:, c), &
+        committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
+        self%force(:, c), self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
+    if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
+        state%lambda(:, c), committed, no_slip, model%tool(self%tool(c))%friction)
+  end subroutine predict_layer
+
+  !> Add the points to the linear system.
+  subroutine reduce(self, matrix, problem, contact, partition, position, model, phase, x)
+    class(compliant_contact_t), intent(inout) :: self
+    type(block_matrix_t), intent(inout) :: matrix
+    type(linear_problem_t), intent(inout) :: problem
+    type(contact_work_t), intent(in) :: contact
+    type(partition_t), intent(in) :: partition
+    integer, intent(in) :: position(:, :, :)
+    type(model_t), intent(in) :: model
+    type(phase_t), intent(in) :: phase
+    real(wp), intent(in) :: x(:, :)
+
+    call add_points(matrix, problem, contact, position, model, phase, x)
+    call partition%complete_rows(matrix)
+    call partition%complete_forces(model%n_node, problem%rhs)
+  end subroutine reduce
+
+  !> Set the increments of the forces of the points.
+  subroutine read_forces(self, contact, problem, model, state, step)
+    class(compliant_contact_t), intent(in) :: self
+    type(contact_work_t), intent(in) :: contact
+    type(linear_problem_t), intent(in) :: problem
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(unknowns_t), intent(inout) :: step
+
+    call set_point_forces(contact, problem, model, state, step)
+  end subroutine read_forces
+
+end module dd3_system_compliant_contact
