@@ -6,7 +6,11 @@ module dd3_model_configuration
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank
   use dd3_contact_operator, only : status_gap
-  use dd3_tools_closest, only : hint_t
+  use dd3_model_contact_state, only : contact_state_t
+  use dd3_model_observations, only : observations_t
+  use dd3_model_sheet_state, only : sheet_state_t
+  use dd3_model_tools_state, only : tools_state_t
+  use dd3_model_work_state, only : work_state_t
   use dd3_tools_placement, only : placement_t
   implicit none
   private
@@ -51,65 +55,15 @@ module dd3_model_configuration
     integer :: history_increment = -1, fields_increment = -1
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
-    !> Internal forces, `(3, n_node)`, N.
-    real(wp), allocatable :: internal_force(:, :)
     !> External forces, the sum over the terms, `(3, n_node)`, N.
     real(wp), allocatable :: external_force(:, :)
-    !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
-    real(wp), allocatable :: stress(:, :, :)
-    !> Internal variables of the material, `(n_internal, n_point, n_element)`; the first is the
-    !> equivalent plastic strain.
-    real(wp), allocatable :: internal_variables(:, :, :)
-    !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
-    real(wp), allocatable :: orientation(:, :, :, :)
-    !> Parameters of the elements' enhanced strains in the increment, `(n_enhanced, n_element)`;
-    !> zero in the committed state.
-    real(wp), allocatable :: enhanced(:, :)
-    !> Whether the last increment was plastic, `(n_point, n_element)`.
-    logical, allocatable :: plastic(:, :)
-    !> Contact forces of the candidates, sheet on tool, `(3, n_contact)`, N.
-    real(wp), allocatable :: lambda(:, :)
-    !> Contact status, `(n_contact)`: one of the `status_*` values of dd3_contact_operator.
-    integer, allocatable :: status(:)
-    !> Nearest tool of each candidate, `(n_contact)`; 0 for none.
-    integer, allocatable :: contact_tool(:)
-    !> Place of each candidate on its edge of the mesh, if that moves, `(n_contact)`.
-    real(wp), allocatable :: place(:)
-    !> Last closest point on each tool, `(n_tool, n_contact)`.
-    type(hint_t), allocatable :: hint(:, :)
-    !> Displacement of the tools from the coordinates of their files, `(3, n_tool)`, mm; of those
-    !> that turn, of the point `tool_centre` on the axis, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool_displacement(:, :), tool_centre(:, :)
-    !> Rotation of the tools, `(3, 3, n_tool)`, and their angle since the start of the job,
-    !> `(n_tool)`, rad.
-    real(wp), allocatable :: tool_rotation(:, :, :), tool_angle(:)
-    !> Force pressed on the tools, `(3, n_tool)`, N.
-    real(wp), allocatable :: tool_load(:, :)
-    !> Force of the sheet on the tools, forces of its draw-beads and fading ones included, `(3, n_tool)`, N.
-    real(wp), allocatable :: tool_force(:, :)
-    !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm.
-    real(wp), allocatable :: layer_offset(:)
-    !> Whether each tool has been in contact since the start of the job, `(n_tool)`.
-    logical, allocatable :: touched(:)
-    !> Depth of each tool in the faces of the sheet between the nodes, its largest value in the
-    !> running phase, `(n_tool)`, mm, and the face of that value, 0 for none.
-    real(wp), allocatable :: tool_depth(:), largest_depth(:)
-    integer, allocatable :: deepest_face(:)
-    !> Smallest convex radius of each tool near that place, mm; huge for an edge without radius.
-    real(wp), allocatable :: deepest_radius(:)
-    !> Patch, edge and node where a point under pressure first left each tool over an open edge in
-    !> the running phase, `(3, n_tool)`, 0 for none, and the displacement of the tool in the phase
-    !> until then, `(n_tool)`, mm.
-    integer, allocatable :: open_edge(:, :)
-    real(wp), allocatable :: open_edge_displacement(:)
+    type(sheet_state_t) :: sheet
+    type(contact_state_t) :: contact
+    type(tools_state_t) :: tools
+    type(observations_t) :: observed
+    type(work_state_t) :: work
     !> Whether the tools that the phase withdraws have all left the sheet.
     logical :: open = .false.
-    !> Path of each candidate on the tools while it slips, `(n_contact)`, mm.
-    real(wp), allocatable :: slip_path(:)
-    !> Work since the start of the job, mJ: of the contact forces on the sheet by the motion of the
-    !> tools, of loads and supports, of the internal forces, of the equivalent stress, of friction.
-    real(wp) :: tool_work = 0.0_wp, external_work = 0.0_wp, internal_work = 0.0_wp
-    real(wp) :: plastic_work = 0.0_wp, friction_work = 0.0_wp
     !> Values fixed at the start of the running phase.
     type(phase_start_t) :: start
   contains
@@ -124,11 +78,7 @@ contains
     class(configuration_t), intent(in) :: self
     integer, intent(in) :: tool
 
-    placement%rotation = self%tool_rotation(:, :, tool)
-    associate (centre => self%tool_centre(:, tool))
-      placement%translation = self%tool_displacement(:, tool) &
-          + (centre - placement%vector_to_global(centre))
-    end associate
+    placement = self%tools%placement(tool)
   end function placement
 
   !> Whether a tool is in contact with the sheet, on any rank.
@@ -136,7 +86,7 @@ contains
     class(configuration_t), intent(in) :: self
     integer, intent(in) :: tool
 
-    touches = any_rank(any(self%contact_tool == tool .and. self%status /= status_gap))
+    touches = any_rank(any(self%contact%tool == tool .and. self%contact%status /= status_gap))
   end function touches
 
 end module dd3_model_configuration

@@ -113,12 +113,12 @@ contains
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
           model%contact_point(c)%position(state%x), hint, layer%height, &
-          model%tolerance%committed_depth + state%layer_offset(tool), hit, &
+          model%tolerance%committed_depth + state%tools%layer_offset(tool), hit, &
           border=border_at(model, phase, c))
       if (.not. hit%found) cycle
       force = 0.0_wp
-      if (state%contact_tool(c) == tool .and. state%status(c) /= status_gap) &
-          force = max(0.0_wp, -dot_product(state%lambda(:, c), hit%normal))
+      if (state%contact%tool(c) == tool .and. state%contact%status(c) /= status_gap) &
+          force = max(0.0_wp, -dot_product(state%contact%lambda(:, c), hit%normal))
       missing = max(missing, layer%height - hit%distance)
       sums = sums + force*[1.0_wp, gap_under_force(layer, force) - hit%distance]
     end do
@@ -155,13 +155,14 @@ contains
           hint = hint_t()
           call find_on_tool(model%tool(t), state%placement(t), &
               model%contact_point(c)%position(state%x), hint, layer%height, &
-              model%tolerance%committed_depth + state%layer_offset(t), hit, &
+              model%tolerance%committed_depth + state%tools%layer_offset(t), hit, &
               border=border_at(model, phase, c))
           if (.not. hit%found) cycle
           if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
               i=1, point%n_surface)])) cycle
           force = 0.0_wp
-          if (state%contact_tool(c) == t) force = max(0.0_wp, -dot_product(state%lambda(:, c), &
+          if (state%contact%tool(c) == t) force = max(0.0_wp, &
+              -dot_product(state%contact%lambda(:, c), &
               hit%normal))
           offset(c) = max(offset(c), 0.0_wp, gap_under_force(layer, force) - hit%distance)
         end do

@@ -95,7 +95,7 @@ contains
 
     area = nodal_areas(model, state%x)
     pressure = sum(nodal_normals(model, state%x) &
-        *model%nodal_contact_forces(state%x, state%lambda, state%place), dim=1)
+        *model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place), dim=1)
     where (area > 0.0_wp)
       pressure = pressure/max(area, tiny(1.0_wp))
     elsewhere
@@ -116,11 +116,12 @@ contains
     area = point_areas(model, state%x)
     normal = outward_normals(model, state%x)
     do c = 1, model%n_contact
-      if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
+      if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
       if (area(c) <= 0.0_wp) cycle
-      associate (tool => contact(state%contact_tool(c)))
+      associate (tool => contact(state%contact%tool(c)))
         tool%area = tool%area + area(c)
-        tool%pressure = max(tool%pressure, dot_product(normal(:, c), state%lambda(:, c))/area(c))
+        tool%pressure = max(tool%pressure, dot_product(normal(:, c), state%contact%lambda(:, &
+            c))/area(c))
       end associate
     end do
     call sum_over_ranks(size(contact), contact%area)
@@ -145,11 +146,11 @@ contains
       do c = 1, model%n_contact_node
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
-          hint = state%hint(t, c)
+          hint = state%contact%hint(t, c)
           call find_on_tool(model%tool(t), state%placement(t), &
               model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
-              + state%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
+              + state%tools%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(model%contact_node(c)) = max(gap(model%contact_node(c)), -hit%distance)
         end do
       end do

@@ -34,8 +34,8 @@ contains
         call point_volumes(model%element, state%x(:, model%connectivity(:, e)), volume)
         associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
           do p = 1, size(volume)
-            energy = energy + 0.5_wp*volume(p)*dot_product(state%stress(:, p, i), &
-                elastic_strain(elasticity, state%stress(:, p, i)))
+            energy = energy + 0.5_wp*volume(p)*dot_product(state%sheet%stress(:, p, i), &
+                elastic_strain(elasticity, state%sheet%stress(:, p, i)))
           end do
         end associate
       end associate
@@ -63,25 +63,25 @@ contains
     if (.not. model%phase(state%phase)%layer > 0.0_wp) return
     energy = 0.0_wp
     do c = 1, model%n_contact
-      if (state%status(c) == status_gap .or. state%contact_tool(c) == 0) cycle
-      associate (tool => state%contact_tool(c), phase => model%phase(state%phase))
+      if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
+      associate (tool => state%contact%tool(c), phase => model%phase(state%phase))
         layer = layer_at(model, phase, c)
         if (model%contact_point(c)%moves) then
           call find_crossing_on_tool(model%tool(tool), state%placement(tool), &
               state%x(:, model%contact_point(c)%node(:2)), no_direction, &
               border_at(model, phase, c), layer%height, crossing)
           if (crossing%found) energy = energy + layer_energy(fraction_of(layer, crossing%weight), &
-              -dot_product(crossing%normal, state%lambda(:, c)))
+              -dot_product(crossing%normal, state%contact%lambda(:, c)))
           cycle
         end if
-        hint = state%hint(tool, c)
+        hint = state%contact%hint(tool, c)
         call find_on_tool(model%tool(tool), state%placement(tool), &
             model%contact_point(c)%position(state%x), hint, layer%height, &
             model%tolerance%committed_depth &
-            + max(state%layer_offset(tool), state%start%held_offset(c)), hit, &
+            + max(state%tools%layer_offset(tool), state%start%held_offset(c)), hit, &
             border=border_at(model, phase, c))
       end associate
-      energy = energy + layer_energy(layer, -dot_product(hit%normal, state%lambda(:, c)))
+      energy = energy + layer_energy(layer, -dot_product(hit%normal, state%contact%lambda(:, c)))
     end do
     call sum_over_ranks(1, energy)
     contact_energy = energy(1)
@@ -94,8 +94,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    energy_error = state%tool_work + state%external_work - state%internal_work &
-        - state%friction_work - dissipated_work(state%term) - contact_energy(model, state)
+    energy_error = state%work%tools + state%work%external - state%work%internal &
+        - state%work%friction - dissipated_work(state%term) - contact_energy(model, state)
   end function energy_error
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
@@ -110,7 +110,7 @@ contains
     total = 0.0_wp
     do i = 1, size(model%part%element)
       e = model%part%element(i)
-      strain = new%internal_variables(1, :, i) - old%internal_variables(1, :, i)
+      strain = new%sheet%internal_variables(1, :, i) - old%sheet%internal_variables(1, :, i)
       if (all(strain <= 0.0_wp)) cycle
       call point_volumes(model%element, new%x(:, model%connectivity(:, e)), volume)
       do p = 1, size(volume)
@@ -128,7 +128,7 @@ contains
       type(state_t), intent(in) :: state
 
       equivalent = model%material(model%material_of(e))%equivalent_stress( &
-          state%stress(:, p, i), state%internal_variables(:, p, i))
+          state%sheet%stress(:, p, i), state%sheet%internal_variables(:, p, i))
     end function equivalent
 
   end function plastic_work_increment

@@ -7,7 +7,6 @@ module dd3_model_state_walk
   use dd3_model_configuration, only : phase_start_t
   use dd3_model_state, only : state_t
   use dd3_model_state_visitor, only : state_visitor_t
-  use dd3_tools_closest, only : hint_t
   implicit none
   private
   public :: visit_state
@@ -30,47 +29,13 @@ contains
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)
     call visitor%reals("x", size(state%x), state%x)
-    call visitor%reals("internal_force", size(state%internal_force), state%internal_force)
     call visitor%reals("external_force", size(state%external_force), state%external_force)
-    associate (n => size(state%plastic, 2), n_point => size(state%plastic, 1), &
-        n_variable => size(state%internal_variables, 1))
-      call visitor%reals_of_items(of_elements, "stress", 6*n_point, n, state%stress)
-      call visitor%reals_of_items(of_elements, "internal_variables", n_variable*n_point, n, &
-          state%internal_variables)
-      call visitor%reals_of_items(of_elements, "orientation", 9*n_point, n, state%orientation)
-      call visitor%reals_of_items(of_elements, "enhanced", size(state%enhanced, 1), n, &
-          state%enhanced)
-      call visitor%logicals_of_items(of_elements, "plastic", n_point, n, state%plastic)
-    end associate
-    associate (n => size(state%status))
-      call visitor%reals_of_items(of_points, "lambda", 3, n, state%lambda)
-      call visitor%integers_of_items(of_points, "status", 1, n, state%status)
-      call visitor%integers_of_items(of_points, "contact_tool", 1, n, state%contact_tool)
-      call visitor%reals_of_items(of_points, "place", 1, n, state%place)
-      call visit_hints("hint", size(state%hint, 1), n, state%hint, visitor)
-      call visitor%reals_of_items(of_points, "slip_path", 1, n, state%slip_path)
-    end associate
-    call visitor%reals("tool_displacement", size(state%tool_displacement), state%tool_displacement)
-    call visitor%reals("tool_centre", size(state%tool_centre), state%tool_centre)
-    call visitor%reals("tool_rotation", size(state%tool_rotation), state%tool_rotation)
-    call visitor%reals("tool_angle", size(state%tool_angle), state%tool_angle)
-    call visitor%reals("tool_load", size(state%tool_load), state%tool_load)
-    call visitor%reals("tool_force", size(state%tool_force), state%tool_force)
-    call visitor%reals("layer_offset", size(state%layer_offset), state%layer_offset)
-    call visitor%logicals("touched", size(state%touched), state%touched)
-    call visitor%reals("tool_depth", size(state%tool_depth), state%tool_depth)
+    call state%sheet%walk(visitor)
+    call state%contact%walk(visitor)
+    call state%tools%walk(visitor)
+    call state%observed%walk(visitor)
+    call state%work%walk(visitor)
     call visitor%one_logical("open", state%open)
-    call visitor%reals("largest_depth", size(state%largest_depth), state%largest_depth)
-    call visitor%integers("deepest_face", size(state%deepest_face), state%deepest_face)
-    call visitor%reals("deepest_radius", size(state%deepest_radius), state%deepest_radius)
-    call visitor%integers("open_edge", size(state%open_edge), state%open_edge)
-    call visitor%reals("open_edge_displacement", size(state%open_edge_displacement), &
-        state%open_edge_displacement)
-    call visitor%one_real("tool_work", state%tool_work)
-    call visitor%one_real("external_work", state%external_work)
-    call visitor%one_real("internal_work", state%internal_work)
-    call visitor%one_real("plastic_work", state%plastic_work)
-    call visitor%one_real("friction_work", state%friction_work)
     call visit_phase_start(state%start, visitor)
     do k = 1, size(state%term)
       call state%term(k)%of%walk(visitor)
@@ -97,42 +62,5 @@ contains
     call visitor%one_real("start_elastic_energy", start%elastic_energy)
     call visitor%one_logical("start_until_from_below", start%until_from_below)
   end subroutine visit_phase_start
-
-  !> Pass every component of the closest points to a visitor.
-  subroutine visit_hints(name, n_tool, n, hint, visitor)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_tool, n
-    type(hint_t), intent(inout) :: hint(n_tool, n)
-    class(state_visitor_t), intent(inout) :: visitor
-
-    real(wp), allocatable :: anchor(:, :, :), u(:, :), v(:, :), clearance(:, :)
-    integer, allocatable :: patch(:, :)
-    logical, allocatable :: due(:, :)
-    integer :: i, t
-
-    patch = hint%patch
-    u = hint%u
-    v = hint%v
-    due = hint%due
-    clearance = hint%clearance
-    allocate (anchor(3, n_tool, n))
-    do i = 1, n
-      do t = 1, n_tool
-        anchor(:, t, i) = hint(t, i)%anchor
-      end do
-    end do
-    call visitor%integers_of_items(of_points, name//"_patch", n_tool, n, patch)
-    call visitor%reals_of_items(of_points, name//"_u", n_tool, n, u)
-    call visitor%reals_of_items(of_points, name//"_v", n_tool, n, v)
-    call visitor%logicals_of_items(of_points, name//"_due", n_tool, n, due)
-    call visitor%reals_of_items(of_points, name//"_anchor", 3*n_tool, n, anchor)
-    call visitor%reals_of_items(of_points, name//"_clearance", n_tool, n, clearance)
-    do i = 1, n
-      do t = 1, n_tool
-        hint(t, i) = hint_t(patch=patch(t, i), u=u(t, i), v=v(t, i), due=due(t, i), &
-            anchor=anchor(:, t, i), clearance=clearance(t, i))
-      end do
-    end do
-  end subroutine visit_hints
 
 end module dd3_model_state_walk

@@ -29,13 +29,13 @@ contains
       if (.not. phase%turns(t)) cycle
       placement = state%placement(t)
       associate (centre => phase%turn(t)%centre)
-        state%tool_displacement(:, t) = placement%translation &
+        state%tools%displacement(:, t) = placement%translation &
             + placement%vector_to_global(centre) - centre
-        state%tool_centre(:, t) = centre
+        state%tools%centre(:, t) = centre
       end associate
     end do
-    state%start%tool_rotation = state%tool_rotation
-    state%start%tool_angle = state%tool_angle
+    state%start%tool_rotation = state%tools%rotation
+    state%start%tool_angle = state%tools%angle
   end subroutine begin_turns
 
   !> Set the rotations of the tools at the progress of a state.
@@ -50,10 +50,10 @@ contains
       if (.not. phase%turns(t)) cycle
       angle = phase%turn_factor(state%progress)*phase%turn(t)%angle
       associate (start => state%start%tool_rotation(:, :, t))
-        state%tool_rotation(:, :, t) = matmul(rotation_about(matmul(start, phase%turn(t)%axis), &
+        state%tools%rotation(:, :, t) = matmul(rotation_about(matmul(start, phase%turn(t)%axis), &
             angle), start)
       end associate
-      state%tool_angle(t) = state%start%tool_angle(t) + angle
+      state%tools%angle(t) = state%start%tool_angle(t) + angle
     end do
   end subroutine set_rotations
 
@@ -70,8 +70,8 @@ contains
     rate = 0.0_wp
     if (.not. phase%turns(tool)) return
     rate = phase%turn_slope(state%progress)*phase%turn(tool)%angle &
-        *cross(matmul(state%tool_rotation(:, :, tool), phase%turn(tool)%axis), &
-        x - state%tool_centre(:, tool) - state%tool_displacement(:, tool))
+        *cross(matmul(state%tools%rotation(:, :, tool), phase%turn(tool)%axis), &
+        x - state%tools%centre(:, tool) - state%tools%displacement(:, tool))
   end function turning_rate
 
   !> Return the displacements of the origins of the tools' files, `(3, n_tool)`, mm.
@@ -82,7 +82,7 @@ contains
     type(placement_t) :: placement
     integer :: t
 
-    displacement = state%tool_displacement
+    displacement = state%tools%displacement
     do t = 1, size(displacement, 2)
       placement = state%placement(t)
       displacement(:, t) = placement%translation
@@ -94,7 +94,7 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
 
-    angle = 180.0_wp/pi*state%tool_angle(tool)
+    angle = 180.0_wp/pi*state%tools%angle(tool)
   end function turned_angle
 
   !> Return the moment of the contact forces on a tool about the axis of its turn in the running
@@ -111,16 +111,16 @@ contains
     axis = 0.0_wp
     do i = state%phase, 1, -1
       if (.not. model%phase(i)%turns(tool)) cycle
-      axis = matmul(state%tool_rotation(:, :, tool), model%phase(i)%turn(tool)%axis)
+      axis = matmul(state%tools%rotation(:, :, tool), model%phase(i)%turn(tool)%axis)
       exit
     end do
-    centre = state%tool_centre(:, tool) + state%tool_displacement(:, tool)
+    centre = state%tools%centre(:, tool) + state%tools%displacement(:, tool)
     moment = 0.0_wp
     do c = 1, model%n_contact
-      if (state%contact_tool(c) /= tool .or. state%status(c) == status_gap) cycle
-      point = model%contact_point(c)%at_place(state%place(c))
+      if (state%contact%tool(c) /= tool .or. state%contact%status(c) == status_gap) cycle
+      point = model%contact_point(c)%at_place(state%contact%place(c))
       moment = moment + dot_product(axis, cross(point%position(state%x) - centre, &
-          state%lambda(:, c)))
+          state%contact%lambda(:, c)))
     end do
     call sum_over_ranks(1, moment)
     torque = moment(1)

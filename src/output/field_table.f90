@@ -217,7 +217,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: value(:, :)
 
-    value = 0.0_wp - model%nodal_contact_forces(state%x, state%lambda, state%place)
+    value = 0.0_wp - model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place)
   end subroutine fill_contact_force
 
   !> Evaluate the contact status.
@@ -229,7 +229,7 @@ contains
 
     value = 0.0_wp
     do i = 1, model%n_contact_node
-      value(1, model%contact_node(i)) = real(state%status(i), wp)
+      value(1, model%contact_node(i)) = real(state%contact%status(i), wp)
     end do
     call sum_over_ranks(size(value), value)
   end subroutine fill_contact_status
@@ -246,8 +246,8 @@ contains
     do e = 1, size(model%part%element)
       do p = 1, model%element%n_point
         i = i + 1
-        q = state%orientation(:, :, p, e)
-        t = tensor_from_kelvin(state%stress(:, p, e))
+        q = state%sheet%orientation(:, :, p, e)
+        t = tensor_from_kelvin(state%sheet%stress(:, p, e))
         t = matmul(q, matmul(t, transpose(q)))
         value(:, i) = [t(1, 1), t(2, 2), t(3, 3), t(1, 2), t(2, 3), t(1, 3)]
       end do
@@ -263,7 +263,7 @@ contains
 
     n = model%element%n_point
     do e = 1, size(model%part%element)
-      value(1, (e - 1)*n + 1:e*n) = state%internal_variables(1, :, e)
+      value(1, (e - 1)*n + 1:e*n) = state%sheet%internal_variables(1, :, e)
     end do
   end subroutine fill_plastic_strain
 
@@ -279,8 +279,8 @@ contains
       m = model%material_of(model%part%element(e))
       do p = 1, model%element%n_point
         i = i + 1
-        value(1, i) = model%material(m)%equivalent_stress(state%stress(:, p, e), &
-                                                          state%internal_variables(:, p, e))
+        value(1, i) = model%material(m)%equivalent_stress(state%sheet%stress(:, p, e), &
+                                                          state%sheet%internal_variables(:, p, e))
       end do
     end do
   end subroutine fill_equivalent_stress
@@ -302,7 +302,7 @@ contains
         i = i + 1
         value(:, i) = global_components(model%internal_variable(variable), &
             model%material_of(model%part%element(e)), &
-            state%internal_variables(:, p, e), state%orientation(:, :, p, e))
+            state%sheet%internal_variables(:, p, e), state%sheet%orientation(:, :, p, e))
       end do
     end do
   end subroutine fill_internal_variable

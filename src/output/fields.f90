@@ -384,9 +384,10 @@ contains
     call self%progress%append_reals([state%progress], ok)
     call self%travel%append_reals([state%travel], ok)
     if (self%tool%id >= 0) then
-      call self%tool%append_reals(reshape(tool_origins(state), [size(state%tool_displacement)]), ok)
-      call self%tool_rotation%append_reals(reshape(state%tool_rotation, &
-          [size(state%tool_rotation)]), ok)
+      call self%tool%append_reals(reshape(tool_origins(state), [size(state%tools%displacement)]), &
+          ok)
+      call self%tool_rotation%append_reals(reshape(state%tools%rotation, &
+          [size(state%tools%rotation)]), ok)
     end if
     self%last_increment = state%increment
   end subroutine append_step

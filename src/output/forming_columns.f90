@@ -73,8 +73,8 @@ contains
     type(state_t), intent(in) :: state
     real(wp) :: energy(size(energy_name))
 
-    energy = [state%tool_work, state%external_work, state%internal_work, &
-        elastic_energy(model, state), state%plastic_work, state%friction_work, &
+    energy = [state%work%tools, state%work%external, state%work%internal, &
+        elastic_energy(model, state), state%work%plastic, state%work%friction, &
         contact_energy(model, state), energy_error(model, state)]
   end function energies
 

@@ -95,7 +95,7 @@ contains
 
     value = 0.0_wp
     associate (n => model%n_contact_node)
-      if (n > 0) value(1, model%contact_node(:n)) = state%slip_path(:n)
+      if (n > 0) value(1, model%contact_node(:n)) = state%contact%slip_path(:n)
     end associate
     call sum_over_ranks(size(value), value)
   end subroutine fill_slip_path
@@ -109,7 +109,7 @@ contains
     value = 0.0_wp
     associate (n => model%n_contact_node)
       if (n > 0) value(1, model%contact_node(:n)) = &
-          real(merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap), wp)
+          real(merge(state%contact%tool(:n), 0, state%contact%status(:n) /= status_gap), wp)
     end associate
     call sum_over_ranks(size(value), value)
   end subroutine fill_contact_tool

@@ -183,11 +183,11 @@ contains
     call table%add_real(state%travel)
     call table%add_real(state%progress)
     do i = 1, model%n_tool
-      call table%add_reals(state%tool_displacement(:, i))
-      call table%add_reals(state%tool_force(:, i))
-      call table%add_integer(count_over_ranks(count(state%contact_tool == i &
-          .and. state%status /= status_gap)))
-      call table%add_real(state%tool_depth(i))
+      call table%add_reals(state%tools%displacement(:, i))
+      call table%add_reals(state%tools%force(:, i))
+      call table%add_integer(count_over_ranks(count(state%contact%tool == i &
+          .and. state%contact%status /= status_gap)))
+      call table%add_real(state%observed%depth(i))
       if (.not. model%turns(i)) cycle
       call table%add_real(turned_angle(state, i))
       call table%add_real(torque(model, state, i))
@@ -243,10 +243,11 @@ contains
     type(state_t), intent(in) :: state
     real(wp) :: reaction(3, model%n_node)
 
-    reaction = state%internal_force - state%external_force
+    reaction = state%sheet%internal_force - state%external_force
     where (spread(released_tool(state%term) == 0, 1, 3)) &
         reaction = reaction - remaining_force(state%term)
-    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
+    reaction = reaction + model%nodal_contact_forces(state%x, state%contact%lambda, &
+        state%contact%place)
   end function reactions
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.

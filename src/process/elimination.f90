@@ -145,11 +145,11 @@ contains
       self%origin = self%start
       self%origin_tool = self%start_tool
       self%origin_hint = self%start_hint
-      self%origin_force = trial%internal_force(:, region%node)
+      self%origin_force = trial%sheet%internal_force(:, region%node)
       call solve(self, local_tolerance, most_iterations, .true., course)
       converged = course%outcome == newton_converged
       if (converged) then
-        trial%internal_force(:, region%node) = self%origin_force &
+        trial%sheet%internal_force(:, region%node) = self%origin_force &
             + (region%force - self%first_force)
       else
         call self%restore()
@@ -168,7 +168,7 @@ contains
     self%start_hint = self%origin_hint
     call self%apply(0.0_wp)
     call self%evaluate(.false., verdict)
-    self%trial%internal_force(:, self%region%node) = self%origin_force
+    self%trial%sheet%internal_force(:, self%region%node) = self%origin_force
   end subroutine restore
 
   !> Keep the state of the region before a step.
@@ -177,10 +177,10 @@ contains
 
     associate (trial => self%trial, region => self%region)
       self%start%x = trial%x(:, region%node)
-      self%start%enhanced = trial%enhanced(:, region%element)
-      self%start%lambda = trial%lambda(:, region%point)
-      self%start_tool = trial%contact_tool(region%point)
-      self%start_hint = trial%hint(:, region%point)
+      self%start%enhanced = trial%sheet%enhanced(:, region%element)
+      self%start%lambda = trial%contact%lambda(:, region%point)
+      self%start_tool = trial%contact%tool(region%point)
+      self%start_hint = trial%contact%hint(:, region%point)
     end associate
   end subroutine keep_start
 
@@ -237,11 +237,11 @@ contains
     associate (trial => self%trial, region => self%region, start => self%start, &
         step => self%region%step)
       trial%x(:, region%node) = start%x + fraction*step%x
-      trial%enhanced(:, region%element) = start%enhanced + fraction*step%enhanced
-      trial%lambda(:, region%point) = start%lambda + fraction*step%lambda
+      trial%sheet%enhanced(:, region%element) = start%enhanced + fraction*step%enhanced
+      trial%contact%lambda(:, region%point) = start%lambda + fraction*step%lambda
       if (fraction >= 1.0_wp) return
-      trial%contact_tool(region%point) = self%start_tool
-      trial%hint(:, region%point) = self%start_hint
+      trial%contact%tool(region%point) = self%start_tool
+      trial%contact%hint(:, region%point) = self%start_hint
     end associate
   end subroutine apply
 

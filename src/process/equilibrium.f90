@@ -86,11 +86,11 @@ contains
     type(unknowns_t), intent(in) :: step
 
     associate (trial => self%trial, problem => self%system%problem)
-      trial%tool_displacement = trial%tool_displacement + step%tool
+      trial%tools%displacement = trial%tools%displacement + step%tool
       call keep_start(self)
       self%step = step
       self%step%tool = 0.0_wp
-      allocate (self%status(size(trial%status), n_kept), source=unknown)
+      allocate (self%status(size(trial%contact%status), n_kept), source=unknown)
       problem%prescribed = 0.0_wp
       problem%tool_prescribed = 0.0_wp
     end associate
@@ -193,9 +193,10 @@ contains
     class(equilibrium_t), intent(inout) :: self
 
     associate (trial => self%trial)
-      self%start = unknowns_t(trial%x, trial%enhanced, trial%lambda, trial%tool_displacement)
-      self%start_tool = trial%contact_tool
-      self%start_hint = trial%hint
+      self%start = unknowns_t(trial%x, trial%sheet%enhanced, trial%contact%lambda, &
+          trial%tools%displacement)
+      self%start_tool = trial%contact%tool
+      self%start_hint = trial%contact%hint
     end associate
   end subroutine keep_start
 
@@ -238,13 +239,13 @@ contains
 
     associate (trial => self%trial, start => self%start, step => self%step)
       trial%x = start%x + fraction*step%x
-      trial%enhanced = start%enhanced + fraction*step%enhanced
-      trial%lambda = start%lambda + fraction*step%lambda
-      trial%tool_displacement = start%tool + fraction*step%tool
+      trial%sheet%enhanced = start%enhanced + fraction*step%enhanced
+      trial%contact%lambda = start%lambda + fraction*step%lambda
+      trial%tools%displacement = start%tool + fraction*step%tool
       self%made = fraction
       if (fraction >= 1.0_wp) return
-      trial%contact_tool = self%start_tool
-      trial%hint = self%start_hint
+      trial%contact%tool = self%start_tool
+      trial%contact%hint = self%start_hint
       self%system%problem%missed = .true.
     end associate
   end subroutine apply
@@ -273,7 +274,8 @@ contains
         if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
             *dot_product(phase%direction(:, tool), step%tool(:, tool))
       end do
-      if (abs(work) <= negligible_work*norm2(self%trial%internal_force)*norm2(step%x)) work = 0.0_wp
+      if (abs(work) <= negligible_work*norm2(self%trial%sheet%internal_force)*norm2(step%x)) &
+          work = 0.0_wp
       work = agreed(work)
     end associate
   end function slope

@@ -25,9 +25,9 @@ contains
     integer :: tool
 
     associate (start => trial%start)
-      trial%layer_offset = offset_factor(trial%progress)*start%layer_offset
+      trial%tools%layer_offset = offset_factor(trial%progress)*start%layer_offset
       do tool = 1, model%n_tool
-        trial%tool_load(:, tool) = model%phase(trial%phase)%tool_load(tool, trial%progress, &
+        trial%tools%load(:, tool) = model%phase(trial%phase)%tool_load(tool, trial%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool))
       end do
     end associate
@@ -48,13 +48,14 @@ contains
     call evaluate_terms(trial%term, model, committed%configuration_t, trial%configuration_t)
     trial%external_force = external_forces(trial%term, model, trial%configuration_t)
     associate (problem => system%problem, contact => system%contact, &
-        phase => model%phase(trial%phase), force => trial%tool_force)
-      contact_forces = model%own_contact_forces(trial%x, trial%lambda, trial%place)
+        phase => model%phase(trial%phase), force => trial%tools%force)
+      contact_forces = model%own_contact_forces(trial%x, trial%contact%lambda, trial%contact%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
-      problem%residual = trial%internal_force - trial%external_force
+      problem%residual = trial%sheet%internal_force - trial%external_force
       problem%residual = problem%residual + contact_forces
-      problem%contact_residual = contact%force - trial%lambda
-      contact_forces = model%own_contact_forces(trial%x, problem%contact_residual, trial%place)
+      problem%contact_residual = contact%force - trial%contact%lambda
+      contact_forces = model%own_contact_forces(trial%x, problem%contact_residual, &
+          trial%contact%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
       problem%law_residual = problem%residual + contact_forces
       force = 0.0_wp
@@ -68,7 +69,7 @@ contains
       end do
       do tool = 1, model%n_tool
         problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
-            trial%tool_load(:, tool) + force(:, tool))
+            trial%tools%load(:, tool) + force(:, tool))
         ! A pressed tool that has lost the sheet moves back to contact.
         problem%tool_prescribed(:, tool) = 0.0_wp
         if (.not. is_lost(model, trial, tool)) cycle
@@ -98,7 +99,7 @@ contains
     integer, intent(in) :: tool
 
     is_lost = model%phase(trial%phase)%pressed(tool) .and. &
-        norm2(trial%tool_load(:, tool)) > 0.0_wp
+        norm2(trial%tools%load(:, tool)) > 0.0_wp
     if (is_lost) is_lost = .not. trial%touches(tool)
   end function is_lost
 

@@ -75,7 +75,7 @@ contains
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*phase%length
-      trial%hint%due = .true.
+      trial%contact%hint%due = .true.
       call set_rotations(phase, trial)
       call equilibrium%begin(prediction%step%scaled(r))
       call set_loads(model, trial)
@@ -105,7 +105,7 @@ contains
       verdict%norm = equilibrium%scaled_norm
       select case (course%outcome)
       case (newton_converged)
-        equilibrium%trial%lambda = equilibrium%system%contact%force
+        equilibrium%trial%contact%lambda = equilibrium%system%contact%force
       case (newton_interrupted)
         verdict%outcome = verdict_retry
         verdict%cause = cause_interrupted
@@ -174,7 +174,7 @@ contains
     call observe_passages(model, committed, trial)
     trial%open = has_opened(model, trial)
     committed = trial
-    committed%enhanced = 0.0_wp
+    committed%sheet%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)
   end subroutine accept_increment
 

@@ -256,12 +256,12 @@ contains
       do p = 1, model%element%n_point
         change = matmul(stepper%system%tangent(:, :, p, e), stepper%prediction%strain(:, p, e))
         magnitude = norm2(change)
-        if (magnitude <= 0.0_wp .or. norm2(state%stress(:, p, e)) <= 0.0_wp) cycle
-        direction = material%plastic_direction(state%stress(:, p, e), &
-            state%internal_variables(:, p, e))
+        if (magnitude <= 0.0_wp .or. norm2(state%sheet%stress(:, p, e)) <= 0.0_wp) cycle
+        direction = material%plastic_direction(state%sheet%stress(:, p, e), &
+            state%sheet%internal_variables(:, p, e))
         normal = min(1.0_wp, abs(dot_product(direction, change))/(norm2(direction)*magnitude))
         tangential = sqrt(1.0_wp - normal**2)
-        bound = material%flow_stress(state%internal_variables(:, p, e)) &
+        bound = material%flow_stress(state%sheet%internal_variables(:, p, e)) &
             /(magnitude*(normal*inverse(2) + tangential*inverse(1)))
         if (bound >= smallest) cycle
         smallest = bound
@@ -282,15 +282,15 @@ contains
     real(wp) :: b, total(1), mean, ellipsoid
     integer :: c, n
 
-    n = count_over_ranks(count(state%status /= status_gap))
+    n = count_over_ranks(count(state%contact%status /= status_gap))
     associate (limits => model%phase(state%phase)%limits, contact => stepper%system%contact)
       if (.not. limits%force(1)%active .or. n == 0) return
-      total = sum(norm2(state%lambda, dim=1), mask=state%status /= status_gap)
+      total = sum(norm2(state%contact%lambda, dim=1), mask=state%contact%status /= status_gap)
       call sum_over_ranks(1, total)
       mean = total(1)/real(n, wp)
       do c = 1, model%n_contact
-        if (state%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
-        b = max(norm2(state%lambda(:, c)), limits%force_floor%value*mean)
+        if (state%contact%status(c) == status_gap .or. contact%status(c) == status_gap) cycle
+        b = max(norm2(state%contact%lambda(:, c)), limits%force_floor%value*mean)
         ellipsoid = ellipsoid_norm(stepper%prediction%step%lambda(:, c), contact%normal(:, c), &
             limits%force%value)
         if (ellipsoid <= 0.0_wp) cycle
@@ -377,7 +377,8 @@ contains
         if (.not. motion > 0.0_wp) cycle
         if (.not. (state%touches(tool) .or. presses_by_bead(model, state, tool))) cycle
         bound = min(opening_step*model%thickness, &
-            phase%opened(tool, state%progress) + first*max(phase%layer, least_layer)*model%thickness)
+            phase%opened(tool, state%progress) + first*max(phase%layer, &
+            least_layer)*model%thickness)
         if (bound/motion < limit%r) limit = limit_t(r=bound/motion, tool=tool)
       end do
     end associate
@@ -403,7 +404,7 @@ contains
       else
         rate = 0.0_wp
         do c = 1, model%n_contact
-          if (state%contact_tool(c) == tool) &
+          if (state%contact%tool(c) == tool) &
               rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
         end do
         call sum_over_ranks(1, rate)

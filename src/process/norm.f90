@@ -135,7 +135,8 @@ contains
 
     associate (phase => model%phase(trial%phase))
       force = agreed(norm_over_ranks(step) + residual%norm)
-      scale = agreed(max(norm_over_ranks(norm2(trial%lambda)), norm2(trial%internal_force), &
+      scale = agreed(max(norm_over_ranks(norm2(trial%contact%lambda)), &
+          norm2(trial%sheet%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase, trial)*scale) then
         round_off = attainable_residual(system%column_square + system%enhanced%unfollowed_square, &
@@ -184,9 +185,10 @@ contains
     type(state_t), intent(in) :: trial
     integer, intent(in) :: tool
 
-    pressed_force = max(norm2(trial%tool_load(:, tool)), &
+    pressed_force = max(norm2(trial%tools%load(:, tool)), &
         least_force*norm2(trial%start%tool_load(:, tool)), &
-        least_force*norm2(trial%start%tool_load_end(:, tool)), least_force*norm2(trial%internal_force), &
+        least_force*norm2(trial%start%tool_load_end(:, tool)), &
+        least_force*norm2(trial%sheet%internal_force), &
         tiny(1.0_wp))
   end function pressed_force
 

@@ -38,11 +38,11 @@ contains
     integer :: tool
 
     do tool = 1, model%n_tool
-      if (trial%open_edge(1, tool) > 0) cycle
+      if (trial%observed%open_edge(1, tool) > 0) cycle
       passage = passage_over(model, committed, trial%x, trial%placement(tool), tool)
       if (passage%tool == 0) cycle
-      trial%open_edge(:, tool) = [passage%patch, passage%edge, passage%node]
-      trial%open_edge_displacement(tool) = norm2(trial%tool_displacement(:, tool) &
+      trial%observed%open_edge(:, tool) = [passage%patch, passage%edge, passage%node]
+      trial%observed%open_edge_displacement(tool) = norm2(trial%tools%displacement(:, tool) &
           - trial%start%tool_displacement(:, tool))
     end do
   end subroutine observe_passages
@@ -83,15 +83,15 @@ contains
     integer :: c
 
     force = 0.0_wp
-    where (state%contact_tool == tool .and. state%status /= status_gap) &
-        force = norm2(state%lambda, dim=1)
+    where (state%contact%tool == tool .and. state%contact%status /= status_gap) &
+        force = norm2(state%contact%lambda, dim=1)
     total = sum(force)
     call sum_over_ranks(1, total)
     least = notable_force*total(1)/real(max(1, count_over_ranks(count(force > 0.0_wp))), wp)
     associate (distance => model%tolerance%tool_search)
       do c = 1, model%n_contact_fixed
         if (force(c) <= least) cycle
-        hint = state%hint(tool, c)
+        hint = state%contact%hint(tool, c)
         call find_on_tool(model%tool(tool), placement, model%contact_point(c)%position(x), hint, &
             distance, distance, hit)
         if (.not. hit%border) cycle

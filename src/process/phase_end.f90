@@ -54,9 +54,9 @@ contains
     associate (tool => phase%until%tool)
       if (phase%until%kind == until_displacement) then
         value = dot_product(phase%direction(:, tool), &
-            state%tool_displacement(:, tool) - state%start%tool_displacement(:, tool))
+            state%tools%displacement(:, tool) - state%start%tool_displacement(:, tool))
       else
-        value = dot_product(phase%direction(:, tool), state%tool_force(:, tool))
+        value = dot_product(phase%direction(:, tool), state%tools%force(:, tool))
       end if
     end associate
   end function until_value

@@ -56,17 +56,13 @@ contains
     end do
     call free_directions(model, number, state, force, lost)
     do tool = 1, model%n_tool
-      if (returns(model, number, tool)) state%hint(tool, :) = hint_t()
+      if (returns(model, number, tool)) state%contact%hint(tool, :) = hint_t()
     end do
     state%phase = number
     state%begun = .true.
     state%progress = 0.0_wp
-    state%largest_depth = 0.0_wp
-    state%deepest_face = 0
-    state%deepest_radius = huge(1.0_wp)
+    call state%observed%begin_phase()
     state%open = .false.
-    state%open_edge = 0
-    state%open_edge_displacement = 0.0_wp
     associate (phase => model%phase(number), start => state%start)
       start%x = state%x
       call begin_turns(phase, state)
@@ -76,18 +72,18 @@ contains
           abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(model, phase, state, force, released_by, lost)
       call hold_released(state%term, force, released_by, turns=number > 1)
-      if (lost .or. any(phase%withdrawn)) state%plastic = .false.
+      if (lost .or. any(phase%withdrawn)) state%sheet%plastic = .false.
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
       call place_layers(model, number, state)
-      start%layer_offset = state%layer_offset
+      start%layer_offset = state%tools%layer_offset
       start%held_offset = held_offsets(model, phase, state)
-      start%tool_displacement = state%tool_displacement
-      start%plastic_strain = state%internal_variables(1, :, :)
+      start%tool_displacement = state%tools%displacement
+      start%plastic_strain = state%sheet%internal_variables(1, :, :)
       start%elastic_energy = elastic_energy(model, state)
     end associate
-    state%tool_work = state%tool_work + contact_energy(model, state) - stored
+    state%work%tools = state%work%tools + contact_energy(model, state) - stored
     state%external_force = external_forces(state%term, model, state%configuration_t)
   end subroutine begin_phase
 
@@ -113,7 +109,7 @@ contains
 
     if (number == 1) return
     where (spread(model%phase(number - 1)%goes_back, 1, 3)) &
-        state%tool_displacement = state%start%tool_displacement
+        state%tools%displacement = state%start%tool_displacement
   end subroutine return_tools
 
   !> Set the layers of tools that begin to act back by the clearance that is missing.
@@ -131,8 +127,8 @@ contains
       do tool = 1, model%n_tool
         begins = phase%active(tool) .and. (number == 1 .or. returns(model, number, tool))
         if (number > 1) begins = begins .or. phase%layer > model%phase(number - 1)%layer
-        if (begins) state%layer_offset(tool) = starting_offset(model, phase, state, tool)
-        if (.not. phase%layer > 0.0_wp) state%layer_offset(tool) = 0.0_wp
+        if (begins) state%tools%layer_offset(tool) = starting_offset(model, phase, state, tool)
+        if (.not. phase%layer > 0.0_wp) state%tools%layer_offset(tool) = 0.0_wp
       end do
     end associate
   end subroutine place_layers
@@ -178,11 +174,11 @@ contains
       start%tool_load = 0.0_wp
       do tool = 1, size(phase%pressed)
         if (.not. phase%pressed(tool)) cycle
-        if (norm2(state%tool_load(:, tool)) > 0.0_wp) then
-          start%tool_load(:, tool) = state%tool_load(:, tool)
+        if (norm2(state%tools%load(:, tool)) > 0.0_wp) then
+          start%tool_load(:, tool) = state%tools%load(:, tool)
         else
           start%tool_load(:, tool) = phase%direction(:, tool) &
-              *max(0.0_wp, -dot_product(phase%direction(:, tool), state%tool_force(:, tool)))
+              *max(0.0_wp, -dot_product(phase%direction(:, tool), state%tools%force(:, tool)))
         end if
       end do
       start%tool_load_end = phase%tool_load_end
@@ -208,8 +204,9 @@ contains
     freed = .false.
     if (number > 1) freed = model%phase(number - 1)%prescribed
     freed = freed .and. .not. model%phase(number)%prescribed
-    reaction = state%internal_force - state%external_force
-    reaction = reaction + model%nodal_contact_forces(state%x, state%lambda, state%place)
+    reaction = state%sheet%internal_force - state%external_force
+    reaction = reaction + model%nodal_contact_forces(state%x, state%contact%lambda, &
+        state%contact%place)
     where (.not. freed) reaction = 0.0_wp
     force = force - reaction
     lost = lost .or. any(freed)
@@ -235,16 +232,16 @@ contains
     released = .false.
     released_by = 0
     if (this_rank() > 0) force = 0.0_wp
-    do c = 1, size(state%contact_tool)
-      tool = state%contact_tool(c)
+    do c = 1, size(state%contact%tool)
+      tool = state%contact%tool(c)
       if (tool == 0) cycle
       if (phase%active(tool)) cycle
-      point = model%contact_point(c)%at_place(state%place(c))
-      call point%add_nodal_forces(state%x, state%lambda(:, c), force)
+      point = model%contact_point(c)%at_place(state%contact%place(c))
+      call point%add_nodal_forces(state%x, state%contact%lambda(:, c), force)
       released_by(point%node(:point%n_surface)) = tool
-      state%lambda(:, c) = 0.0_wp
-      state%status(c) = status_gap
-      state%contact_tool(c) = 0
+      state%contact%lambda(:, c) = 0.0_wp
+      state%contact%status(c) = status_gap
+      state%contact%tool(c) = 0
       released = .true.
     end do
     call sum_over_ranks(size(force), force)
@@ -266,7 +263,7 @@ contains
       call gap_of_tool(model, tool, state, gap, facing)
       if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return
       if (facing <= tangential) return
-      state%tool_displacement(:, tool) = state%tool_displacement(:, tool) &
+      state%tools%displacement(:, tool) = state%tools%displacement(:, tool) &
           + gap*model%phase(state%phase)%direction(:, tool)
     end do
   end subroutine approach
@@ -293,7 +290,7 @@ contains
     associate (phase => model%phase(state%phase))
       do c = 1, model%n_contact
         if (.not. hit(c)%found) cycle
-        largest = max(largest, [-(hit(c)%distance + state%layer_offset(tool) &
+        largest = max(largest, [-(hit(c)%distance + state%tools%layer_offset(tool) &
             - phase%layer*model%thickness_at(model%contact_node(c))), &
             dot_product(hit(c)%normal, phase%direction(:, tool))])
       end do

@@ -80,7 +80,7 @@ contains
     associate (phase => model%phase(committed%phase), &
         unloading => model%phase(committed%phase)%limits%unloading)
       self%progress = phase%trial
-      self%plastic(:, :) = committed%plastic
+      self%plastic(:, :) = committed%sheet%plastic
       call system%profile%start()
       call predictor_contact(system, model, committed)
       call system%profile%add(section_contact)
@@ -98,7 +98,7 @@ contains
         call point_increments(self, model, committed, system)
         call switch_unloading(self, model, committed, switched)
         if (.not. unloading%active) exit
-        counts = real([switched, count(committed%plastic)], wp)
+        counts = real([switched, count(committed%sheet%plastic)], wp)
         call sum_over_ranks(2, counts)
         if (counts(1) <= unloading%value*counts(2)) exit
       end do
@@ -194,8 +194,9 @@ contains
     do e = 1, size(model%part%element)
       associate (material => model%material(model%material_of(model%part%element(e))))
         do p = 1, model%element%n_point
-          call material%continuum_tangent(committed%stress(:, p, e), &
-              committed%internal_variables(:, p, e), self%plastic(p, e), system%tangent(:, :, p, e))
+          call material%continuum_tangent(committed%sheet%stress(:, p, e), &
+              committed%sheet%internal_variables(:, p, e), self%plastic(p, e), system%tangent(:, &
+              :, p, e))
         end do
       end associate
     end do
@@ -223,9 +224,9 @@ contains
         work%x_committed(:, :) = committed%x(:, nodes)
         work%enhanced(:) = self%step%enhanced(:, e)
         work%x_initial(:, :) = model%x0(:, nodes)
-        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
+        call element%linearise(element, committed%sheet%orientation(:, :, :, e), work, verdict)
         call element%evaluate_rate(element, self%step%x(:, nodes), &
-            committed%orientation(:, :, :, e), work)
+            committed%sheet%orientation(:, :, :, e), work)
         self%strain(:, :, e) = work%strain_increment
         self%rotation(:, e) = work%rotation_increment
       end associate
@@ -252,8 +253,8 @@ contains
       associate (material => model%material(model%material_of(model%part%element(e))))
         do p = 1, model%element%n_point
           if (.not. self%plastic(p, e)) cycle
-          direction = material%plastic_direction(committed%stress(:, p, e), &
-              committed%internal_variables(:, p, e))
+          direction = material%plastic_direction(committed%sheet%stress(:, p, e), &
+              committed%sheet%internal_variables(:, p, e))
           if (dot_product(direction, matmul(material%laws%elasticity%stiffness, &
               self%strain(:, p, e))) > 0.0_wp) cycle
           self%plastic(p, e) = .false.

@@ -41,10 +41,10 @@ contains
           " of the sheet that is taken over is inverted or has no valid stress", "E211")
       return
     end if
-    state%stress = updated%stress
-    state%internal_variables = updated%internal_variables
-    state%internal_force = updated%internal_force
-    force = merge(0.0_wp, -state%internal_force, model%phase(1)%prescribed)
+    state%sheet%stress = updated%sheet%stress
+    state%sheet%internal_variables = updated%sheet%internal_variables
+    state%sheet%internal_force = updated%sheet%internal_force
+    force = merge(0.0_wp, -state%sheet%internal_force, model%phase(1)%prescribed)
     call hold_released(state%term, force, spread(0, 1, model%n_node), turns=.false.)
     size_of = norm2(force, dim=1)
     node = maxloc(size_of, dim=1)

@@ -47,7 +47,7 @@ contains
           if (fraction <= balanced_fraction .or. fraction > largest_fraction) cycle
           distance = distance_to_balance(system, phase%direction(:, tool), tool)
           moves = moves .or. abs(distance) > 0.0_wp
-          trial%tool_displacement(:, tool) = trial%tool_displacement(:, tool) &
+          trial%tools%displacement(:, tool) = trial%tools%displacement(:, tool) &
               + distance*phase%direction(:, tool)
         end do
         if (.not. moves) exit

@@ -29,9 +29,9 @@ contains
     integer :: k
 
     moved = new%x - old%x
-    new%internal_work = old%internal_work &
-        + 0.5_wp*sum((old%internal_force + new%internal_force)*moved)
-    new%plastic_work = old%plastic_work + plastic_work_increment(model, old, new)
+    new%work%internal = old%work%internal &
+        + 0.5_wp*sum((old%sheet%internal_force + new%sheet%internal_force)*moved)
+    new%work%plastic = old%work%plastic + plastic_work_increment(model, old, new)
     call add_external_work(model, old, moved, new)
     call add_contact_work(model, contact, old, new)
     do k = 1, size(new%term)
@@ -50,11 +50,11 @@ contains
     real(wp) :: force(3, model%n_node), reaction(3, model%n_node)
 
     force = old%external_force + new%external_force
-    reaction = old%internal_force + new%internal_force - force
-    reaction = reaction + model%nodal_contact_forces(old%x, old%lambda, old%place) &
-        + model%nodal_contact_forces(new%x, new%lambda, new%place)
+    reaction = old%sheet%internal_force + new%sheet%internal_force - force
+    reaction = reaction + model%nodal_contact_forces(old%x, old%contact%lambda, old%contact%place) &
+        + model%nodal_contact_forces(new%x, new%contact%lambda, new%contact%place)
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
-    new%external_work = old%external_work + 0.5_wp*sum((force + reaction)*moved)
+    new%work%external = old%work%external + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work
 
   !> Add the work of the tools, the friction work and the slip. A contact layer that advances to its
@@ -70,13 +70,13 @@ contains
     integer :: c, tool
 
     work = 0.0_wp
-    if (this_rank() == 0) work = [old%tool_work, old%friction_work]
-    new%slip_path = old%slip_path
+    if (this_rank() == 0) work = [old%work%tools, old%work%friction]
+    new%contact%slip_path = old%contact%slip_path
     do c = 1, model%n_contact
       tool = contact%tool(c)
       if (tool == 0) cycle
-      force = 0.5_wp*(old%lambda(:, c) + new%lambda(:, c))
-      point = model%contact_point(c)%at_place(new%place(c))
+      force = 0.5_wp*(old%contact%lambda(:, c) + new%contact%lambda(:, c))
+      point = model%contact_point(c)%at_place(new%contact%place(c))
       tool_motion = point_displacement(old%placement(tool), new%placement(tool), &
           point%position(new%x))
       slip = point%position(new%x) - point%position(old%x) - tool_motion
@@ -87,15 +87,15 @@ contains
         normal = normal/norm2(normal)
       end if
       slip = slip - dot_product(normal, slip)*normal
-      advance = old%layer_offset(tool) - new%layer_offset(tool)
+      advance = old%tools%layer_offset(tool) - new%tools%layer_offset(tool)
       work(1) = work(1) - dot_product(force, tool_motion + advance*normal)
       work(2) = work(2) + dot_product(force, slip)
-      if (new%status(c) == status_slip .and. old%status(c) /= status_gap) &
-          new%slip_path(c) = new%slip_path(c) + norm2(slip)
+      if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) &
+          new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
     end do
     call sum_over_ranks(2, work)
-    new%tool_work = work(1)
-    new%friction_work = work(2)
+    new%work%tools = work(1)
+    new%work%friction = work(2)
   end subroutine add_contact_work
 
 end module dd3_process_work

@@ -89,7 +89,7 @@ contains
 
     bytes = real_bytes*((per_point + real(model%n_internal, wp))*points(model) &
         + per_node*real(model%n_node, wp) + per_candidate*real(model%n_contact, wp)) &
-        + real(storage_size(state%hint)/8, wp)*real(size(state%hint, kind=i8), wp)
+        + real(storage_size(state%contact%hint)/8, wp)*real(size(state%contact%hint, kind=i8), wp)
     bytes = 2.0_wp*bytes
   end function states_bytes
 

@@ -87,7 +87,7 @@ contains
     if (node == 0) return
     c = model%candidate_of(node)
     tool = 0
-    if (c > 0) tool = merge(state%contact_tool(c), 0, state%status(c) /= status_gap)
+    if (c > 0) tool = merge(state%contact%tool(c), 0, state%contact%status(c) /= status_gap)
     call largest_over_ranks(1, tool)
     touching_tool = tool(1)
   end function touching_tool

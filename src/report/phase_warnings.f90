@@ -195,13 +195,13 @@ contains
     do c = 1, model%n_contact_fixed
       if (.not. (model%candidate(tool, c) .and. member(model%contact_node(c)))) cycle
       associate (x => model%contact_point(c)%position(state%x), phase => model%phase(state%phase))
-        if (state%contact_tool(c) == tool .and. norm2(state%lambda(:, c)) > 0.0_wp) then
-          normal = state%lambda(:, c)/norm2(state%lambda(:, c))
+        if (state%contact%tool(c) == tool .and. norm2(state%contact%lambda(:, c)) > 0.0_wp) then
+          normal = state%contact%lambda(:, c)/norm2(state%contact%lambda(:, c))
         else
           hint = hint_t()
           call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
               model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
-              model%tolerance%committed_depth + state%layer_offset(tool), hit)
+              model%tolerance%committed_depth + state%tools%layer_offset(tool), hit)
           if (.not. hit%found) cycle
           normal = hit%normal
         end if
@@ -234,7 +234,7 @@ contains
     end associate
     increase = 0.0_wp
     increase(model%part%element) = &
-        maxval(state%internal_variables(1, :, :) - state%start%plastic_strain, dim=1)
+        maxval(state%sheet%internal_variables(1, :, :) - state%start%plastic_strain, dim=1)
     call sum_over_ranks(size(increase), increase)
     e = maxloc(increase, dim=1)
     if (increase(e) > notable_strain) text = "in phase '"// &
@@ -273,8 +273,8 @@ contains
     real(wp) :: work
 
     text = ""
-    if (state%plastic_work < formed*elastic) return
-    work = max(abs(state%tool_work), abs(state%external_work), abs(state%internal_work))
+    if (state%work%plastic < formed*elastic) return
+    work = max(abs(state%work%tools), abs(state%work%external), abs(state%work%internal))
     if (abs(error) > notable_energy*work) text = "the energy balance of the run is off by "// &
         to_text(100.0_wp*abs(error)/work, 2)//" % of its work: the increments are too "// &
         "large; compare with `accuracy = fine` in *LIMITS"
@@ -298,9 +298,9 @@ contains
       moment = 0.0_wp
       total = 0.0_wp
       do c = 1, model%n_contact
-        if (state%status(c) == status_gap) cycle
-        force = norm2(state%lambda(:, c))
-        associate (t => state%contact_tool(c))
+        if (state%contact%status(c) == status_gap) cycle
+        force = norm2(state%contact%lambda(:, c))
+        associate (t => state%contact%tool(c))
           moment(t) = moment(t) + force*gap_under_force(layer_at(model, phase, c), force)
           total(t) = total(t) + force
         end associate

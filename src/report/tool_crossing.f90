@@ -41,8 +41,8 @@ contains
 
     real(wp) :: moved(3), offset(3)
 
-    if (any(abs(state%tool_angle([a, b])) > 0.0_wp)) return
-    associate (now => state%tool_displacement, start => state%start%tool_displacement)
+    if (any(abs(state%tools%angle([a, b])) > 0.0_wp)) return
+    associate (now => state%tools%displacement, start => state%start%tool_displacement)
       offset = now(:, a) - now(:, b)
       moved = offset - (start(:, a) - start(:, b))
       if (norm2(moved) <= notable_depth*model%thickness) return

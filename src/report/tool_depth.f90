@@ -69,17 +69,17 @@ contains
     type(tool_depth_t) :: found
     integer :: tool
 
-    state%tool_depth = 0.0_wp
+    state%observed%depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
-      if (.not. state%touched(tool)) state%touched(tool) = state%touches(tool)
+      if (.not. state%tools%touched(tool)) state%tools%touched(tool) = state%touches(tool)
       found = measure_tool_depth(model, state, tool)
-      state%tool_depth(tool) = found%depth
-      if (found%depth <= state%largest_depth(tool)) cycle
-      state%largest_depth(tool) = found%depth
-      state%deepest_face(tool) = found%face
+      state%observed%depth(tool) = found%depth
+      if (found%depth <= state%observed%largest_depth(tool)) cycle
+      state%observed%largest_depth(tool) = found%depth
+      state%observed%deepest_face(tool) = found%face
       associate (x => state%x(:, model%face%corner(:, found%face)))
-        state%deepest_radius(tool) = smallest_radius(model%tool(tool)%surface, found%x, &
+        state%observed%deepest_radius(tool) = smallest_radius(model%tool(tool)%surface, found%x, &
             norm2(x(:, 3) - x(:, 1)))
       end associate
     end do
@@ -145,7 +145,7 @@ contains
     do i = 1, 4
       associate (c => model%candidate_of(node(i)))
         if (c > 0) then
-          hint(i) = state%hint(tool, c)
+          hint(i) = state%contact%hint(tool, c)
         else
           ! The node is one of another rank.
           call find_contact(model%tool(tool)%surface, face%x(:, i), hint(i), face%size, face%size, &

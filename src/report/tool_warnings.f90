@@ -76,7 +76,7 @@ contains
 
     text = ""
     associate (phase => model%phase(state%phase))
-      if (state%touched(tool)) return
+      if (state%tools%touched(tool)) return
       if (.not. phase%pressed(tool) .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
     end associate
     associate (distance => model%tolerance%tool_search)
@@ -91,7 +91,7 @@ contains
     else
       text = text//"no candidate lies in front of its surface"
     end if
-    if (state%largest_depth(tool) > 0.0_wp) then
+    if (state%observed%largest_depth(tool) > 0.0_wp) then
       text = text//"; it passed between the nodes"
     else
       text = text//"; check its place, its normals and its set of candidates"
@@ -108,19 +108,21 @@ contains
     real(wp) :: edge(3, 4), length
 
     text = ""
-    if (state%deepest_face(tool) == 0) return
-    associate (depth => state%largest_depth(tool)/model%thickness, &
-        face => model%face%corner(:, state%deepest_face(tool)))
+    if (state%observed%deepest_face(tool) == 0) return
+    associate (depth => state%observed%largest_depth(tool)/model%thickness, &
+        face => model%face%corner(:, state%observed%deepest_face(tool)))
       edge = state%x(:, face) - state%x(:, cshift(face, 1))
       length = maxval(norm2(edge, dim=1))
       if (depth < slight_depth) return
-      if (depth < notable_depth .and. state%largest_depth(tool) < notable_slope*length) return
+      if (depth < notable_depth .and. state%observed%largest_depth(tool) < notable_slope*length) &
+          return
       text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
-          to_text(state%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
+          to_text(state%observed%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
-          to_text(model%face%element(state%deepest_face(tool)))//" with edges up to "// &
+          to_text(model%face%element(state%observed%deepest_face(tool)))//" with edges up to "// &
           to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "// &
-          suitable_mesh(state%deepest_radius(tool), length**2/(8.0_wp*state%largest_depth(tool)), &
+          suitable_mesh(state%observed%deepest_radius(tool), &
+          length**2/(8.0_wp*state%observed%largest_depth(tool)), &
           model%thickness)
     end associate
   end function depth_warning
@@ -155,7 +157,8 @@ contains
     character(len=:), allocatable :: text
 
     text = ""
-    associate (place => state%open_edge(:, tool), moved => state%open_edge_displacement(tool))
+    associate (place => state%observed%open_edge(:, tool), &
+        moved => state%observed%open_edge_displacement(tool))
       if (place(1) == 0) return
       text = "the sheet left tool '"//model%tool(tool)%name//"' under pressure over the open "// &
           edge_name(place(1), place(2))//", first at node "//to_text(place(3))
@@ -210,7 +213,7 @@ contains
     touching = 0
     associate (n => model%n_contact_node)
       touching(model%contact_node(:n)) = &
-          merge(state%contact_tool(:n), 0, state%status(:n) /= status_gap)
+          merge(state%contact%tool(:n), 0, state%contact%status(:n) /= status_gap)
     end associate
     call largest_over_ranks(size(touching), touching)
     pinched = 0

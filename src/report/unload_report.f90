@@ -133,7 +133,7 @@ contains
       allocate (reaction(size(support, 2)))
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
-          reaction(k) = state%internal_force(axis, node) - state%external_force(axis, node)
+          reaction(k) = state%sheet%internal_force(axis, node) - state%external_force(axis, node)
           if (model%phase(state%phase)%floats) reaction(k) = spring_force(model, state, node, axis)
         end associate
       end do

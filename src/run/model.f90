@@ -94,7 +94,7 @@ contains
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     if (model%part%divided) call log%note(model%part%report())
     call new_prediction(run%stepper%prediction, model)
-    stressed = merge(1, 0, any(abs(run%committed%stress) > 0.0_wp))
+    stressed = merge(1, 0, any(abs(run%committed%sheet%stress) > 0.0_wp))
     call largest_over_ranks(1, stressed)
     if (.not. run%committed%begun .and. stressed(1) > 0) then
       call balance_sheet(model, run%stepper%system, run%committed, note, error)
@@ -223,7 +223,8 @@ contains
       if (run%told_perturbed .or. perturbed%blocks == 0) return
       run%told_perturbed = .true.
       if (perturbed%row == 0) then
-        call log%report("W114", "linear system: "//to_text(perturbed%blocks)//" pivots vanished "// &
+        call log%report("W114", &
+            "linear system: "//to_text(perturbed%blocks)//" pivots vanished "// &
             "and were perturbed; the solver does not tell which")
       else
         call log%report("W114", "linear system: the pivot of "//row_name(model, perturbed%row)// &
@@ -350,7 +351,7 @@ contains
       view%limiter = trim(attempt%limit%limiter)
       view%iterations = size(attempt%course%norm)
       if (phase%control > 0) view%force = &
-          dot_product(-phase%direction(:, phase%control), state%tool_force(:, phase%control))
+          dot_product(-phase%direction(:, phase%control), state%tools%force(:, phase%control))
       call run%progress%update(log, view)
     end associate
     call run%stepper%system%profile%add(section_output)

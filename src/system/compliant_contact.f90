@@ -87,7 +87,7 @@ contains
     if (contact%tool(c) > 0) call evaluate_layer(contact, trial, c, &
         layer_at(model, model%phase(trial%phase), c), hit, slip, &
         model%tool(contact%tool(c))%friction)
-    trial%status(c) = contact%status(c)
+    trial%contact%status(c) = contact%status(c)
   end subroutine evaluate_point
 
   !> Evaluate the contact of an edge of the mesh with the borders of the tools.
@@ -103,10 +103,10 @@ contains
     real(wp) :: slip(3)
 
     call find_nearest_border(self, model, trial, c, crossing)
-    trial%contact_tool(c) = self%tool(c)
-    trial%status(c) = status_gap
+    trial%contact%tool(c) = self%tool(c)
+    trial%contact%status(c) = status_gap
     if (self%tool(c) == 0) return
-    trial%place(c) = crossing%place
+    trial%contact%place(c) = crossing%place
     point = model%contact_point(c)%at_place(crossing%place)
     associate (tool => self%tool(c), phase => model%phase(trial%phase))
       slip = relative_displacement(committed%placement(tool), trial%placement(tool), &
@@ -114,7 +114,7 @@ contains
       call evaluate_layer(self, trial, c, fraction_of(layer_at(model, phase, c), &
           crossing%weight), crossing_hit(crossing), slip, model%tool(tool)%friction, crossing)
     end associate
-    trial%status(c) = self%status(c)
+    trial%contact%status(c) = self%status(c)
   end subroutine evaluate_crossing
 
   !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
@@ -122,7 +122,7 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool, c
 
-    offset_at = state%layer_offset(tool)
+    offset_at = state%tools%layer_offset(tool)
     if (state%start%held_offset(c) >= 0.0_wp) offset_at = state%start%held_offset(c)
   end function offset_at
 
@@ -147,11 +147,12 @@ contains
     self%onset(c) = layer%height
     self%distance(c) = gap - layer%height
     self%status(c) = status_gap
-    call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%lambda(:, c), committed, &
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%contact%lambda(:, c), &
+        committed, &
         slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c), &
         hit%gap_gradient)
     if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
-        trial%lambda(:, c), committed, slip, friction)
+        trial%contact%lambda(:, c), committed, slip, friction)
   end subroutine evaluate_layer
 
   !> normal as the edge turns, and by the weight.
@@ -235,19 +236,19 @@ contains
     type(contact_point_t) :: point
     type(crossing_t) :: crossing
 
-    self%place(c) = committed%place(c)
+    self%place(c) = committed%contact%place(c)
     self%committed_tool(c) = 0
     call find_nearest_border(self, model, committed, c, crossing)
     self%status(c) = status_gap
     if (self%tool(c) == 0) return
-    self%status(c) = committed%status(c)
+    self%status(c) = committed%contact%status(c)
     point = model%contact_point(c)%at_place(crossing%place)
     self%committed_x(:, c) = point%position(committed%x)
     self%turning(:, c) = turning_rate(model%phase(committed%phase), committed, self%tool(c), &
         self%committed_x(:, c))
-    self%committed_tool(c) = committed%contact_tool(c)
+    self%committed_tool(c) = committed%contact%tool(c)
     self%committed_normal(:, c) = crossing%normal
-    self%committed_force(:, c) = committed%lambda(:, c)
+    self%committed_force(:, c) = committed%contact%lambda(:, c)
     associate (phase => model%phase(committed%phase))
       call predict_layer(self, model, committed, c, fraction_of(layer_at(model, phase, c), &
           crossing%weight), crossing_hit(crossing), touching(self%tool(c)), crossing)
@@ -278,11 +279,11 @@ contains
         min(gap, at_onset*layer%height)
     committed = 0.0_wp
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
-    call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%lambda(:, c), &
+    call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%contact%lambda(:, c), &
         committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
     if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
-        state%lambda(:, c), committed, no_slip, model%tool(self%tool(c))%friction)
+        state%contact%lambda(:, c), committed, no_slip, model%tool(self%tool(c))%friction)
   end subroutine predict_layer
 
   !> Add the points to the linear system.

@@ -74,9 +74,10 @@ contains
       contact%search_distance = model%tolerance%tool_search
       touching = .false.
       do c = 1, model%n_contact
-        if (committed%status(c) == status_gap) cycle
-        if (norm2(committed%lambda(:, c)) <= round_off*contact_penalty(model, phase, c)) cycle
-        touching(committed%contact_tool(c)) = .true.
+        if (committed%contact%status(c) == status_gap) cycle
+        if (norm2(committed%contact%lambda(:, c)) <= round_off*contact_penalty(model, phase, c)) &
+            cycle
+        touching(committed%contact%tool(c)) = .true.
       end do
       touching = [(any_rank(touching(tool)), tool=1, model%n_tool)]
       call system%formulation%predict(contact, model, committed, touching)

@@ -36,11 +36,11 @@ contains
     real(wp) :: x(3)
 
     slip = 0.0_wp
-    hint = trial%hint(:, c)
+    hint = trial%contact%hint(:, c)
     x = model%contact_point(c)%position(trial%x)
     call find_nearest_tool(self, model, committed, trial, c, x, hint, hit)
-    trial%contact_tool(c) = self%tool(c)
-    trial%hint(:, c) = hint
+    trial%contact%tool(c) = self%tool(c)
+    trial%contact%hint(:, c) = hint
     if (self%tool(c) == 0) then
       call open_candidate(self, c)
       return
@@ -61,11 +61,11 @@ contains
 
     type(hint_t) :: hint(model%n_tool)
 
-    hint = committed%hint(:, c)
+    hint = committed%contact%hint(:, c)
     self%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     call find_nearest_tool(self, model, committed, committed, c, self%committed_x(:, c), hint, hit)
     self%committed_turn(c) = hit%turn
-    self%status(c) = committed%status(c)
+    self%status(c) = committed%contact%status(c)
     self%committed_tool(c) = 0
     if (self%tool(c) == 0) then
       call open_candidate(self, c)
@@ -74,9 +74,9 @@ contains
     self%normal(:, c) = hit%normal
     self%turning(:, c) = turning_rate(model%phase(committed%phase), committed, self%tool(c), &
         self%committed_x(:, c))
-    self%committed_tool(c) = committed%contact_tool(c)
+    self%committed_tool(c) = committed%contact%tool(c)
     self%committed_normal(:, c) = hit%normal
-    self%committed_force(:, c) = committed%lambda(:, c)
+    self%committed_force(:, c) = committed%contact%lambda(:, c)
   end subroutine find_committed_candidate
 
   !> back; since then it cannot have come deeper inside a tool than it moved relative to it.
@@ -112,11 +112,11 @@ contains
         moved = relative_displacement(committed%placement(t), placement, &
             self%committed_x(:, c), position)
         call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
-            model%tolerance%committed_depth + committed%layer_offset(t) + norm2(moved), hit, &
+            model%tolerance%committed_depth + committed%tools%layer_offset(t) + norm2(moved), hit, &
             self%outward(:, c), border)
         if (.not. hit%found) cycle
         distance = hit%distance
-        if (t == trial%contact_tool(c)) distance = distance - model%tolerance%hysteresis
+        if (t == trial%contact%tool(c)) distance = distance - model%tolerance%hysteresis
         if (distance >= best) cycle
         best = distance
         self%tool(c) = t

@@ -35,11 +35,11 @@ contains
     !> Retry if an element is inverted or a return mapping fails, with the lowest such element.
     type(verdict_t), intent(out) :: verdict
 
-    trial%internal_force = 0.0_wp
+    trial%sheet%internal_force = 0.0_wp
     call visit_elements(system, model, committed, .true., with_stiffness, verdict, trial)
     call share_verdict(verdict)
     if (verdict%outcome /= verdict_converged) return
-    call sum_over_ranks(size(trial%internal_force), trial%internal_force)
+    call sum_over_ranks(size(trial%sheet%internal_force), trial%sheet%internal_force)
     if (with_stiffness) call system%partition%complete_forces(model%n_node, system%enhanced%force)
   end subroutine update_material
 
@@ -93,7 +93,7 @@ contains
                 system%tangent(:, :, :, e), mine)
             system%enhanced%residual(:, e) = system%element(thread)%enhanced_force
             if (mine%outcome == verdict_converged) &
-                call add_forces(model, e, system%element(thread)%force, trial%internal_force)
+                call add_forces(model, e, system%element(thread)%force, trial%sheet%internal_force)
           else
             call set_element(model, e, system%element(thread), committed, trial)
           end if
@@ -132,23 +132,25 @@ contains
         material => model%material(model%material_of(number)))
       work%x_committed(:, :) = committed%x(:, nodes)
       work%x_trial(:, :) = trial%x(:, nodes)
-      work%enhanced(:) = trial%enhanced(:, e)
+      work%enhanced(:) = trial%sheet%enhanced(:, e)
       work%x_initial(:, :) = model%x0(:, nodes)
-      call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
+      call element%deform(element, committed%sheet%orientation(:, :, :, e), work, verdict)
       verdict%element = number
       if (verdict%outcome /= verdict_converged) return
       do p = 1, model%element%n_point
         associate (n => material%n_internal)
-          call material%update(committed%stress(:, p, e), committed%internal_variables(:n, p, e), &
-              work%strain(:, p), trial%stress(:, p, e), trial%internal_variables(:n, p, e), &
-              tangent(:, :, p), trial%plastic(p, e), verdict)
+          call material%update(committed%sheet%stress(:, p, e), &
+              committed%sheet%internal_variables(:n, p, e), &
+              work%strain(:, p), trial%sheet%stress(:, p, e), trial%sheet%internal_variables(:n, &
+              p, e), &
+              tangent(:, :, p), trial%sheet%plastic(p, e), verdict)
         end associate
         verdict%element = number
         verdict%point = p
         if (verdict%outcome /= verdict_converged) return
       end do
-      trial%orientation(:, :, :, e) = work%rotation
-      work%stress(:, :) = trial%stress(:, :, e)
+      trial%sheet%orientation(:, :, :, e) = work%rotation
+      work%stress(:, :) = trial%sheet%stress(:, :, e)
       call element%set_stress(element, work)
       call element%evaluate_force(element, work)
     end associate
@@ -190,12 +192,12 @@ contains
       work%x_initial(:, :) = model%x0(:, nodes)
       if (present(trial)) then
         work%x_trial(:, :) = trial%x(:, nodes)
-        work%enhanced(:) = trial%enhanced(:, e)
-        call element%deform(element, committed%orientation(:, :, :, e), work, verdict)
-        work%stress(:, :) = trial%stress(:, :, e)
+        work%enhanced(:) = trial%sheet%enhanced(:, e)
+        call element%deform(element, committed%sheet%orientation(:, :, :, e), work, verdict)
+        work%stress(:, :) = trial%sheet%stress(:, :, e)
       else
-        call element%linearise(element, committed%orientation(:, :, :, e), work, verdict)
-        work%stress(:, :) = committed%stress(:, :, e)
+        call element%linearise(element, committed%sheet%orientation(:, :, :, e), work, verdict)
+        work%stress(:, :) = committed%sheet%stress(:, :, e)
       end if
       call element%set_stress(element, work)
     end associate

@@ -90,8 +90,8 @@ contains
 
     if (model%contact_point(c)%moves) then
       call leave_out(contact, c)
-      trial%contact_tool(c) = 0
-      trial%status(c) = status_gap
+      trial%contact%tool(c) = 0
+      trial%contact%status(c) = status_gap
       return
     end if
     call find_candidate(contact, model, committed, trial, c, hit, slip)
@@ -100,14 +100,15 @@ contains
         penalty = candidate_penalty(model, model%phase(trial%phase), c, hit%normal, slip)
         contact%onset(c) = 0.0_wp
         contact%distance(c) = hit%distance
-        contact%status(c) = contact_status(hit%normal, contact%distance(c), trial%lambda(:, c), &
+        contact%status(c) = contact_status(hit%normal, contact%distance(c), &
+            trial%contact%lambda(:, c), &
             slip, penalty, model%tool(tool)%friction)
         call contact_operator_of_status(contact%status(c), hit%normal, contact%distance(c), &
-            hit%dnormal, trial%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
+            hit%dnormal, trial%contact%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
             contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
       end if
     end associate
-    trial%status(c) = contact%status(c)
+    trial%contact%status(c) = contact%status(c)
   end subroutine evaluate_point
 
   !> Leave out a point.
@@ -192,7 +193,7 @@ contains
         friction = 0.0_wp
       end if
       call contact_operator_of_status(contact%status(c), hit%normal, 0.0_wp, hit%dnormal, &
-          committed%lambda(:, c), no_slip, &
+          committed%contact%lambda(:, c), no_slip, &
           candidate_penalty(model, phase, c, hit%normal, no_slip), friction, &
           contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
     end associate
@@ -311,7 +312,7 @@ contains
     real(wp) :: change(3)
     integer :: c, node, k
 
-    step%lambda = -state%lambda
+    step%lambda = -state%contact%lambda
     associate (stiffness => self%stiffness, phase => model%phase(state%phase))
       do c = 1, model%n_contact
         node = model%contact_node(c)

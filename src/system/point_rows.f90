@@ -262,7 +262,7 @@ contains
     real(wp) :: motion(3)
     integer :: c
 
-    step%lambda = -state%lambda
+    step%lambda = -state%contact%lambda
     do c = 1, model%n_contact
       if (contact%status(c) == status_gap) cycle
       motion = -step%tool(:, contact%tool(c))

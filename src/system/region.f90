@@ -156,7 +156,7 @@ contains
     end do
     call sum_over_ranks(size(self%force), self%force)
     call evaluate_contact(system, model, committed, trial, self%point)
-    contact_force = point_forces(self, model, trial%x, system%contact%force, trial%place)
+    contact_force = point_forces(self, model, trial%x, system%contact%force, trial%contact%place)
     call sum_over_ranks(size(contact_force), contact_force)
     self%residual = merge(self%force - trial%external_force(:, self%node) + contact_force, &
         0.0_wp, self%free)
@@ -234,7 +234,7 @@ contains
     end do
     !$omp end parallel do
     call clear(self%matrix)
-    residual = point_forces(self, model, trial%x, trial%lambda, trial%place)
+    residual = point_forces(self, model, trial%x, trial%contact%lambda, trial%contact%place)
     if (this_rank() == 0) residual = residual + self%force - trial%external_force(:, self%node)
     do k = 1, size(self%element)
       call add_element(self%matrix, model%element%n_node, self%position(:, :, k), stiffness(:, k))
@@ -277,7 +277,8 @@ contains
     do k = 1, size(self%point)
       associate (c => self%point(k), point => model%contact_point(self%point(k)))
         if (point%n_node > 1) e = findloc(self%element, model%part%place(point%element), dim=1)
-        call add_point(point%at_place(contact%place(c)), contact, c, contact%force(:, c) - trial%lambda(:, c), no_motion, &
+        call add_point(point%at_place(contact%place(c)), contact, c, contact%force(:, c) &
+            - trial%contact%lambda(:, c), no_motion, &
             trial%x, self%number(point%node(:point%n_node)), self%position, e, self%matrix, rhs)
       end associate
     end do
@@ -314,9 +315,9 @@ contains
     displacement(:, self%node) = self%step%x
     do k = 1, size(self%point)
       associate (c => self%point(k))
-        self%step%lambda(:, k) = -trial%lambda(:, c)
+        self%step%lambda(:, k) = -trial%contact%lambda(:, c)
         if (contact%status(c) /= status_gap) self%step%lambda(:, k) = force_change(contact, c, &
-            contact%force(:, c) - trial%lambda(:, c), model%contact_point(c), trial%x, &
+            contact%force(:, c) - trial%contact%lambda(:, c), model%contact_point(c), trial%x, &
             displacement, no_motion)
       end associate
     end do

@@ -175,7 +175,7 @@ contains
       this%b = stepper%system%problem%rhs
       write (this%origin, '("| ",i0," | ",a," | ",f5.2," | ",i0," | ",a," | ",4(i0," | "))') &
           n + 1, model%phase(state%phase)%name, state%travel, state%increment, part, &
-          count(state%plastic), count(status == status_gap), &
+          count(state%sheet%plastic), count(status == status_gap), &
           count(status == status_stick), count(status == status_slip)
     end associate
   end subroutine keep

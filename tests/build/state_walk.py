@@ -27,6 +27,7 @@ def visited(path):
     text = re.sub(r"&\s*\n\s*", "", path.read_text())
     handed = set(re.findall(r"call visitor%\w+\(.*, (\w+%\w+)\)\n", text))
     handed |= set(re.findall(r"call visit_\w+\((?:.*, )?(\w+%\w+), visitor\)\n", text))
+    handed |= set(re.findall(r"call (\w+%\w+)%walk\(visitor\)\n", text))
     # The closest points are an array of a type: their components are handed over as arrays.
     arrays = set(re.findall(r'call visitor%\w+\(of_points, name//"_(\w+)", (?:3\*)?n_tool, n, \1\)\n', text))
     return handed | {f"hint%{name}" for name in arrays}
@@ -36,9 +37,13 @@ def main():
     walk = ROOT / "src/model/state_walk.f90"
     types = [(walk, "src/model/configuration.f90", "configuration_t", "state"),
              (walk, "src/model/configuration.f90", "phase_start_t", "start"),
-             (walk, "src/tools/closest.f90", "hint_t", "hint")]
-    for path in sorted((ROOT / "src/model/terms").glob("*.f90")):
-        found = re.search(r"type, extends\(term_t\) :: (\w+)", path.read_text())
+             (ROOT / "src/model/contact_state.f90", "src/tools/closest.f90", "hint_t", "hint")]
+    parts = [ROOT / f"src/model/{name}.f90" for name in
+             ("sheet_state", "contact_state", "tools_state", "observations", "work_state")]
+    for path in [*parts, *sorted((ROOT / "src/model/terms").glob("*.f90"))]:
+        found = re.search(r"type(?:, extends\(term_t\))? :: (\w+_t)$", path.read_text(), re.M)
+        if found and found.group(1) == "term_box_t":
+            continue
         if found:
             types.append((path, path.relative_to(ROOT), found.group(1), "self"))
     missing, count = [], 0

@@ -264,8 +264,8 @@ contains
     real(wp) :: motion(3)
 
     motion = matmul(trial%x(:, point%node) - committed%x(:, point%node), point%shape)
-    if (tool > 0) motion = motion - (trial%tool_displacement(:, tool) &
-        - committed%tool_displacement(:, tool))
+    if (tool > 0) motion = motion - (trial%tools%displacement(:, tool) &
+        - committed%tools%displacement(:, tool))
     slip = dot_product(point%across, motion)
   end function slip
 
@@ -355,11 +355,11 @@ contains
     do b = 1, size(model%drawbead)
       associate (tool => model%drawbead(b)%tool)
         if (tool > 0) tool_work = tool_work + 0.5_wp*dot_product(self%total_before(:, b) &
-            + self%total(:, b), new%tool_displacement(:, tool) - old%tool_displacement(:, tool))
+            + self%total(:, b), new%tools%displacement(:, tool) - old%tools%displacement(:, tool))
       end associate
     end do
-    new%external_work = new%external_work - work
-    new%tool_work = new%tool_work + tool_work
+    new%work%external = new%work%external - work
+    new%work%tools = new%work%tools + tool_work
     self%work = self%work + tool_work - work
   end subroutine accept
 

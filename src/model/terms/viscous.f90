@@ -116,7 +116,7 @@ contains
         coefficient(nodes) = coefficient(nodes) + sum(volume)/real(size(nodes), wp)
       end associate
     end do
-    force = sum(norm2(state%lambda, dim=1))
+    force = sum(norm2(state%contact%lambda, dim=1))
     call sum_over_ranks(1, force)
     low = least*bending_stiffness(model)
     high = max(force(1)/(snap*model%thickness), low*growth**(reached - 1))
@@ -186,7 +186,7 @@ contains
     if (.not. allocated(self%coefficient)) return
     work = sum(self%coefficient*sum((new%x - old%x)**2, dim=1))
     self%work = self%work + work
-    new%external_work = new%external_work + 0.5_wp*work
+    new%work%external = new%work%external + 0.5_wp*work
     new%external_force = new%external_force + spread(self%coefficient, 1, 3)*(new%x - old%x)
   end subroutine accept
 

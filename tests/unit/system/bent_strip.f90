@@ -42,8 +42,8 @@ contains
     call new_state(trial, model)
     committed%phase = draw
     trial%phase = draw
-    committed%tool_displacement(3, table) = -0.06_wp
-    trial%tool_displacement(3, table) = -0.06_wp
+    committed%tools%displacement(3, table) = -0.06_wp
+    trial%tools%displacement(3, table) = -0.06_wp
     do k = 1, 8
       trial%x = bent(model, 0.125_wp*k)
       call update_material(system, model, committed, trial, .false., verdict)
@@ -58,8 +58,8 @@ contains
     seed = 7
     call random_values(seed, noise)
     trial%x = committed%x + 0.008_wp*noise
-    trial%tool_displacement(3, punch) = trial%tool_displacement(3, punch) - 0.001_wp
-    trial%tool_load(:, punch) = [0.0_wp, 0.0_wp, -40.0_wp]
+    trial%tools%displacement(3, punch) = trial%tools%displacement(3, punch) - 0.001_wp
+    trial%tools%load(:, punch) = [0.0_wp, 0.0_wp, -40.0_wp]
     call update_material(system, model, committed, trial, .true., verdict)
     if (verdict%outcome /= verdict_converged) error stop "the strip cannot be moved"
     call settle_contact(model, system, committed, trial)
@@ -98,11 +98,11 @@ contains
       do c = 1, model%n_contact
         associate (contact => system%contact)
           if (contact%status(c) == status_gap) then
-            state%lambda(:, c) = 0.0_wp
+            state%contact%lambda(:, c) = 0.0_wp
           else
             call inverse(identity - contact%e(:, :, c), weight, regular)
-            state%lambda(:, c) = state%lambda(:, c) &
-                + matmul(weight, contact%force(:, c) - state%lambda(:, c))
+            state%contact%lambda(:, c) = state%contact%lambda(:, c) &
+                + matmul(weight, contact%force(:, c) - state%contact%lambda(:, c))
           end if
         end associate
       end do

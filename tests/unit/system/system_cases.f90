@@ -117,7 +117,7 @@ contains
     do c = 1, model%n_contact
       system%contact%committed_x(:, c) = model%contact_point(c)%position(committed%x)
     end do
-    trial%hint%due = .true.
+    trial%contact%hint%due = .true.
     call evaluate_contact(system, model, committed, trial)
     do c = 1, model%n_contact
       tangent = [1.0_wp, 0.4_wp, 0.2_wp]
@@ -126,7 +126,7 @@ contains
         pressure = merge(6000.0_wp + 3.0_wp*penalty, 1000.0_wp, modulo(c/2, 2) == 0)
         if (modulo(c, 5) == 0) pressure = -60.0_wp
         pressure = pressure + penalty*system%contact%distance(c)
-        trial%lambda(:, c) = 300.0_wp*tangent - pressure*normal
+        trial%contact%lambda(:, c) = 300.0_wp*tangent - pressure*normal
       end associate
     end do
     call evaluate_contact(system, model, committed, trial)
@@ -152,14 +152,15 @@ contains
     call update_material(system, model, committed, trial, .false., verdict)
     if (verdict%outcome /= verdict_converged) error stop "the stress update of the test failed"
     call evaluate_contact(system, model, committed, trial)
-    residual = trial%internal_force - trial%external_force
-    contact_residual = system%contact%force - trial%lambda
+    residual = trial%sheet%internal_force - trial%external_force
+    contact_residual = system%contact%force - trial%contact%lambda
     tool_residual = 0.0_wp
     do t = 1, model%n_tool
       tool_residual(t) = dot_product(model%phase(trial%phase)%direction(:, t), &
-          trial%tool_load(:, t))
+          trial%tools%load(:, t))
     end do
-    residual = residual + model%nodal_contact_forces(trial%x, trial%lambda, trial%place)
+    residual = residual + model%nodal_contact_forces(trial%x, trial%contact%lambda, &
+        trial%contact%place)
     do c = 1, model%n_contact
       t = system%contact%tool(c)
       if (t == 0) cycle
