@@ -4,7 +4,7 @@
 !> rank's part.
 module dd3_model_configuration
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : any_rank
+  use dd3_base_ranks, only : largest_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_model_contact_state, only : contact_state_t
   use dd3_model_observations, only : observations_t
@@ -68,7 +68,7 @@ module dd3_model_configuration
     type(phase_start_t) :: start
   contains
     procedure :: placement
-    procedure :: touches
+    procedure :: find_touching
   end type configuration_t
 
 contains
@@ -81,12 +81,17 @@ contains
     placement = self%tools%placement(tool)
   end function placement
 
-  !> Whether a tool is in contact with the sheet, on any rank.
-  logical function touches(self, tool)
-    class(configuration_t), intent(in) :: self
-    integer, intent(in) :: tool
+  !> Find the tools that are in contact with the sheet, on any rank.
+  subroutine find_touching(self)
+    class(configuration_t), intent(inout) :: self
 
-    touches = any_rank(any(self%contact%tool == tool .and. self%contact%status /= status_gap))
-  end function touches
+    integer :: touching(size(self%tools%touches)), t
+
+    associate (contact => self%contact)
+      touching = [(count(contact%tool == t .and. contact%status /= status_gap), t=1, size(touching))]
+    end associate
+    call largest_over_ranks(size(touching), touching)
+    self%tools%touches = touching > 0
+  end subroutine find_touching
 
 end module dd3_model_configuration

@@ -22,8 +22,9 @@ module dd3_model_tools_state
     real(wp), allocatable :: load(:, :), force(:, :)
     !> Distance by which the contact layer lies behind its place, `(n_tool)`, mm.
     real(wp), allocatable :: layer_offset(:)
-    !> Whether each has been in contact since the start of the job, `(n_tool)`.
-    logical, allocatable :: touched(:)
+    !> Whether each is in contact with the sheet, on any rank, and whether it has been since the start
+    !> of the job, `(n_tool)`.
+    logical, allocatable :: touches(:), touched(:)
   contains
     procedure :: placement
     procedure :: walk
@@ -42,7 +43,7 @@ contains
       allocate (self%displacement(3, n), self%centre(3, n), self%load(3, n), self%force(3, n), &
           source=0.0_wp)
       allocate (self%angle(n), self%layer_offset(n), source=0.0_wp)
-      allocate (self%touched(n), source=.false.)
+      allocate (self%touches(n), self%touched(n), source=.false.)
       self%rotation = spread(identity, 3, n)
       do t = 1, n
         self%displacement(:, t) = model%tool(t)%position
@@ -74,6 +75,7 @@ contains
     call visitor%reals("tool_load", size(self%load), self%load)
     call visitor%reals("tool_force", size(self%force), self%force)
     call visitor%reals("layer_offset", size(self%layer_offset), self%layer_offset)
+    call visitor%logicals("touches", size(self%touches), self%touches)
     call visitor%logicals("touched", size(self%touched), self%touched)
   end subroutine walk
 

@@ -45,10 +45,10 @@ module dd3_process_elimination
   end type local_equilibrium_t
 
   !> Part of the square of the residual that the worst nodes have. Larger: larger regions.
-  real(wp), parameter :: share = 0.9_wp
+  real(wp), parameter :: part_of_residual = 0.9_wp
   !> Ratio of squares that count as equal, as where round-off alone tells nodes apart that are
   !> symmetric to each other.
-  real(wp), parameter :: equal = 0.99_wp
+  real(wp), parameter :: tie = 0.99_wp
   !> Layers of elements around the worst nodes, and the largest part of all nodes in a region. More:
   !> fewer iterations of the sheet, whose residual is not local then, for more of the regions.
   integer, parameter :: n_layers = 2
@@ -73,7 +73,7 @@ contains
     integer :: k, e
 
     square = squares(model, trial, system)
-    enough = share*sum(square)
+    enough = part_of_residual*sum(square)
     low = 0.0_wp
     high = maxval(square)
     do k = 1, digits(high)
@@ -84,7 +84,7 @@ contains
         high = middle
       end if
     end do
-    chosen = square >= equal*low .and. square > 0.0_wp
+    chosen = square >= tie*low .and. square > 0.0_wp
     do k = 1, n_layers
       layer = chosen
       do e = 1, model%n_element
@@ -185,10 +185,10 @@ contains
   end subroutine keep_start
 
   !> Evaluate the residual of the region.
-  subroutine evaluate(self, with_stiffness, verdict)
+  subroutine evaluate(self, first, verdict)
     class(local_equilibrium_t), intent(inout) :: self
-    !> Of the first iteration, which gives the scale. The stiffness is assembled where it is needed.
-    logical, intent(in) :: with_stiffness
+    !> Gives the scale. The stiffness is assembled where it is needed.
+    logical, intent(in) :: first
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: square(1)
@@ -204,7 +204,7 @@ contains
       end do
       call sum_over_ranks(1, square)
       self%scaled_norm = agreed(sqrt(square(1) + sum(region%residual**2)))
-      if (with_stiffness) then
+      if (first) then
         self%first_force = region%force
         self%scale = self%scaled_norm
       end if

@@ -98,22 +98,23 @@ contains
   end subroutine begin
 
   !> Evaluate stresses, internal forces, contact and residual of the trial state.
-  subroutine evaluate(self, with_stiffness, verdict)
+  subroutine evaluate(self, first, verdict)
     class(equilibrium_t), intent(inout) :: self
-    logical, intent(in) :: with_stiffness
+    !> Of the increment: the stiffness is assembled with the stresses.
+    logical, intent(in) :: first
     type(verdict_t), intent(out) :: verdict
 
     associate (system => self%system)
-      if (with_stiffness) call system%threads%begin_iteration()
+      if (first) call system%threads%begin_iteration()
       call system%profile%start()
-      call update_material(system, self%model, self%committed, self%trial, with_stiffness, verdict)
+      call update_material(system, self%model, self%committed, self%trial, first, verdict)
       call system%profile%add(section_material)
-      self%assembled = with_stiffness
+      self%assembled = first
       if (verdict%outcome /= verdict_converged) return
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
       self%residual = norm(self)
-      if (system%formulation%balances_tools .and. .not. with_stiffness) call balance(self)
+      if (system%formulation%balances_tools .and. .not. first) call balance(self)
       self%scaled_norm = self%residual%scaled
     end associate
   end subroutine evaluate

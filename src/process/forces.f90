@@ -45,6 +45,7 @@ contains
     integer :: c, k, tool
 
     call evaluate_contact(system, model, committed, trial)
+    call trial%find_touching()
     call evaluate_terms(trial%term, model, committed%configuration_t, trial%configuration_t)
     trial%external_force = external_forces(trial%term, model, trial%configuration_t)
     associate (problem => system%problem, contact => system%contact, &
@@ -83,7 +84,7 @@ contains
   end subroutine evaluate_forces
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.
-  integer function lost_tool(model, trial)
+  pure integer function lost_tool(model, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
 
@@ -93,14 +94,14 @@ contains
   end function lost_tool
 
   !> Whether a tool is pressed and has no contact.
-  logical function is_lost(model, trial, tool)
+  pure logical function is_lost(model, trial, tool)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     integer, intent(in) :: tool
 
     is_lost = model%phase(trial%phase)%pressed(tool) .and. &
         norm2(trial%tools%load(:, tool)) > 0.0_wp
-    if (is_lost) is_lost = .not. trial%touches(tool)
+    if (is_lost) is_lost = .not. trial%tools%touches(tool)
   end function is_lost
 
 end module dd3_process_forces

@@ -157,7 +157,7 @@ contains
     associate (phase => model%phase(state%phase))
       has_opened = phase%opening > 0.0_wp .and. state%progress > phase%opening
       do tool = 1, model%n_tool
-        if (has_opened) has_opened = .not. state%touches(tool)
+        if (has_opened) has_opened = .not. state%tools%touches(tool)
       end do
     end associate
   end function has_opened

@@ -375,7 +375,7 @@ contains
         if (.not. phase%withdrawn(tool)) cycle
         motion = norm2(stepper%prediction%step%tool(:, tool))
         if (.not. motion > 0.0_wp) cycle
-        if (.not. (state%touches(tool) .or. presses_by_bead(model, state, tool))) cycle
+        if (.not. (state%tools%touches(tool) .or. presses_by_bead(model, state, tool))) cycle
         bound = min(opening_step*model%thickness, &
             phase%opened(tool, state%progress) + first*max(phase%layer, &
             least_layer)*model%thickness)

@@ -46,11 +46,11 @@ module dd3_process_newton
 
   abstract interface
     !> Evaluate the residual at the trial solution.
-    subroutine evaluate_interface(self, with_stiffness, verdict)
+    subroutine evaluate_interface(self, first, verdict)
       import :: newton_problem_t, verdict_t
       class(newton_problem_t), intent(inout) :: self
-      !> A linearisation follows in any case.
-      logical, intent(in) :: with_stiffness
+      !> Of the solution: a linearisation follows in any case.
+      logical, intent(in) :: first
       !> Failed if the problem is not defined there.
       type(verdict_t), intent(out) :: verdict
     end subroutine evaluate_interface

@@ -164,7 +164,7 @@ contains
   end function attainable_residual
 
   !> Return the largest residual of a pressed tool in contact, over its force.
-  real(wp) function tool_imbalance(model, trial, system) result(imbalance)
+  pure real(wp) function tool_imbalance(model, trial, system) result(imbalance)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(system_t), intent(in) :: system
@@ -174,7 +174,7 @@ contains
     imbalance = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(trial%phase)%pressed(tool)) cycle
-      if (trial%touches(tool)) imbalance = max(imbalance, &
+      if (trial%tools%touches(tool)) imbalance = max(imbalance, &
           abs(system%problem%tool_residual(tool))/pressed_force(trial, tool))
     end do
   end function tool_imbalance

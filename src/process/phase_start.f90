@@ -246,6 +246,7 @@ contains
     end do
     call sum_over_ranks(size(force), force)
     call largest_over_ranks(size(released_by), released_by)
+    call state%find_touching()
     lost = any_rank(released) .or. lost
   end subroutine release_contacts
 
@@ -258,7 +259,7 @@ contains
     real(wp) :: gap, facing
     integer :: k
 
-    if (state%touches(tool)) return
+    if (state%tools%touches(tool)) return
     do k = 1, most_advances
       call gap_of_tool(model, tool, state, gap, facing)
       if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return

@@ -132,7 +132,7 @@ contains
     associate (phase => model%phase(state%phase))
       do tool = 1, model%n_tool
         if (.not. (phase%pressed(tool) .and. phase%active(tool))) cycle
-        if (state%touches(tool)) cycle
+        if (state%tools%touches(tool)) cycle
         call gap_of_tool(model, tool, state, gap, facing)
         if (facing > tangential .and. gap <= model%tolerance%touch) cycle
         text = "in phase '"//phase%name//"' the pressed tool '"//model%tool(tool)%name// &

@@ -72,7 +72,7 @@ contains
     state%observed%depth = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%active(tool)) cycle
-      if (.not. state%tools%touched(tool)) state%tools%touched(tool) = state%touches(tool)
+      if (.not. state%tools%touched(tool)) state%tools%touched(tool) = state%tools%touches(tool)
       found = measure_tool_depth(model, state, tool)
       state%observed%depth(tool) = found%depth
       if (found%depth <= state%observed%largest_depth(tool)) cycle
