@@ -349,13 +349,14 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     tools = {Path(tool["patches"]).name: Path(tool["patches"]) for tool in job["tools"]}
     thickness = max(job["sheet"]["thickness"])
     length = size or 5 * thickness
-    wanted = drawn_surface(process)
+    wanted, around = drawn_surface(process), drawn_surface(process, BEYOND * thickness)
     found: list[Loop] = []
     stopped: Problem | None = None
     while True:
         shapes = shapes_of(process)
         place, goal, compared = aligned(shapes.free, shapes.drawn, wanted, mirror, BORDER * thickness)
         deviation = np.linalg.norm(goal - place, axis=1)[compared]
+        goal[~compared] = normal_feet(place[~compared], around)[0]
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
         print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
               f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
@@ -365,8 +366,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         folder = made_folder(work / f"loop_{len(found)}")
         surface = drawn_surface(process, BEYOND * thickness)
         for part in PARTS:
-            field = smooth_field(shapes.drawn[compared], part * factor * (goal - place)[compared], mirror, length,
-                                 half_turn)
+            field = smooth_field(shapes.drawn, part * factor * (goal - place), mirror, length, half_turn)
             tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")

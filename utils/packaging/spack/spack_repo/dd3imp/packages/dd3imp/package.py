@@ -13,7 +13,7 @@ class Dd3imp(CMakePackage):
 
     license("GPL-3.0-or-later")
 
-    version("2.1.1")
+    version("2.2.0")
 
     variant("mumps", default=False, description="Direct solver MUMPS, sequential")
 
