@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_compensation_hat", "arguments": ["hat"], "labels": ["slow"], "timeout": 1200, "cost": 120}
-#: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600, "cost": 800}
+#: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600, "cost": 600}
 """Tools that are corrected for springback.
 
     compensation.py hat --program build/release/dd3imp --work build/compensation
     compensation.py rail --program build/release/dd3imp --work build/compensation
 
 After at most four corrections the largest deviation of the sprung hat is a tenth of that without. After two the sprung,
-trimmed rail of mild steel deviates by at most half, in the root mean square by at most 0.4 of that without; STEP files of
-its tools are written.
+trimmed rail of mild steel deviates by at most a quarter, also in the root mean square; STEP files of its tools are
+written.
 """
 import shutil
 import sys
@@ -46,7 +46,7 @@ def compensate_rail(options):
     process.operations[0].settings["divisions"] = "60 36 1"
     found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None, half_turn=True)
     largest, rms = min(found)
-    check(largest <= 0.5 * found[0][0] and rms <= 0.4 * found[0][1], f"rail: {found}")
+    check(largest <= found[0][0] / 4 and rms <= found[0][1] / 4, f"rail: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))
     check(steps == ["die.step", "holder.step", "punch.step"], f"STEP files: {steps}")
 
