@@ -103,6 +103,10 @@ module dd3_process_newton
   !> Ratio |g(s)/g(0)| up to which a step is not shortened. Smaller: more evaluations for hardly
   !> fewer iterations; larger: more iterations where sheets bend and unbend over radii.
   real(wp), parameter :: largest_ratio = 0.3_wp
+  !> Scaled norm below which steps are not shortened, the default tolerance. Near the solution
+  !> residual and step may be nearly orthogonal, and the ratio says nothing; with friction and exact
+  !> contact the iterations would crawl there.
+  real(wp), parameter :: near = 1.0e-2_wp
   !> Ratio |g(1)/g(0)| above which the residual was nearly orthogonal to the step, so that g says
   !> nothing. The full step is taken then if it reduces the norm. Where points stick to a tool that
   !> leads them, searches on g shorten every step to a twentieth.
@@ -151,7 +155,7 @@ contains
       course%iterations = j
       course%outcome = newton_invalid
       eliminations = course%eliminations
-      call evaluate(problem, tolerance, line_search, start, course)
+      call evaluate(problem, line_search, start, course)
       if (course%verdict%outcome /= verdict_converged) return
       course%norm = [course%norm, problem%scaled_norm]
       course%outcome = newton_converged
@@ -172,9 +176,8 @@ contains
   !> Evaluate the problem after a step, which is shortened if need be: regula falsi between a
   !> fraction short of the minimum and one beyond it. The step to the first iteration, that of the
   !> prediction, is only kept in the domain of the problem.
-  recursive subroutine evaluate(problem, tolerance, line_search, start, course)
+  recursive subroutine evaluate(problem, line_search, start, course)
     class(newton_problem_t), intent(inout) :: problem
-    real(wp), intent(in) :: tolerance
     logical, intent(in) :: line_search
     !> Slope at the start of the step.
     real(wp), intent(in) :: start
@@ -199,7 +202,7 @@ contains
       if (course%verdict%outcome == verdict_converged) then
         if (course%iterations == 1) return
         if (k == 0) then
-          if (problem%scaled_norm < tolerance) return
+          if (problem%scaled_norm < near) return
           call problem%eliminate(course%norm(course%iterations - 1), eliminated)
           if (eliminated) course%eliminations = course%eliminations + 1
           if (eliminated) return

@@ -356,7 +356,8 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         shapes = shapes_of(process)
         place, goal, compared = aligned(shapes.free, shapes.drawn, wanted, mirror, BORDER * thickness)
         deviation = np.linalg.norm(goal - place, axis=1)[compared]
-        goal[~compared] = normal_feet(place[~compared], around)[0]
+        if not compared.all():
+            goal[~compared] = normal_feet(place[~compared], around)[0]
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
         print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
               f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
