@@ -353,7 +353,7 @@ contains
       if (self%changing() > 0) return
       verdict%cause = cause_residual
       verdict%value(1) = self%residual%worst
-      if (self%residual%tools < self%residual%sheet) return
+      if (self%residual%tools < self%scaled_norm) return
       verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
       if (verdict%tool == 0) return
       verdict%cause = cause_tool_force

@@ -55,6 +55,8 @@ module dd3_process_norm
   !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
   !> an increment is a step in the force of the next. Larger: smaller steps for more iterations.
   real(wp), parameter :: tool_weight = 10.0_wp
+  !> Residual of a pressed tool over its force that balances.
+  real(wp), parameter :: balanced = 1.0e-6_wp
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: least_force = 1.0e-3_wp
 
@@ -75,8 +77,8 @@ contains
     end if
   end function convergence_tolerance
 
-  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool where that is
-  !> larger.
+  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is larger
+  !> and the former has met the tolerance.
   type(residual_t) function norm_of(model, trial, system, step) result(residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -88,11 +90,14 @@ contains
     call evaluate_residual(model, trial, system, residual)
     call scale_norm(model, trial, system, step, residual)
     residual%tools = tool_weight*tool_imbalance(model, trial, system)
-    residual%scaled = max(residual%sheet, residual%tools)
+    if (residual%tools <= tool_weight*balanced) residual%tools = 0.0_wp
+    residual%scaled = residual%sheet
+    if (residual%sheet < convergence_tolerance(model%phase(trial%phase), trial)) &
+        residual%scaled = max(residual%sheet, residual%tools)
   end function norm_of
 
   !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
-  !> and of the enhanced strains.
+  !> of the enhanced strains and of the pressed tools in contact.
   subroutine evaluate_residual(model, trial, system, found)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -100,7 +105,7 @@ contains
     type(residual_t), intent(out) :: found
 
     real(wp) :: contribution(model%n_node), square(1), worst(2)
-    integer :: node, c, rank
+    integer :: node, c, rank, tool
 
     rank = this_rank()
     associate (phase => model%phase(trial%phase), problem => system%problem)
@@ -119,6 +124,10 @@ contains
       found%worst = sqrt(max(worst(2), 0.0_wp))
       square = sum(contribution) + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
       call sum_over_ranks(1, square)
+      do tool = 1, model%n_tool
+        if (.not. phase%pressed(tool)) cycle
+        if (trial%tools%touches(tool)) square = square + problem%tool_residual(tool)**2
+      end do
     end associate
     found%norm = sqrt(square(1))
   end subroutine evaluate_residual
