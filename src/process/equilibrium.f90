@@ -41,8 +41,6 @@ module dd3_process_equilibrium
     type(system_t), pointer :: system => null()
     !> Trial state before the last step, and that step.
     type(unknowns_t) :: start, step
-    !> Fraction of the step that was made.
-    real(wp), private :: made = 1.0_wp
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
     type(residual_t) :: residual
@@ -119,11 +117,11 @@ contains
     end associate
   end subroutine evaluate
 
-  !> Return the norm of the trial state after the step that was made.
+  !> Return the norm of the trial state after the last step.
   type(residual_t) function norm(self)
     class(equilibrium_t), intent(in) :: self
 
-    norm = norm_of(self%model, self%trial, self%system, self%made*norm2(self%step%lambda))
+    norm = norm_of(self%model, self%trial, self%system, norm2(self%step%lambda))
   end function norm
 
   !> Once all else has converged, balance the pressed tools by their motion alone.
@@ -243,7 +241,6 @@ contains
       trial%sheet%enhanced = start%enhanced + fraction*step%enhanced
       trial%contact%lambda = start%lambda + fraction*step%lambda
       trial%tools%displacement = start%tool + fraction*step%tool
-      self%made = fraction
       if (fraction >= 1.0_wp) return
       trial%contact%tool = self%start_tool
       trial%contact%hint = self%start_hint
