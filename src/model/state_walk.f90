@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Walk over the components of a state: `visit_state` passes every component with its name to a
-!> visitor, so that a component is named in one place only: here, or in its term.
+!> visitor, so that a component is named in one place only: in its part, its term, or here.
 module dd3_model_state_walk
   use dd3_base_kinds, only : wp
   use dd3_model_part, only : of_elements, of_points

@@ -12,13 +12,13 @@ module dd3_process_forces
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: set_loads, evaluate_forces, lost_tool
+  public :: set_tools, evaluate_forces, lost_tool
 
 contains
 
   !> Set the forces on the tools of a trial state and the places of its contact layers, from its
   !> progress.
-  subroutine set_loads(model, trial)
+  subroutine set_tools(model, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: trial
 
@@ -31,7 +31,7 @@ contains
             start%tool_load(:, tool), start%tool_load_end(:, tool))
       end do
     end associate
-  end subroutine set_loads
+  end subroutine set_tools
 
   !> Evaluate the contact of a trial state, and the residuals from it and the internal forces.
   subroutine evaluate_forces(model, committed, trial, system)

@@ -13,7 +13,7 @@ module dd3_process_increment
   use dd3_model_terms_viscous, only : set_viscous, viscous_coefficients
   use dd3_model_turning, only : set_rotations
   use dd3_process_equilibrium, only : equilibrium_t
-  use dd3_process_forces, only : set_loads
+  use dd3_process_forces, only : set_tools
   use dd3_process_limiters, only : limit_increment
   use dd3_process_newton, only : newton_converged, newton_diverging, newton_interrupted, &
       newton_slow, solve
@@ -78,7 +78,7 @@ contains
       trial%contact%hint%due = .true.
       call set_rotations(phase, trial)
       call equilibrium%begin(prediction%step%scaled(r))
-      call set_loads(model, trial)
+      call set_tools(model, trial)
       call set_target(model, trial, stepper%system%problem)
       call solve(equilibrium, convergence_tolerance(phase, trial), phase%newton%iterations, &
           phase%newton%line_search, attempt%course)

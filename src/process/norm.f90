@@ -22,14 +22,15 @@ module dd3_process_norm
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: residual_t, norm_of, convergence_tolerance, attainable_residual, pressed_force
+  public :: residual_t, norm_of, convergence_tolerance, attainable_residual
+  public :: pressed_force, balanced
 
   !> Norm of the residuals.
   type :: residual_t
     !> N.
     real(wp) :: norm = 0.0_wp
     !> Norm of residuals and step over their scale, eq. (19); largest imbalance of a pressed tool over
-    !> its force, weighted; and the larger one.
+    !> its force, weighted; and the norm that decides.
     real(wp) :: sheet = 0.0_wp, tools = 0.0_wp, scaled = 0.0_wp
     !> Node with the largest residual, and that residual, N.
     integer :: worst_node = 0
@@ -55,7 +56,7 @@ module dd3_process_norm
   !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
   !> an increment is a step in the force of the next. Larger: smaller steps for more iterations.
   real(wp), parameter :: tool_weight = 10.0_wp
-  !> Residual of a pressed tool over its force that balances.
+  !> Residual of a pressed tool, over its force, that counts as balanced.
   real(wp), parameter :: balanced = 1.0e-6_wp
   !> Fraction of other forces that scales the force of a tool if its own force is smaller.
   real(wp), parameter :: least_force = 1.0e-3_wp

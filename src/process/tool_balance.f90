@@ -7,15 +7,15 @@ module dd3_process_tool_balance
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_forces, only : evaluate_forces
-  use dd3_process_norm, only : pressed_force
+  use dd3_process_norm, only : balanced, pressed_force
   use dd3_system_system, only : system_t
   implicit none
   private
   public :: balance_tools
 
-  !> Residuals of a pressed tool, over its force, between which its motion reduces it. Larger ones are
-  !> left to the iterations, smaller ones balance.
-  real(wp), parameter :: largest_fraction = 1.0e-3_wp, balanced_fraction = 1.0e-6_wp
+  !> Largest residual of a pressed tool, over its force, that its motion reduces. Larger ones are left
+  !> to the iterations.
+  real(wp), parameter :: largest_fraction = 1.0e-3_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4
 
@@ -44,7 +44,7 @@ contains
         do tool = 1, model%n_tool
           if (.not. phase%pressed(tool)) cycle
           fraction = abs(system%problem%tool_residual(tool))/pressed_force(trial, tool)
-          if (fraction <= balanced_fraction .or. fraction > largest_fraction) cycle
+          if (fraction <= balanced .or. fraction > largest_fraction) cycle
           distance = distance_to_balance(system, phase%direction(:, tool), tool)
           moves = moves .or. abs(distance) > 0.0_wp
           trial%tools%displacement(:, tool) = trial%tools%displacement(:, tool) &

@@ -9,7 +9,7 @@ module dd3_report_unload_report
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
-  use dd3_model_terms_floating, only : spring_force
+  use dd3_model_terms_floating, only : spring_force, spring_stiffness
   use dd3_model_terms_list, only : external_forces, final_forces, largest_force
   implicit none
   private
@@ -134,7 +134,8 @@ contains
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
           reaction(k) = state%sheet%internal_force(axis, node) - state%external_force(axis, node)
-          if (model%phase(state%phase)%floats) reaction(k) = spring_force(model, state, node, axis)
+          if (model%phase(state%phase)%floats) reaction(k) = &
+              spring_force(spring_stiffness(model, state), state, node, axis)
         end associate
       end do
       k = maxloc(abs(reaction), dim=1)

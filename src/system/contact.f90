@@ -23,15 +23,10 @@ contains
     class(formulation_t), allocatable, intent(inout) :: formulation
     logical, intent(in) :: mixed
 
-    logical :: is_mixed
+    type(mixed_contact_t) :: a_mixed_one
 
     if (allocated(formulation)) then
-      is_mixed = .false.
-      select type (formulation)
-      type is (mixed_contact_t)
-        is_mixed = .true.
-      end select
-      if (is_mixed .eqv. mixed) return
+      if (same_type_as(formulation, a_mixed_one) .eqv. mixed) return
       deallocate (formulation)
     end if
     if (mixed) then

@@ -7,10 +7,10 @@
 The displacement adjustment: where the free part, aligned as a whole, lies beside the wanted shape, the surface of the
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
 at the end of the draw in the first loop; the free part is that at the end of the last operation. What reaches beyond
-the rim of the wanted shape, where less was drawn in, is not compared. The displacement is a smooth function along the
-drawn sheet and moves all tools with the sheet beside them: patches stay joined, gaps between tools stay. Where a run
-stops with the corrected tools, half of the correction is tried, then a quarter. The input files place blank and tools;
-at the start they need room for what the surfaces are moved by.
+the rim of the wanted shape, where less was drawn in, is corrected by the continuation of that, but not compared. The
+displacement is a smooth function along the drawn sheet and moves all tools with the sheet beside them: patches stay
+joined, gaps between tools stay. Where a run stops with the corrected tools, half of the correction is tried, then a
+quarter. The input files place blank and tools; at the start they need room for what the surfaces are moved by.
 --mirror names the planes of symmetry x = 0, y = 0; --half-turn tells that the whole part is its own image after half a
 turn about z.
 
@@ -250,7 +250,8 @@ def turned(vectors: np.ndarray) -> np.ndarray:
 
 def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float,
                  half_turn: bool = False) -> Any:
-    """Return a smooth function of the place for a displacement at some points, with the symmetries given: multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
+    """Return a smooth function of the place for a displacement at some points, with the symmetries given:
+    multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
     deviation `reach`, at places as far apart. Its slopes go on beyond the points and fade over some `reach`.
 
     Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.

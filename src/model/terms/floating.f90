@@ -14,7 +14,7 @@ module dd3_model_terms_floating
   use dd3_model_terms_term, only : term_t
   implicit none
   private
-  public :: floating_t, bending_stiffness, spring_force
+  public :: floating_t, bending_stiffness, spring_stiffness, spring_force
 
   !> The term.
   type, extends(term_t) :: floating_t
@@ -59,13 +59,14 @@ contains
         /maxval(maxval(x, dim=2) - minval(x, dim=2))**4
   end function bending_stiffness
 
-  !> Return the force of the spring at a node along an axis, N.
-  pure real(wp) function spring_force(model, state, node, axis) result(force)
-    type(model_t), intent(in) :: model
+  !> Return the force of a spring at a node along an axis, N.
+  pure real(wp) function spring_force(stiffness, state, node, axis) result(force)
+    !> N/mm.
+    real(wp), intent(in) :: stiffness
     class(configuration_t), intent(in) :: state
     integer, intent(in) :: node, axis
 
-    force = -spring_stiffness(model, state)*(state%x(axis, node) - state%start%x(axis, node))
+    force = -stiffness*(state%x(axis, node) - state%start%x(axis, node))
   end function spring_force
 
   !> Add the forces on the nodes.
@@ -75,13 +76,15 @@ contains
     type(configuration_t), intent(in) :: state
     real(wp), intent(inout) :: force(:, :)
 
+    real(wp) :: stiffness
     integer :: i
 
     associate (phase => model%phase(state%phase))
       if (.not. phase%floats) return
+      stiffness = spring_stiffness(model, state)
       do i = 1, size(phase%support, 2)
         associate (node => phase%support(1, i), axis => phase%support(2, i))
-          force(axis, node) = force(axis, node) + spring_force(model, state, node, axis)
+          force(axis, node) = force(axis, node) + spring_force(stiffness, state, node, axis)
         end associate
       end do
     end associate
@@ -94,15 +97,17 @@ contains
     type(configuration_t), intent(in) :: state
     type(block_matrix_t), intent(inout) :: stiffness
 
+    real(wp) :: spring
     integer :: k, i
 
     associate (phase => model%phase(state%phase), value => stiffness%value)
       if (.not. phase%floats) return
+      spring = spring_stiffness(model, state)
       do i = 1, size(phase%support, 2)
         associate (node => phase%support(1, i), axis => phase%support(2, i))
           if (.not. holds_row(stiffness, node)) cycle
           k = stiffness%diagonal(node)
-          value(axis, axis, k) = value(axis, axis, k) + spring_stiffness(model, state)
+          value(axis, axis, k) = value(axis, axis, k) + spring
         end associate
       end do
     end associate

@@ -18,7 +18,8 @@ module dd3_model_terms_loads
   use dd3_model_terms_term, only : term_box_t, term_t
   implicit none
   private
-  public :: loads_t, new_loads, nodal_forces, is_laid_down, laying_factor, laying_rate, spring_stiffness
+  public :: loads_t, new_loads, nodal_forces, is_laid_down
+  public :: laying_factor, laying_rate, spring_stiffness
 
   !> Displacement at which the spring at a node of a free sheet carries its weight once more, in
   !> thicknesses of the sheet.

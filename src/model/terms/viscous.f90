@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Viscous forces against the velocity of the nodes, in attempts at an increment after others that
-!> failed: a sheet that snaps has no equilibrium near the one before, and approaches the next in
-!> several increments. The state accepted is out of balance by these forces; the first attempt at
-!> each increment has none, so that the snap ends in equilibrium.
+!> Viscous forces against the velocity of the nodes, in attempts at an increment of a release after
+!> others that failed: a sheet that snaps has no equilibrium near the one before, and approaches the
+!> next in several increments. The state accepted is out of balance by these forces; the first
+!> attempt at each increment has none, so that the snap ends in equilibrium.
 module dd3_model_terms_viscous
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
