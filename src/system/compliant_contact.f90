@@ -126,6 +126,7 @@ contains
     if (state%start%held_offset(c) >= 0.0_wp) offset_at = state%start%held_offset(c)
   end function offset_at
 
+  !> Evaluate status, force and linearisation of a candidate near the layer of a tool. One that
   !> changes its tool has no tangential force of its history.
   subroutine evaluate_layer(self, trial, c, layer, hit, slip, friction, crossing)
     type(contact_work_t), intent(inout) :: self
@@ -155,6 +156,7 @@ contains
         trial%contact%lambda(:, c), committed, slip, friction)
   end subroutine evaluate_layer
 
+  !> Add the derivatives of the force at a crossing that a point on a surface does not have: by the
   !> normal as the edge turns, and by the weight.
   subroutine add_crossing_terms(self, c, layer, crossing, gap, lambda, committed, slip, friction)
     !> Has force, status and derivatives of the law.
@@ -255,6 +257,8 @@ contains
     end associate
   end subroutine predict_crossing
 
+  !> Evaluate a candidate near the layer of a tool in the predictor, with its committed status. If
+  !> the tool has no contact, those within `touch` of the layer resist as inside it: at the onset
   !> its slope is zero.
   subroutine predict_layer(self, model, state, c, layer, hit, touching, crossing)
     type(contact_work_t), intent(inout) :: self

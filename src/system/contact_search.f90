@@ -79,6 +79,8 @@ contains
     self%committed_force(:, c) = committed%contact%lambda(:, c)
   end subroutine find_committed_candidate
 
+  !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
+  !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
   !> back; since then it cannot have come deeper inside a tool than it moved relative to it.
   subroutine find_nearest_tool(self, model, committed, trial, c, position, hint, nearest)
     !> Gets the tool, 0 if none is within the search distance.
@@ -159,6 +161,7 @@ contains
     self%by_place(:, :, c) = reshape([nearest%by_point, nearest%by_edge], [3, 2])
   end subroutine find_nearest_border
 
+  !> Whether an edge of the mesh may come to the border of a tool in the increment: with its own
   !> length as margin.
   logical function may_cross(model, state, c)
     type(model_t), intent(in) :: model

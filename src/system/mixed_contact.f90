@@ -120,6 +120,10 @@ contains
     call open_candidate(contact, c)
   end subroutine leave_out
 
+  !> Return the penalties of a candidate on gap and slip at a point of a tool, N/mm. The tangential
+  !> force of a candidate whose supports prescribe a slip does not follow from equilibrium, but from
+  !> sigma_t: in every iteration it takes the direction of its last value and the penalty times the
+  !> slip. With the stiffness of the sheet under the candidate the slip outweighs a friction force,
   !> and the force has the direction of the slip at once.
   pure function candidate_penalty(model, phase, c, normal, slip) result(penalty)
     type(model_t), intent(in) :: model
@@ -230,6 +234,7 @@ contains
     end do
   end subroutine reduce
 
+  !> Replace the row of a candidate in contact by its reduced row, and add its contribution to the
   !> row of a pressed tool.
   subroutine reduce_node(reduced, problem, contact, model, phase, c)
     type(block_matrix_t), intent(inout) :: reduced
@@ -288,6 +293,7 @@ contains
     end associate
   end subroutine reduce_node
 
+  !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
   !> equilibrium holds the unknown reaction, the contact force follows the contact law instead.
   pure function node_residual(phase, problem, node, c) result(residual)
     type(phase_t), intent(in) :: phase

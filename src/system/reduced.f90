@@ -54,8 +54,6 @@ contains
     end do
   end subroutine start_rhs
 
-  !> Replace the row of a candidate in contact by its reduced row, and add its contribution to the
-  !> Return the residual of a candidate in contact. At supported degrees of freedom, where the
   !> Make the rows of prescribed displacements unit rows.
   subroutine prescribe(system, phase)
     type(system_t), intent(inout) :: system
