@@ -17,7 +17,7 @@ module dd3_input_case
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
   public :: limits_spec_t, limit_spec_t, newton_spec_t
   public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_gap_t, tool_name_t, tool_turn_t, tool_vector_t, displace_spec_t, free_spec_t
+  public :: tool_gap_t, tool_name_t, tool_tilt_t, tool_turn_t, tool_vector_t, displace_spec_t, free_spec_t
   public :: load_spec_t, until_spec_t
   public :: motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
@@ -316,6 +316,15 @@ module dd3_input_case
     type(location_t) :: at
   end type tool_turn_t
 
+  !> A pressed tool that tilts.
+  type :: tool_tilt_t
+    !> Position in `case%tool`.
+    integer :: tool = 0
+    !> Pivot in the coordinates of the tool's file, mm, and stiffness of its support, N.mm/rad.
+    real(wp) :: pivot(3) = 0.0_wp, stiffness = 0.0_wp
+    type(location_t) :: at
+  end type tool_tilt_t
+
   !> A gap between two tools at the end of a phase.
   type :: tool_gap_t
     !> Positions in `case%tool` of the tool that moves and of the other one.
@@ -402,6 +411,7 @@ module dd3_input_case
     type(tool_vector_t), allocatable :: move(:), press(:)
     type(tool_gap_t), allocatable :: gap(:)
     type(tool_turn_t), allocatable :: turn(:)
+    type(tool_tilt_t), allocatable :: tilt(:)
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)

@@ -72,7 +72,7 @@ contains
 
     allocate (phase%hold(n_valid("hold")), phase%release(n_valid("release")))
     allocate (phase%move(n_valid("move")), phase%press(n_valid("press")))
-    allocate (phase%gap(n_valid("gap")), phase%turn(n_valid("turn")))
+    allocate (phase%gap(n_valid("gap")), phase%turn(n_valid("turn")), phase%tilt(n_valid("tilt")))
     allocate (phase%displace(n_valid("displace")), phase%free(n_valid("free")))
     allocate (phase%load(n_valid("load")), phase%pressure(n_valid("pressure")))
     allocate (phase%motion(n_valid("rotate") + n_valid("bend")))
@@ -101,6 +101,11 @@ contains
             phase%turn(i)%tool = tool
             phase%turn(i)%value = number(:7)
             phase%turn(i)%at = at
+          case ("tilt")
+            phase%tilt(i)%tool = tool
+            phase%tilt(i)%pivot = number(:3)
+            phase%tilt(i)%stiffness = number(4)
+            phase%tilt(i)%at = at
           case ("displace")
             phase%displace(i)%set = name
             phase%displace(i)%axis = nint(number(1))

@@ -294,6 +294,10 @@ contains
       row("press", kind_other, "N", "-", &
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &
+      row("tilt", kind_other, "mm, N.mm/rad", "-", "pressed tool that may tilt about axes across "// &
+          "its force: pivot in the coordinates of the tool's file, at which the force acts, and "// &
+          "stiffness of its support against tilt", repeatable=.true., &
+          form="tool number number number number"), &
       row("release", kind_other, "", "-", &
           "tool that is withdrawn from the sheet over the phase, with its contact, and has "// &
           "none afterwards until a later phase names it again", &

@@ -39,6 +39,7 @@ contains
       call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
+      call check_tilts(case, case%phase(i), motion == pressed, turned, errors)
       call check_turns(case, case%phase(i), turned, errors)
       call check_bends(case, i, errors)
       call check_loads(case%phase(i), errors)
@@ -324,6 +325,42 @@ contains
           "a move of a tool that turns", code="E144")
     end do
   end subroutine check_turns
+
+  !> Check that the tools that tilt are pressed, do not turn, carry no draw-bead and have compliant
+  !> contact.
+  subroutine check_tilts(case, phase, is_pressed, turned, errors)
+    type(case_t), intent(in) :: case
+    type(phase_spec_t), intent(in) :: phase
+    !> Tools that are pressed in the phase.
+    logical, intent(in) :: is_pressed(:)
+    !> Tools that have turned so far; gets those that tilt.
+    logical, intent(inout) :: turned(:)
+    type(error_list_t), intent(inout) :: errors
+
+    logical :: named(size(case%tool))
+    integer :: i
+
+    named = .false.
+    do i = 1, size(phase%tilt)
+      associate (tilt => phase%tilt(i), name => "tool '"// &
+          case%tool(phase%tilt(i)%tool)%source%called()//"'")
+        if (named(tilt%tool)) call errors%push_input(tilt%at, name//" is given two pivots in "// &
+            "this phase", "one pivot for each tool", code="E122")
+        if (.not. is_pressed(tilt%tool)) call errors%push_input(tilt%at, name//" is not pressed "// &
+            "in this phase", "press beside tilt", code="E144")
+        if (any(phase%turn%tool == tilt%tool)) call errors%push_input(tilt%at, name//" has a "// &
+            "prescribed turn in this phase", "turn or tilt", code="E144")
+        if (any(case%drawbead%tool == tilt%tool)) call errors%push_input(tilt%at, name// &
+            " carries a draw-bead, which cannot tilt", "a draw-bead without this tool", code="E144")
+        if (tilt%stiffness < 0.0_wp) call errors%push_input(tilt%at, "the stiffness against "// &
+            "tilt is negative", "a stiffness in N.mm/rad, or 0", code="E133")
+        if (phase%contact%mixed) call errors%push_input(tilt%at, "tools do not tilt in the mixed "// &
+            "formulation", "formulation = compliant", code="E124")
+        named(tilt%tool) = .true.
+      end associate
+    end do
+    turned = turned .or. named
+  end subroutine check_tilts
 
   !> Report a bend of a set that an earlier phase bends to an angle that is not known.
   subroutine check_bends(case, i, errors)

@@ -218,6 +218,7 @@ contains
     call digest%add(name)
     if (phase%turns(tool)) &
         call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
+    if (phase%tilts(tool)) call digest%add([phase%tilt(tool)%pivot, phase%tilt(tool)%stiffness])
     call digest%add([phase%pressed(tool), phase%active(tool), phase%withdrawn(tool), &
         phase%keeps_tool_load(tool)])
     call digest%add([phase%move(:, tool), phase%direction(:, tool)])

@@ -130,6 +130,7 @@ module dd3_model_model
     procedure :: nodal_contact_forces
     procedure :: own_contact_forces
     procedure :: turns
+    procedure :: tilts
     procedure :: largest_thickness
     procedure :: least_shear
     procedure :: element_threads
@@ -202,6 +203,16 @@ contains
 
     turns = any([(self%phase(i)%turns(tool), i=1, size(self%phase))])
   end function turns
+
+  !> Whether a tool tilts in some phase.
+  pure logical function tilts(self, tool)
+    class(model_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    integer :: i
+
+    tilts = any([(self%phase(i)%tilts(tool), i=1, size(self%phase))])
+  end function tilts
 
   !> Return the largest thickness of the sheet at the start, mm.
   pure real(wp) function largest_thickness(self)

@@ -6,6 +6,7 @@ module dd3_model_phase
   use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
   use dd3_model_motions, only : motion_t
   use dd3_model_tolerances, only : tangential
+  use dd3_model_tilt, only : tilt_t
   use dd3_model_turn, only : turn_t
   implicit none
   private
@@ -34,6 +35,8 @@ module dd3_model_phase
     real(wp), allocatable :: gap_offset(:)
     !> Tools under a prescribed force, which move freely along their lines, `(n_tool)`.
     logical, allocatable :: pressed(:)
+    !> Tilt of the tools, of those that are pressed, `(n_tool)`.
+    type(tilt_t), allocatable :: tilt(:)
     !> Force on the pressed tools at the end of the phase, `(3, n_tool)`, N; without meaning for
     !> those whose force the phase leaves unchanged, `(n_tool)`.
     real(wp), allocatable :: tool_load_end(:, :)
@@ -101,6 +104,7 @@ module dd3_model_phase
     procedure :: slope
     procedure :: move_slope
     procedure :: turns
+    procedure :: tilts
     procedure :: turn_factor
     procedure :: turn_slope
     procedure :: tool_motion
@@ -236,6 +240,14 @@ contains
 
     turns = abs(self%turn(tool)%angle) > 0.0_wp
   end function turns
+
+  !> Whether a tool is pressed and tilts.
+  pure logical function tilts(self, tool)
+    class(phase_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    tilts = self%pressed(tool) .and. self%tilt(tool)%free
+  end function tilts
 
   !> Return the factor on the angles of the tools at a progress.
   pure real(wp) function turn_factor(self, progress)

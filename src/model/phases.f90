@@ -12,6 +12,7 @@ module dd3_model_phases
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
+  use dd3_model_tilt, only : new_tilt, tilt_t
   use dd3_model_turn, only : new_turn, turn_t
   use dd3_model_withdrawal, only : withdrawal
   use dd3_tools_separation, only : offset_at_gap
@@ -78,7 +79,7 @@ contains
     phase%name = ""
     allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%tool_load_end(3, n_tool), phase%load_end(3, n_load), source=0.0_wp)
-    allocate (phase%turn(n_tool))
+    allocate (phase%turn(n_tool), phase%tilt(n_tool))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), phase%goes_back(n_tool), &
@@ -202,6 +203,11 @@ contains
       phase%tool_load_end(:, t) = spec%press(i)%vector
       call set_line(phase, t, spec%press(i)%vector)
     end do
+    do i = 1, size(spec%tilt)
+      associate (tilt => spec%tilt(i))
+        phase%tilt(tilt%tool) = new_tilt(tilt%pivot, tilt%stiffness, model%tool(tilt%tool)%surface)
+      end associate
+    end do
     do t = 1, size(phase%active)
       if (spec%unload .or. any(spec%release%tool == t)) call withdraw(model, t, phase)
     end do
@@ -245,6 +251,7 @@ contains
 
     phase%active(tool) = active
     phase%pressed(tool) = .false.
+    phase%tilt(tool) = tilt_t()
     phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
 

@@ -12,11 +12,13 @@ module dd3_model_tools_state
 
   !> State of the tools.
   type :: tools_state_t
-    !> Displacement from the coordinates of their files, `(3, n_tool)`, mm; of those that turn, of the
-    !> point `centre` on the axis, `(3, n_tool)`, mm.
+    !> Displacement from the coordinates of their files, `(3, n_tool)`, mm; of those that turn or tilt,
+    !> of the point `centre` on the axis or the pivot, `(3, n_tool)`, mm.
     real(wp), allocatable :: displacement(:, :), centre(:, :)
     !> Rotation, `(3, 3, n_tool)`, and angle since the start of the job, `(n_tool)`, rad.
     real(wp), allocatable :: rotation(:, :, :), angle(:)
+    !> Rotation from which the tilt is measured, `(3, 3, n_tool)`.
+    real(wp), allocatable :: untilted(:, :, :)
     !> Force pressed on them, and that of the sheet on them with those of their draw-beads and fading
     !> ones, `(3, n_tool)`, N.
     real(wp), allocatable :: load(:, :), force(:, :)
@@ -27,6 +29,7 @@ module dd3_model_tools_state
     logical, allocatable :: touches(:), touched(:)
   contains
     procedure :: placement
+    procedure :: refer_to
     procedure :: walk
   end type tools_state_t
 
@@ -45,6 +48,7 @@ contains
       allocate (self%angle(n), self%layer_offset(n), source=0.0_wp)
       allocate (self%touches(n), self%touched(n), source=.false.)
       self%rotation = spread(identity, 3, n)
+      self%untilted = self%rotation
       do t = 1, n
         self%displacement(:, t) = model%tool(t)%position
       end do
@@ -63,6 +67,21 @@ contains
     end associate
   end function placement
 
+  !> Refer the displacement of a tool to another point.
+  pure subroutine refer_to(self, tool, centre)
+    class(tools_state_t), intent(inout) :: self
+    integer, intent(in) :: tool
+    !> In the coordinates of the tool's file, mm.
+    real(wp), intent(in) :: centre(3)
+
+    type(placement_t) :: placement
+
+    placement = self%placement(tool)
+    self%displacement(:, tool) = placement%translation &
+        + placement%vector_to_global(centre) - centre
+    self%centre(:, tool) = centre
+  end subroutine refer_to
+
   !> Pass every component to a visitor.
   subroutine walk(self, visitor)
     class(tools_state_t), intent(inout) :: self
@@ -71,6 +90,7 @@ contains
     call visitor%reals("tool_displacement", size(self%displacement), self%displacement)
     call visitor%reals("tool_centre", size(self%centre), self%centre)
     call visitor%reals("tool_rotation", size(self%rotation), self%rotation)
+    call visitor%reals("tool_untilted", size(self%untilted), self%untilted)
     call visitor%reals("tool_angle", size(self%angle), self%angle)
     call visitor%reals("tool_load", size(self%load), self%load)
     call visitor%reals("tool_force", size(self%force), self%force)

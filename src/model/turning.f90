@@ -2,12 +2,10 @@
 !> Rotation of the tools in a state.
 module dd3_model_turning
   use dd3_base_kinds, only : pi, wp
-  use dd3_base_ranks, only : sum_over_ranks
-  use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross, rotation_about
-  use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressed_tools, only : contact_moment
   use dd3_model_state, only : state_t
   use dd3_tools_placement, only : placement_t
   implicit none
@@ -22,17 +20,11 @@ contains
     !> At the start of the phase; gets centres and displacements.
     type(state_t), intent(inout) :: state
 
-    type(placement_t) :: placement
     integer :: t
 
     do t = 1, size(phase%turn)
       if (.not. phase%turns(t)) cycle
-      placement = state%placement(t)
-      associate (centre => phase%turn(t)%centre)
-        state%tools%displacement(:, t) = placement%translation &
-            + placement%vector_to_global(centre) - centre
-        state%tools%centre(:, t) = centre
-      end associate
+      call state%tools%refer_to(t, phase%turn(t)%centre)
     end do
     state%start%tool_rotation = state%tools%rotation
     state%start%tool_angle = state%tools%angle
@@ -104,9 +96,8 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
 
-    type(contact_point_t) :: point
-    real(wp) :: centre(3), axis(3), moment(1)
-    integer :: i, c
+    real(wp) :: axis(3)
+    integer :: i
 
     axis = 0.0_wp
     do i = state%phase, 1, -1
@@ -114,16 +105,7 @@ contains
       axis = matmul(state%tools%rotation(:, :, tool), model%phase(i)%turn(tool)%axis)
       exit
     end do
-    centre = state%tools%centre(:, tool) + state%tools%displacement(:, tool)
-    moment = 0.0_wp
-    do c = 1, model%n_contact
-      if (state%contact%tool(c) /= tool .or. state%contact%status(c) == status_gap) cycle
-      point = model%contact_point(c)%at_place(state%contact%place(c))
-      moment = moment + dot_product(axis, cross(point%position(state%x) - centre, &
-          state%contact%lambda(:, c)))
-    end do
-    call sum_over_ranks(1, moment)
-    torque = moment(1)
+    torque = dot_product(axis, contact_moment(model, state, tool, state%contact%lambda))
   end function torque
 
 end module dd3_model_turning

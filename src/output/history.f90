@@ -3,7 +3,7 @@
 !> of *HISTORY. One row for the initial state and for every n-th accepted increment; the last state
 !> of a phase and of the run always has a row. All ranks evaluate the rows, the first writes them.
 module dd3_output_history
-  use dd3_base_kinds, only : wp
+  use dd3_base_kinds, only : pi, wp
   use dd3_base_error, only : error_t, share_error
   use dd3_base_ranks, only : broadcast_integers, count_over_ranks, this_rank
   use dd3_base_text, only : axis => axis_name, newline
@@ -13,6 +13,7 @@ module dd3_output_history
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
   use dd3_model_terms_released, only : released_tool, remaining_force
+  use dd3_model_pressed_tools, only : tilt_of
   use dd3_model_turning, only : torque, turned_angle
   use dd3_output_csv, only : table_t
   use dd3_output_forming_columns, only : add_forming_heading, add_forming_values
@@ -104,6 +105,8 @@ contains
       call add_vector(names, units, trim(model%tool(i)%name)//"_f", "N")
       names = names//","//trim(model%tool(i)%name)//"_contacts,"//trim(model%tool(i)%name)//"_depth"
       units = units//",-,mm"
+      if (model%tilts(i)) call add_vector(names, units, trim(model%tool(i)%name)//"_tilt_", &
+          "degrees")
       if (.not. model%turns(i)) cycle
       names = names//","//trim(model%tool(i)%name)//"_angle,"//trim(model%tool(i)%name)//"_torque"
       units = units//",degrees,N.mm"
@@ -188,6 +191,7 @@ contains
       call table%add_integer(count_over_ranks(count(state%contact%tool == i &
           .and. state%contact%status /= status_gap)))
       call table%add_real(state%observed%depth(i))
+      if (model%tilts(i)) call table%add_reals(180.0_wp/pi*tilt_of(state%tools, i))
       if (.not. model%turns(i)) cycle
       call table%add_real(turned_angle(state, i))
       call table%add_real(torque(model, state, i))

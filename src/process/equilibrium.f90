@@ -12,6 +12,7 @@ module dd3_process_equilibrium
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
+  use dd3_model_pressed_tools, only : as_forces, turn_tools, unknowns_of
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : add_stiffness
   use dd3_model_terms_viscous, only : has_viscous
@@ -43,6 +44,8 @@ module dd3_process_equilibrium
     type(unknowns_t) :: start, step
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
+    !> Rotations of the tools there, `(3, 3, n_tool)`.
+    real(wp), allocatable, private :: start_rotation(:, :, :)
     type(residual_t) :: residual
     !> Contact status in the last three linearisations, the newest first, `(n_contact, 3)`.
     integer, allocatable :: status(:, :)
@@ -84,10 +87,13 @@ contains
     type(unknowns_t), intent(in) :: step
 
     associate (trial => self%trial, problem => self%system%problem)
+      call keep_start(self)
       trial%tools%displacement = trial%tools%displacement + step%tool
+      call turn_tools(self%start_rotation, step%tilt, trial%tools%rotation)
       call keep_start(self)
       self%step = step
       self%step%tool = 0.0_wp
+      self%step%tilt = 0.0_wp
       allocate (self%status(size(trial%contact%status), n_kept), source=unknown)
       problem%prescribed = 0.0_wp
       problem%tool_prescribed = 0.0_wp
@@ -193,7 +199,8 @@ contains
 
     associate (trial => self%trial)
       self%start = unknowns_t(trial%x, trial%sheet%enhanced, trial%contact%lambda, &
-          trial%tools%displacement)
+          trial%tools%displacement, 0.0_wp*trial%tools%displacement)
+      self%start_rotation = trial%tools%rotation
       self%start_tool = trial%contact%tool
       self%start_hint = trial%contact%hint
     end associate
@@ -226,6 +233,7 @@ contains
       step%enhanced = fraction*step%enhanced
       step%lambda = fraction*step%lambda
       step%tool = fraction*step%tool
+      step%tilt = fraction*step%tilt
       problem%missed = .true.
     end associate
   end subroutine limit_step
@@ -241,6 +249,7 @@ contains
       trial%sheet%enhanced = start%enhanced + fraction*step%enhanced
       trial%contact%lambda = start%lambda + fraction*step%lambda
       trial%tools%displacement = start%tool + fraction*step%tool
+      call turn_tools(self%start_rotation, fraction*step%tilt, trial%tools%rotation)
       if (fraction >= 1.0_wp) return
       trial%contact%tool = self%start_tool
       trial%contact%hint = self%start_hint
@@ -269,8 +278,8 @@ contains
       call sum_over_ranks(1, own)
       work = own(1)
       do tool = 1, model%n_tool
-        if (phase%pressed(tool)) work = work - problem%tool_residual(tool) &
-            *dot_product(phase%direction(:, tool), step%tool(:, tool))
+        if (phase%pressed(tool)) work = work - dot_product(problem%tool_residual(:, tool), &
+            unknowns_of(phase, tool, step%tool(:, tool), step%tilt(:, tool)))
       end do
       if (abs(work) <= negligible_work*norm2(self%trial%sheet%internal_force)*norm2(step%x)) &
           work = 0.0_wp
@@ -334,8 +343,11 @@ contains
     class(equilibrium_t), intent(in) :: self
     type(verdict_t), intent(inout) :: verdict
 
+    real(wp) :: imbalance(self%model%n_tool)
+    integer :: t
+
     associate (model => self%model, trial => self%trial, &
-        phase => self%model%phase(self%trial%phase), imbalance => self%system%problem%tool_residual)
+        phase => self%model%phase(self%trial%phase))
       verdict%node = self%farthest
       verdict%value(1) = self%farthest_moved
       verdict%cause = cause_large_step
@@ -351,11 +363,13 @@ contains
       verdict%cause = cause_residual
       verdict%value(1) = self%residual%worst
       if (self%residual%tools < self%scaled_norm) return
-      verdict%tool = maxloc(abs(imbalance), dim=1, mask=phase%pressed)
+      imbalance = [(norm2(as_forces(phase, t, self%system%problem%tool_residual(:, t))), &
+          t=1, model%n_tool)]
+      verdict%tool = maxloc(imbalance, dim=1, mask=phase%pressed)
       if (verdict%tool == 0) return
       verdict%cause = cause_tool_force
       verdict%node = 0
-      verdict%value(1) = abs(imbalance(verdict%tool))
+      verdict%value(1) = imbalance(verdict%tool)
     end associate
   end subroutine explain
 

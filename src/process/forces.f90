@@ -6,6 +6,7 @@ module dd3_process_forces
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_model, only : model_t
+  use dd3_model_pressed_tools, only : tool_balance
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : evaluate_terms, external_forces
   use dd3_system_contact, only : evaluate_contact
@@ -69,8 +70,8 @@ contains
         call trial%term(k)%of%add_tool_force(model, force)
       end do
       do tool = 1, model%n_tool
-        problem%tool_residual(tool) = dot_product(phase%direction(:, tool), &
-            trial%tools%load(:, tool) + force(:, tool))
+        if (phase%pressed(tool)) problem%tool_residual(:, tool) = tool_balance(model, trial, tool, &
+            contact%force)
         ! A pressed tool that has lost the sheet moves back to contact.
         problem%tool_prescribed(:, tool) = 0.0_wp
         if (.not. is_lost(model, trial, tool)) cycle

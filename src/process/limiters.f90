@@ -12,6 +12,7 @@ module dd3_process_limiters
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
+  use dd3_model_pressed_tools, only : motion_at
   use dd3_model_state, only : state_t
   use dd3_model_terms_drawbeads, only : presses_by_bead
   use dd3_process_phase_end, only : next_output_progress, until_value
@@ -345,7 +346,8 @@ contains
         if (.not. model%phase(state%phase)%active(tool)) cycle
         node = model%contact_node(c)
         point = model%contact_point(c)%at_place(contact%place(c))
-        approach = dot_product(step%tool(:, tool) &
+        approach = dot_product(motion_at(state%tools, tool, point%position(state%x), &
+            step%tool(:, tool), step%tilt(:, tool)) &
             + stepper%prediction%progress*contact%turning(:, c) &
             - point%change(state%x, step%x), contact%normal(:, c))
         if (approach <= 0.0_wp) cycle

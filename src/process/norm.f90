@@ -18,6 +18,7 @@ module dd3_process_norm
       sum_over_ranks, this_rank
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressed_tools, only : as_forces
   use dd3_model_state, only : state_t
   use dd3_system_system, only : system_t
   implicit none
@@ -127,7 +128,8 @@ contains
       call sum_over_ranks(1, square)
       do tool = 1, model%n_tool
         if (.not. phase%pressed(tool)) cycle
-        if (trial%tools%touches(tool)) square = square + problem%tool_residual(tool)**2
+        if (trial%tools%touches(tool)) square = square &
+            + sum(as_forces(phase, tool, problem%tool_residual(:, tool))**2)
       end do
     end associate
     found%norm = sqrt(square(1))
@@ -185,7 +187,8 @@ contains
     do tool = 1, model%n_tool
       if (.not. model%phase(trial%phase)%pressed(tool)) cycle
       if (trial%tools%touches(tool)) imbalance = max(imbalance, &
-          abs(system%problem%tool_residual(tool))/pressed_force(trial, tool))
+          norm2(as_forces(model%phase(trial%phase), tool, system%problem%tool_residual(:, tool))) &
+          /pressed_force(trial, tool))
     end do
   end function tool_imbalance
 

@@ -15,6 +15,7 @@ module dd3_process_phase_start
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressed_tools, only : begin_tilts
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : external_forces
   use dd3_model_terms_released, only : hold_released
@@ -45,8 +46,10 @@ contains
 
     real(wp) :: stored, force(3, model%n_node)
     integer :: tool, k, released_by(model%n_node)
-    logical :: lost
+    logical :: lost, tilted(model%n_tool)
 
+    tilted = .false.
+    if (number > 1) tilted = [(model%phase(number - 1)%tilts(tool), tool=1, model%n_tool)]
     stored = contact_energy(model, state)
     force = 0.0_wp
     lost = .false.
@@ -66,6 +69,7 @@ contains
     associate (phase => model%phase(number), start => state%start)
       start%x = state%x
       call begin_turns(phase, state)
+      call begin_tilts(phase, tilted, state%tools)
       call set_tool_loads(phase, state)
       start%until_from_below = .true.
       if (phase%until%kind == until_force) start%until_from_below = &

@@ -57,7 +57,7 @@ contains
     n = size(model%part%element)
     allocate (self%step%x(3, model%n_node), self%step%lambda(3, model%n_contact), &
         self%step%enhanced(model%element%n_enhanced, n), &
-        self%step%tool(3, model%n_tool), source=0.0_wp)
+        self%step%tool(3, model%n_tool), self%step%tilt(3, model%n_tool), source=0.0_wp)
     allocate (self%strain(6, n_point, n), source=0.0_wp)
     allocate (self%rotation(n_point, n), source=0.0_wp)
     allocate (self%plastic(n_point, n), source=.false.)
@@ -127,7 +127,8 @@ contains
       do tool = 1, model%n_tool
         problem%tool_prescribed(:, tool) = self%progress &
             *phase%tool_rate(tool, committed%progress, start%tool_displacement)
-        problem%tool_residual(tool) = self%progress &
+        problem%tool_residual(:, tool) = 0.0_wp
+        problem%tool_residual(1, tool) = self%progress &
             *dot_product(phase%tool_load_rate(tool, committed%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
       end do

@@ -43,7 +43,7 @@ contains
         moves = .false.
         do tool = 1, model%n_tool
           if (.not. phase%pressed(tool)) cycle
-          fraction = abs(system%problem%tool_residual(tool))/pressed_force(trial, tool)
+          fraction = abs(system%problem%tool_residual(1, tool))/pressed_force(trial, tool)
           if (fraction <= balanced .or. fraction > largest_fraction) cycle
           distance = distance_to_balance(system, phase%direction(:, tool), tool)
           moves = moves .or. abs(distance) > 0.0_wp
@@ -75,7 +75,7 @@ contains
     end do
     call sum_over_ranks(1, stiffness)
     distance = 0.0_wp
-    if (stiffness(1) > 0.0_wp) distance = system%problem%tool_residual(tool)/stiffness(1)
+    if (stiffness(1) > 0.0_wp) distance = system%problem%tool_residual(1, tool)/stiffness(1)
   end function distance_to_balance
 
 end module dd3_process_tool_balance

@@ -8,6 +8,7 @@ module dd3_run_file_phase
       tool_gap_t, tool_turn_t, until_force
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_tilt, only : tilt_t
   use dd3_output_run_summary, only : phase_summary_t
   use dd3_report_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
@@ -87,6 +88,7 @@ contains
       call json%add("active", phase%acts(t))
       call add_vector(json, "displacement", phase%move(:, t), .not. phase%pressed(t))
       call add_turn(json, pack(spec%turn, spec%turn%tool == t))
+      call add_tilt(json, phase%tilt(t), phase%tilts(t))
       call add_gap(json, model, pack(spec%gap, spec%gap%tool == t))
       call add_vector(json, "force", phase%tool_load_end(:, t), phase%pressed(t) .and. &
           .not. phase%keeps_tool_load(t))
@@ -126,6 +128,22 @@ contains
     call json%add("angle", turn(1)%value(7))
     call json%end_object()
   end subroutine add_turn
+
+  !> Add the tilt of a tool; null without one.
+  subroutine add_tilt(json, tilt, given)
+    type(json_t), intent(inout) :: json
+    type(tilt_t), intent(in) :: tilt
+    logical, intent(in) :: given
+
+    if (.not. given) then
+      call json%add_null("tilt")
+      return
+    end if
+    call json%begin_object("tilt")
+    call json%add("pivot", tilt%pivot)
+    call json%add("stiffness", tilt%stiffness)
+    call json%end_object()
+  end subroutine add_tilt
 
   !> Add the gap of a tool at the end of the phase; null without one.
   subroutine add_gap(json, model, gap)

@@ -10,7 +10,6 @@ module dd3_system_compliant_contact
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
   use dd3_system_contact_search, only : crossing_hit, find_candidate, find_committed_candidate, &
@@ -111,6 +110,7 @@ contains
     associate (tool => self%tool(c), phase => model%phase(trial%phase))
       slip = relative_displacement(committed%placement(tool), trial%placement(tool), &
           point%position(committed%x), point%position(trial%x))
+      self%rise(c) = dot_product(slip, crossing%normal)
       call evaluate_layer(self, trial, c, fraction_of(layer_at(model, phase, c), &
           crossing%weight), crossing_hit(crossing), slip, model%tool(tool)%friction, crossing)
     end associate
@@ -283,6 +283,7 @@ contains
         min(gap, at_onset*layer%height)
     committed = 0.0_wp
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
+    self%rise(c) = 0.0_wp
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%contact%lambda(:, c), &
         committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
         self%force(:, c), self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
@@ -291,7 +292,7 @@ contains
   end subroutine predict_layer
 
   !> Add the points to the linear system.
-  subroutine reduce(self, matrix, problem, contact, partition, position, model, phase, x)
+  subroutine reduce(self, matrix, problem, contact, partition, position, model, state)
     class(compliant_contact_t), intent(inout) :: self
     type(block_matrix_t), intent(inout) :: matrix
     type(linear_problem_t), intent(inout) :: problem
@@ -299,10 +300,9 @@ contains
     type(partition_t), intent(in) :: partition
     integer, intent(in) :: position(:, :, :)
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    real(wp), intent(in) :: x(:, :)
+    type(state_t), intent(in) :: state
 
-    call add_points(matrix, problem, contact, position, model, phase, x)
+    call add_points(matrix, problem, contact, position, model, state)
     call partition%complete_rows(matrix)
     call partition%complete_forces(model%n_node, problem%rhs)
   end subroutine reduce

@@ -48,6 +48,7 @@ contains
     slip = relative_displacement(committed%placement(self%tool(c)), &
         trial%placement(self%tool(c)), self%committed_x(:, c), x)
     self%normal(:, c) = hit%normal
+    self%rise(c) = dot_product(slip, hit%normal)
   end subroutine find_candidate
 
   !> Find the tool of a candidate in the committed state, and keep its contact there.

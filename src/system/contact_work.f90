@@ -20,6 +20,8 @@ module dd3_system_contact_work
     real(wp), allocatable :: onset(:)
     !> Outward normal of the tool, `(3, n_contact)`.
     real(wp), allocatable :: normal(:, :)
+    !> Displacement along it relative to the tool since the committed state, mm, `(n_contact)`.
+    real(wp), allocatable :: rise(:)
     !> Contact force F_equ by the contact law, N, `(3, n_contact)`.
     real(wp), allocatable :: force(:, :)
     !> D, N/mm, and E: `(3, 3, n_contact)`.
@@ -61,7 +63,7 @@ contains
     allocate (self%committed_normal(3, n_contact), self%committed_force(3, n_contact), &
         source=0.0_wp)
     allocate (self%distance(n_contact), self%onset(n_contact), self%committed_turn(n_contact), &
-        source=0.0_wp)
+        self%rise(n_contact), source=0.0_wp)
     allocate (self%normal(3, n_contact), self%force(3, n_contact), source=0.0_wp)
     allocate (self%place(n_contact), source=0.5_wp)
     allocate (self%by_place(3, 2, n_contact), self%by_edge(3, 3, n_contact), source=0.0_wp)

@@ -7,7 +7,6 @@ module dd3_system_formulation
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_partition, only : column_squares
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
   use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
@@ -56,9 +55,9 @@ module dd3_system_formulation
     end subroutine predict_interface
 
     !> Add the contact to the linear system, the forces of the points eliminated.
-    subroutine reduce_interface(self, matrix, problem, contact, partition, position, model, phase, x)
+    subroutine reduce_interface(self, matrix, problem, contact, partition, position, model, state)
       import :: block_matrix_t, contact_work_t, formulation_t, linear_problem_t, model_t, &
-          partition_t, phase_t, wp
+          partition_t, state_t
       class(formulation_t), intent(inout) :: self
       !> Stiffness of the sheet and the terms; with the rows of other ranks completed on return.
       type(block_matrix_t), intent(inout) :: matrix
@@ -69,9 +68,8 @@ module dd3_system_formulation
       !> Of the blocks of the elements in the matrix.
       integer, intent(in) :: position(:, :, :)
       type(model_t), intent(in) :: model
-      type(phase_t), intent(in) :: phase
-      !> Positions of the nodes, `(3, n_node)`, mm.
-      real(wp), intent(in) :: x(:, :)
+      !> Of the linearisation.
+      type(state_t), intent(in) :: state
     end subroutine reduce_interface
 
     !> Set the increments of the forces of the points from the displacements.

@@ -15,8 +15,8 @@ module dd3_system_linear_problem
     real(wp), allocatable :: enhanced(:, :)
     !> Contact forces, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
-    !> Displacements of the tools, `(3, n_tool)`, mm.
-    real(wp), allocatable :: tool(:, :)
+    !> Displacements of the tools, `(3, n_tool)`, mm, and the rotation vectors of those that tilt, rad.
+    real(wp), allocatable :: tool(:, :), tilt(:, :)
   contains
     procedure :: scaled
   end type unknowns_t
@@ -37,11 +37,13 @@ module dd3_system_linear_problem
     !> Prescribed displacement increments of the tools that are not pressed or have no contact,
     !> `(3, n_tool)`, mm.
     real(wp), allocatable :: tool_prescribed(:, :)
-    !> Residual of the force balance of the pressed tools along their lines, `(n_tool)`, N.
-    real(wp), allocatable :: tool_residual(:)
+    !> Residual of the balance of the pressed tools, `(3, n_tool)`: along their lines, N, and of
+    !> those that tilt about its axes, N.mm.
+    real(wp), allocatable :: tool_residual(:, :)
     !> Right-hand side of the reduced system, `(3*n_row)`; of several ranks each has its rows.
     real(wp), allocatable :: rhs(:)
-    !> Solution: displacements of the nodes, then of the tools that can be pressed, `(3*n_row)`.
+    !> Solution: displacements of the nodes, then the unknowns of the tools that can be
+    !> pressed, `(3*n_row)`.
     real(wp), allocatable :: solution(:)
   end type linear_problem_t
 
@@ -53,7 +55,7 @@ contains
     real(wp), intent(in) :: fraction
 
     scaled = unknowns_t(fraction*self%x, fraction*self%enhanced, fraction*self%lambda, &
-        fraction*self%tool)
+        fraction*self%tool, fraction*self%tilt)
   end function scaled
 
   !> Allocate a linear problem and set it to zero.
@@ -66,7 +68,7 @@ contains
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
-    allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(model%n_tool), &
+    allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(3, model%n_tool), &
         source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
   end subroutine new_linear_problem

@@ -13,7 +13,7 @@ module dd3_system_mixed_contact
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, status_gap, &
       status_slip, status_stick
-  use dd3_linalg_matrix, only : block_matrix_t, copy_blocks, position_of
+  use dd3_linalg_matrix, only : block_matrix_t, copy_blocks
   use dd3_linalg_partition, only : column_squares
   use dd3_linalg_tensor, only : identity
   use dd3_model_contact_layer, only : contact_penalty
@@ -25,7 +25,7 @@ module dd3_system_mixed_contact
   use dd3_system_formulation, only : formulation_t
   use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
   use dd3_system_partition, only : partition_t
-  use dd3_system_tool_rows, only : add_to_tool_row, force_row
+  use dd3_system_tool_rows, only : add_block
   use dd3_tools_closest, only : hit_t
   implicit none
   private
@@ -204,7 +204,7 @@ contains
   end subroutine predict_point
 
   !> Keep the stiffness, and reduce the rows of the nodes in contact.
-  subroutine reduce(self, matrix, problem, contact, partition, position, model, phase, x)
+  subroutine reduce(self, matrix, problem, contact, partition, position, model, state)
     class(mixed_contact_t), intent(inout) :: self
     type(block_matrix_t), intent(inout) :: matrix
     type(linear_problem_t), intent(inout) :: problem
@@ -212,8 +212,7 @@ contains
     type(partition_t), intent(in) :: partition
     integer, intent(in) :: position(:, :, :)
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    real(wp), intent(in) :: x(:, :)
+    type(state_t), intent(in) :: state
 
     integer :: c
 
@@ -228,7 +227,7 @@ contains
         if (contact%status(c) == status_gap) then
           rhs(3*node - 2:3*node) = rhs(3*node - 2:3*node) - problem%contact_residual(:, c)
         else
-          call reduce_node(matrix, problem, contact, model, phase, c)
+          call reduce_node(matrix, problem, contact, model, model%phase(state%phase), c)
         end if
       end associate
     end do
@@ -244,8 +243,8 @@ contains
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: c
 
-    real(wp) :: remaining(3, 3), residual(3), weight(3)
-    integer :: node, tool, block, k, at, row
+    real(wp) :: remaining(3, 3), residual(3), weight(3), along(3, 3)
+    integer :: node, tool, block, k, at
     logical :: pressed
 
     node = model%contact_node(c)
@@ -260,9 +259,7 @@ contains
         problem%rhs(3*node - 2:3*node) = problem%rhs(3*node - 2:3*node) &
             + matmul(d, problem%tool_prescribed(:, tool))
       else
-        row = force_row(line)
-        problem%rhs(3*(block - 1) + row) = problem%rhs(3*(block - 1) + row) &
-            + dot_product(line, matmul(e, residual))
+        problem%rhs(3*block - 2) = problem%rhs(3*block - 2) + dot_product(line, matmul(e, residual))
       end if
       weight = -matmul(line, e)
       do k = 1, 3
@@ -278,7 +275,7 @@ contains
           do while (reduced%column(at) < reduced%column(k))
             at = at + 1
           end do
-          reduced%value(row, :, at) = reduced%value(row, :, at) &
+          reduced%value(1, :, at) = reduced%value(1, :, at) &
               + matmul(weight, reduced%value(:, :, k))
         end if
         reduced%value(:, :, k) = matmul(remaining, reduced%value(:, :, k))
@@ -286,10 +283,11 @@ contains
       k = reduced%diagonal(node)
       reduced%value(:, :, k) = reduced%value(:, :, k) + d
       if (.not. pressed) return
-      reduced%value(:, :, position_of(reduced, node, block)) = -d
-      weight = matmul(line, d)
-      call add_to_tool_row(reduced, block, row, node, weight)
-      call add_to_tool_row(reduced, block, row, block, -weight)
+      along = 0.0_wp
+      along(:, 1) = line
+      call add_block(reduced, node, block, -matmul(d, along))
+      call add_block(reduced, block, node, matmul(transpose(along), d))
+      call add_block(reduced, block, block, -matmul(transpose(along), matmul(d, along)))
     end associate
   end subroutine reduce_node
 

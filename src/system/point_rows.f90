@@ -6,19 +6,24 @@
 !> displacement B du, dw: the tool's),
 !>     dlambda = (I - E)^-1 [F - lambda + D (B du - dw)],
 !>     [K + B^T (I - E)^-1 D B + G] du = -r - B^T (I - E)^-1 (F - lambda - D dw),
-!> r with B^T lambda in it. G is the derivative of B^T F at a constant F.
+!> r with B^T lambda in it. G is the derivative of B^T F at a constant F. The motion of a pressed tool
+!> is dw = A dq, with the unknowns q, A and the derivatives S and P of `pressed_tools`: its columns of
+!> the rows of the nodes are B^T (S - (I - E)^-1 D A), its rows [A^T (I - E)^-1 D + P^T] B. The slip
+!> does not turn with the tool: a point that has moved by h along the normal n in the increment has,
+!> as the tool tilts by t, the further slip -h t x n.
 module dd3_system_point_rows
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_linalg_matrix, only : block_matrix_t, position_of
-  use dd3_linalg_tensor, only : identity, inverse
+  use dd3_linalg_matrix, only : block_matrix_t
+  use dd3_linalg_tensor, only : cross, identity, inverse
   use dd3_model_contact_point, only : contact_point_t, most_point_nodes
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
+  use dd3_model_pressed_tools, only : arm_change, force_turn, motion_at, &
+      point_motion
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
   use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
-  use dd3_system_tool_rows, only : add_to_tool_row, force_row
+  use dd3_system_tool_rows, only : add_block
   implicit none
   private
   public :: add_points, add_point, set_point_forces, force_change
@@ -26,21 +31,20 @@ module dd3_system_point_rows
 contains
 
   !> Add the contributions of the points of this rank to matrix and right-hand side.
-  subroutine add_points(matrix, problem, contact, position, model, phase, x)
+  subroutine add_points(matrix, problem, contact, position, model, state)
     type(block_matrix_t), intent(inout) :: matrix
     type(linear_problem_t), intent(inout) :: problem
     type(contact_work_t), intent(in) :: contact
     !> Of the blocks of the elements in the matrix.
     integer, intent(in) :: position(:, :, :)
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
+    !> Of the linearisation.
+    type(state_t), intent(in) :: state
 
     real(wp) :: motion(3)
     integer :: c, e
 
-    associate (point => model%contact_point)
+    associate (point => model%contact_point, phase => model%phase(state%phase))
       do c = 1, model%n_contact
         motion = 0.0_wp
         if (contact%status(c) == status_gap) then
@@ -51,11 +55,11 @@ contains
         e = 0
         if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
         call add_point(point(c)%at_place(contact%place(c)), contact, c, &
-            problem%contact_residual(:, c), motion, x, point(c)%node, position, e, matrix, &
+            problem%contact_residual(:, c), motion, state%x, point(c)%node, position, e, matrix, &
             problem%rhs)
         if (contact%status(c) == status_gap) cycle
-        if (phase%pressed(contact%tool(c))) call add_to_tool(matrix, problem, &
-            contact, model, phase, c, x)
+        if (phase%pressed(contact%tool(c))) call couple_tool(matrix, problem, contact, model, &
+            state, c)
       end do
     end associate
   end subroutine add_points
@@ -98,30 +102,46 @@ contains
     end if
   end subroutine add_point
 
-  !> Couple a point with its pressed tool.
-  subroutine add_to_tool(matrix, problem, contact, model, phase, c, x)
+  !> Couple a point with its pressed tool: the tool's unknowns in the rows of the nodes; the motion
+  !> of the nodes and of the tool itself in its balance.
+  subroutine couple_tool(matrix, problem, contact, model, state, c)
     type(block_matrix_t), intent(inout) :: matrix
     type(linear_problem_t), intent(inout) :: problem
     type(contact_work_t), intent(in) :: contact
     type(model_t), intent(in) :: model
-    type(phase_t), intent(in) :: phase
+    type(state_t), intent(in) :: state
     !> Number of the point.
     integer, intent(in) :: c
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
 
     type(contact_point_t) :: point
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
+    real(wp), dimension(3, 3) :: a, s, by_node, line
+    integer :: i
 
     point = model%contact_point(c)%at_place(contact%place(c))
-    associate (tool => contact%tool(c))
-      call eliminate(contact, c, weight, stiffness)
-      call add_to_balance(problem%rhs, model%tool_row(tool), phase%direction(:, tool), &
-          matmul(weight - identity, problem%contact_residual(:, c)))
-      call point%gradient(x, b)
-      call couple_tool(matrix, point, model%tool_row(tool), phase%direction(:, tool), b, stiffness)
+    call point%gradient(state%x, b)
+    call eliminate(contact, c, weight, stiffness)
+    associate (phase => model%phase(state%phase), tool => contact%tool(c), &
+        row => model%tool_row(contact%tool(c)))
+      a = point_motion(phase, state%tools, tool, point%position(state%x))
+      s = force_turn(phase, tool, contact%normal(:, c), contact%force(:, c)) - contact%rise(c) &
+          *matmul(stiffness, force_turn(phase, tool, contact%normal(:, c), contact%normal(:, c)))
+      by_node = matmul(transpose(a), stiffness) &
+          + transpose(arm_change(phase, tool, contact%force(:, c)))
+      do i = 1, point%n_node
+        call add_block(matrix, point%node(i), row, &
+            matmul(transpose(b(:, :, i)), s - matmul(stiffness, a)))
+        call add_block(matrix, row, point%node(i), matmul(by_node, b(:, :, i)))
+      end do
+      line = 0.0_wp
+      line(:, 1) = phase%direction(:, tool)
+      call add_block(matrix, row, row, matmul(transpose(a), s - matmul(stiffness, a)) &
+          - matmul(transpose(arm_change(phase, tool, contact%force(:, c))), line))
+      associate (balance => problem%rhs(3*row - 2:3*row))
+        balance = balance - matmul(matmul(weight - identity, problem%contact_residual(:, c)), a)
+      end associate
     end associate
-  end subroutine add_to_tool
+  end subroutine couple_tool
 
   !> Add nodal forces B^T f to a right-hand side.
   pure subroutine add_force(point, b, force, row, rhs)
@@ -200,44 +220,6 @@ contains
     end associate
   end subroutine add_crossing_stiffness
 
-  !> Add the force of a point to the right-hand side of the force balance of its pressed tool.
-  pure subroutine add_to_balance(rhs, block, line, force)
-    real(wp), intent(inout) :: rhs(:)
-    !> Block row of the tool.
-    integer, intent(in) :: block
-    !> Unit vector along the line of its motion, and the force of the point, N.
-    real(wp), intent(in) :: line(3), force(3)
-
-    associate (balance => rhs(3*(block - 1) + force_row(line)))
-      balance = balance - dot_product(line, force)
-    end associate
-  end subroutine add_to_balance
-
-  !> Couple a point with its pressed tool: the tool's displacement in the rows of the nodes; theirs
-  !> and its own in its force balance.
-  subroutine couple_tool(reduced, point, block, line, b, stiffness)
-    type(block_matrix_t), intent(inout) :: reduced
-    type(contact_point_t), intent(in) :: point
-    !> Block row of the tool.
-    integer, intent(in) :: block
-    !> Unit vector along the line of its motion.
-    real(wp), intent(in) :: line(3)
-    real(wp), intent(in) :: b(3, 3, most_point_nodes)
-    !> C, N/mm.
-    real(wp), intent(in) :: stiffness(3, 3)
-
-    integer :: i, k, row
-
-    row = force_row(line)
-    do i = 1, point%n_node
-      k = position_of(reduced, point%node(i), block)
-      reduced%value(:, :, k) = reduced%value(:, :, k) - matmul(transpose(b(:, :, i)), stiffness)
-      call add_to_tool_row(reduced, block, row, point%node(i), &
-          matmul(matmul(line, stiffness), b(:, :, i)))
-    end do
-    call add_to_tool_row(reduced, block, row, block, -matmul(line, stiffness))
-  end subroutine couple_tool
-
   !> Evaluate (I - E)^-1 and (I - E)^-1 D of a point in contact.
   pure subroutine eliminate(contact, c, weight, stiffness)
     type(contact_work_t), intent(in) :: contact
@@ -259,15 +241,21 @@ contains
     !> Has the displacements.
     type(unknowns_t), intent(inout) :: step
 
+    type(contact_point_t) :: point
     real(wp) :: motion(3)
     integer :: c
 
     step%lambda = -state%contact%lambda
     do c = 1, model%n_contact
       if (contact%status(c) == status_gap) cycle
-      motion = -step%tool(:, contact%tool(c))
-      step%lambda(:, c) = force_change(contact, c, problem%contact_residual(:, c), &
-          model%contact_point(c), state%x, step%x, motion)
+      associate (tilt => step%tilt(:, contact%tool(c)), normal => contact%normal(:, c))
+        point = model%contact_point(c)%at_place(contact%place(c))
+        motion = -motion_at(state%tools, contact%tool(c), point%position(state%x), &
+            step%tool(:, contact%tool(c)), tilt) - contact%rise(c)*cross(tilt, normal)
+        step%lambda(:, c) = force_change(contact, c, problem%contact_residual(:, c), &
+            model%contact_point(c), state%x, step%x, motion) &
+            + cross(tilt - dot_product(normal, tilt)*normal, contact%force(:, c))
+      end associate
     end do
   end subroutine set_point_forces
 

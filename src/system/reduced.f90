@@ -8,6 +8,7 @@ module dd3_system_reduced
   use dd3_linalg_partition, only : holds_row
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_pressed_tools, only : motion_of
   use dd3_model_state, only : state_t
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
@@ -31,7 +32,7 @@ contains
       call start_rhs(problem, model)
       call start_tool_rows(system, model, phase)
       call system%formulation%reduce(system%matrix, problem, system%contact, system%partition, &
-          system%position, model, phase, state%x)
+          system%position, model, state)
       if (model%part%divided) call share_tool_rows(system, model, phase)
       call finish_tool_rows(system, model, phase)
       call prescribe(system, phase)
@@ -89,9 +90,11 @@ contains
       step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
       step%enhanced = enhanced_response(system%enhanced, model, solution)
       step%tool = system%problem%tool_prescribed
+      step%tilt = 0.0_wp*step%tool
       do tool = 1, model%n_tool
         row = 3*model%tool_row(tool)
-        if (phase%pressed(tool)) step%tool(:, tool) = solution(row - 2:row)
+        if (phase%pressed(tool)) call motion_of(phase, tool, solution(row - 2:row), &
+            step%tool(:, tool), step%tilt(:, tool))
       end do
       call system%formulation%read_forces(system%contact, system%problem, model, state, step)
     end associate

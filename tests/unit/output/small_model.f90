@@ -98,7 +98,8 @@ contains
     model%n_candidate = [0, 0]
     do i = 1, 2
       allocate (model%phase(i)%active(2), source=.true.)
-      allocate (model%phase(i)%turn(2))
+      allocate (model%phase(i)%turn(2), model%phase(i)%tilt(2))
+      allocate (model%phase(i)%pressed(2), source=.false.)
       model%phase(i)%mixed = .true.
     end do
     model%output%history = 1

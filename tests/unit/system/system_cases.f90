@@ -12,6 +12,7 @@ module system_cases
   use dd3_linalg_solver, only : solver_options_t
   use dd3_model_build, only : new_model
   use dd3_model_model, only : model_t
+  use dd3_model_pressed_tools, only : tool_balance
   use dd3_model_state, only : new_state, state_t
   use dd3_system_contact, only : evaluate_contact
   use dd3_system_internal, only : update_material
@@ -143,8 +144,8 @@ contains
     real(wp), intent(out) :: residual(:, :)
     !> F_equ - lambda, `(3, n_contact)`.
     real(wp), intent(out) :: contact_residual(:, :)
-    !> Out-of-balance forces of the tools in the directions of their lines, `(n_tool)`.
-    real(wp), intent(out) :: tool_residual(:)
+    !> Residual of the balance of the tools, `(3, n_tool)`.
+    real(wp), intent(out) :: tool_residual(:, :)
 
     type(verdict_t) :: verdict
     integer :: c, t
@@ -154,18 +155,16 @@ contains
     call evaluate_contact(system, model, committed, trial)
     residual = trial%sheet%internal_force - trial%external_force
     contact_residual = system%contact%force - trial%contact%lambda
-    tool_residual = 0.0_wp
-    do t = 1, model%n_tool
-      tool_residual(t) = dot_product(model%phase(trial%phase)%direction(:, t), &
-          trial%tools%load(:, t))
-    end do
     residual = residual + model%nodal_contact_forces(trial%x, trial%contact%lambda, &
         trial%contact%place)
+    trial%tools%force = 0.0_wp
     do c = 1, model%n_contact
       t = system%contact%tool(c)
       if (t == 0) cycle
-      tool_residual(t) = tool_residual(t) + dot_product(model%phase(trial%phase)%direction(:, t), &
-          system%contact%force(:, c))
+      trial%tools%force(:, t) = trial%tools%force(:, t) + system%contact%force(:, c)
+    end do
+    do t = 1, model%n_tool
+      tool_residual(:, t) = tool_balance(model, trial, t, system%contact%force)
     end do
   end subroutine mixed_residual
 
