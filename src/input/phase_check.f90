@@ -26,10 +26,11 @@ contains
 
     real(wp), allocatable :: force(:, :)
     integer, allocatable :: motion(:)
-    logical :: turned(size(case%tool))
+    logical :: turned(size(case%tool)), tilting(size(case%tool))
     integer :: i
 
     turned = .false.
+    tilting = .false.
     allocate (force(3, size(case%tool)), source=0.0_wp)
     allocate (motion(size(case%tool)), source=held)
     do i = 1, size(case%phase)
@@ -39,7 +40,8 @@ contains
       call check_trial(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
-      call check_tilts(case, case%phase(i), motion == pressed, turned, errors)
+      call check_tilts(case, case%phase(i), motion == pressed, tilting, errors)
+      turned = turned .or. tilting
       call check_turns(case, case%phase(i), turned, errors)
       call check_bends(case, i, errors)
       call check_loads(case%phase(i), errors)
@@ -321,23 +323,23 @@ contains
     turned = turned .or. named
     do i = 1, size(phase%gap)
       if (any(turned([phase%gap(i)%tool, phase%gap(i)%other]))) call errors%push_input( &
-          phase%gap(i)%at, "the gap is not known beforehand, as one of the tools turns", &
-          "a move of a tool that turns", code="E144")
+          phase%gap(i)%at, "the gap is not known beforehand, as one of the tools turns or tilts", &
+          "a move of a tool that turns or tilts", code="E144")
     end do
   end subroutine check_turns
 
-  !> Check that the tools that tilt are pressed, do not turn, carry no draw-bead and have compliant
-  !> contact.
-  subroutine check_tilts(case, phase, is_pressed, turned, errors)
+  !> Check that the tools that tilt are pressed, have no prescribed turn, carry no draw-bead and have
+  !> compliant contact.
+  subroutine check_tilts(case, phase, is_pressed, tilting, errors)
     type(case_t), intent(in) :: case
     type(phase_spec_t), intent(in) :: phase
     !> Tools that are pressed in the phase.
     logical, intent(in) :: is_pressed(:)
-    !> Tools that have turned so far; gets those that tilt.
-    logical, intent(inout) :: turned(:)
+    !> Tools that tilt, `(n_tool)`: as long as they are pressed.
+    logical, intent(inout) :: tilting(:)
     type(error_list_t), intent(inout) :: errors
 
-    logical :: named(size(case%tool))
+    logical :: named(size(tilting))
     integer :: i
 
     named = .false.
@@ -348,18 +350,21 @@ contains
             "this phase", "one pivot for each tool", code="E122")
         if (.not. is_pressed(tilt%tool)) call errors%push_input(tilt%at, name//" is not pressed "// &
             "in this phase", "press beside tilt", code="E144")
-        if (any(phase%turn%tool == tilt%tool)) call errors%push_input(tilt%at, name//" has a "// &
-            "prescribed turn in this phase", "turn or tilt", code="E144")
         if (any(case%drawbead%tool == tilt%tool)) call errors%push_input(tilt%at, name// &
             " carries a draw-bead, which cannot tilt", "a draw-bead without this tool", code="E144")
         if (tilt%stiffness < 0.0_wp) call errors%push_input(tilt%at, "the stiffness against "// &
             "tilt is negative", "a stiffness in N.mm/rad, or 0", code="E133")
-        if (phase%contact%mixed) call errors%push_input(tilt%at, "tools do not tilt in the mixed "// &
-            "formulation", "formulation = compliant", code="E124")
         named(tilt%tool) = .true.
       end associate
     end do
-    turned = turned .or. named
+    tilting = (tilting .or. named) .and. is_pressed
+    do i = 1, size(phase%turn)
+      if (tilting(phase%turn(i)%tool)) call errors%push_input(phase%turn(i)%at, "tool '"// &
+          case%tool(phase%turn(i)%tool)%source%called()//"' tilts in this phase", &
+          "turn or tilt, not both", code="E144")
+    end do
+    if (any(tilting) .and. phase%contact%mixed) call errors%push_input(phase%source%opened, &
+        "tools do not tilt in the mixed formulation", "formulation = compliant", code="E124")
   end subroutine check_tilts
 
   !> Report a bend of a set that an earlier phase bends to an angle that is not known.

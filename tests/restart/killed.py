@@ -61,7 +61,8 @@ BEAD = """*DRAWBEAD bead
 
 *CONTACT"""
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;
-# fields by increments; motions and pressures along curves of progress; a draw-bead; a linear solver that falls back.
+# fields by increments; motions and pressures along curves of progress; a draw-bead; a tool that tilts; a linear
+# solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),
@@ -71,6 +72,8 @@ CASES = {
     "solid_shell": ((("element = hex8", "element = solid_shell"),), ("restart=1",)),
     "motions": ((("*PHASE springback", MOTIONS),), ("restart=1",)),
     "bead": ((("*CONTACT", BEAD),), ("restart=1",)),
+    "tilt": ((("  penalty = ${p}", "  layer = ${p}"), ("-22600", "-22600\n  tilt = blank_holder 80 16 0 0")),
+             ("restart=1", "p=0.01")),
     "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
 }
 MOST_TRIALS = 100
