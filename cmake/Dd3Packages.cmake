@@ -76,6 +76,19 @@ if(DD3_OPENBLAS)
   set(blas_linalg src/external/blas_threads.f90)
 endif()
 
+# GNU ld, gold, lld and mold can replace a function by another; the linker of macOS cannot.
+#
+#   malloc_app       source of app: allocations that end the program if they fail
+#   malloc_options   options of the linker for it
+include(CheckLinkerFlag)
+check_linker_flag(Fortran LINKER:--wrap=malloc,--wrap=realloc DD3_WRAP)
+set(malloc_app "")
+set(malloc_options "")
+if(DD3_WRAP)
+  set(malloc_app src/external/checked_malloc.f90)
+  set(malloc_options LINKER:--wrap=malloc,--wrap=realloc)
+endif()
+
 # Names and versions of the libraries, for run.json.
 set(libraries LAPACK none SuiteSparse "${SuiteSparse_VERSION}" HDF5 "${HDF5_VERSION}")
 if(metis_packages)

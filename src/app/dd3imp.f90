@@ -8,7 +8,6 @@ program dd3imp
   use dd3_app_exit_codes, only : exit_end, exit_usage
   use dd3_app_job, only : run_job
   use dd3_app_memory, only : end_program, watch_memory
-  use dd3_app_one_blas_thread, only : use_one_blas_thread_if_limited
   use dd3_base_error, only : error_t
   use dd3_base_ranks, only : end_ranks, start_ranks, this_rank
   implicit none
@@ -17,7 +16,6 @@ program dd3imp
   type(error_t), allocatable :: error
   integer :: exit_code, ignored
 
-  call use_one_blas_thread_if_limited()
   call watch_memory()
   call start_ranks()
   call read_command_line(options, error)

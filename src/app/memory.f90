@@ -2,15 +2,12 @@
 !> Ends of the program that no caller can handle, above all for lack of memory: a sentence on the
 !> error stream and in job.log, a run.json that was composed before, and exit code 3.
 !>
-!> The compiled program allocates through `malloc` and `realloc`, and gfortran does not check each
-!> of them: arrays that an assignment reallocates are written through a null pointer. So the linker
-!> directs both to the procedures below (`--wrap`, CMakeLists.txt), which end the program if there
-!> is no memory. An end within a library, which allocates for itself, is caught by a procedure that
-!> `exit` calls. Neither may allocate memory, so that texts are written piece by piece. Module
-!> variables hold what the procedures need, as they have no arguments for it.
+!> They are written by a procedure that `exit` calls. gfortran calls `exit` if an array cannot be
+!> allocated, and so do libraries; for allocations that gfortran does not check,
+!> `src/external/checked_malloc.f90` does so. No memory is allocated here, so that texts are written
+!> piece by piece. Module variables hold what the procedure needs, as it has no arguments.
 module dd3_app_memory
-  use, intrinsic :: iso_c_binding, only : c_associated, c_funloc, c_int, c_null_char, c_ptr, &
-      c_size_t
+  use, intrinsic :: iso_c_binding, only : c_funloc, c_int, c_null_char, c_size_t
   use dd3_base_posix, only : c_atexit, c_exit, posix_creat, posix_exit, posix_rename, &
       posix_write
   implicit none
@@ -21,11 +18,11 @@ module dd3_app_memory
   integer(c_int), parameter :: error_stream = 2
   !> Exit code of a run that stopped before its end.
   integer(c_int), parameter :: code_stopped = 3
-  !> Remedy in the message.
-  character(len=*), parameter :: remedy = "; a mesh with fewer elements needs less, or raise "// &
-      "the limit (ulimit -v, the memory asked of a batch queue)"
 
-  !> Message in run.json on such an end.
+  !> Message on the error stream and in job.log, and that in run.json.
+  character(len=*), parameter :: message = "stopped E202: not enough memory, or a library ended "// &
+      "the program with a message of its own; a mesh with fewer elements needs less memory, or "// &
+      "raise the limit (ulimit -v, the memory asked of a batch queue)"//new_line("a")
   character(len=*), parameter :: ended_message = "the program was ended, most often for lack "// &
       "of memory; see job.log"
 
@@ -34,22 +31,8 @@ module dd3_app_memory
   character(len=:), allocatable, save :: run_path, run_part, run_text
   !> Descriptor of job.log; negative if there is none.
   integer(c_int), save :: log_descriptor = -1
-  !> Whether the program ends as it should; whether a message is being written.
-  logical, save :: finished = .false., ending = .false.
-
-  interface
-    !> malloc(3) of the C library.
-    type(c_ptr) function c_malloc(bytes) bind(c, name="__real_malloc")
-      import :: c_ptr, c_size_t
-      integer(c_size_t), value :: bytes
-    end function c_malloc
-    !> realloc(3) of the C library.
-    type(c_ptr) function c_realloc(old, bytes) bind(c, name="__real_realloc")
-      import :: c_ptr, c_size_t
-      type(c_ptr), value :: old
-      integer(c_size_t), value :: bytes
-    end function c_realloc
-  end interface
+  !> Whether the program ends as it should.
+  logical, save :: finished = .false.
 
 contains
 
@@ -58,7 +41,7 @@ contains
     integer(c_int) :: ignored
 
     finished = .false.
-    ignored = c_atexit(c_funloc(end_in_library))
+    ignored = c_atexit(c_funloc(end_without_memory))
   end subroutine watch_memory
 
   !> Write the message of such an end into job.log too.
@@ -91,58 +74,16 @@ contains
     call c_exit(int(code, c_int))
   end subroutine end_program
 
-  !> Take the place of malloc(3) in the compiled program.
-  type(c_ptr) function checked_malloc(bytes) result(memory) bind(c, name="__wrap_malloc")
-    integer(c_size_t), value :: bytes
+  !> Called by `exit`: write the message and run.json, and end with exit code 3.
+  subroutine end_without_memory() bind(c)
+    integer(c_size_t) :: ignored
 
-    memory = c_malloc(bytes)
-    if (.not. c_associated(memory) .and. bytes > 0) call end_without_memory(bytes)
-  end function checked_malloc
-
-  !> Take the place of realloc(3) in the compiled program.
-  type(c_ptr) function checked_realloc(old, bytes) result(memory) bind(c, name="__wrap_realloc")
-    type(c_ptr), value :: old
-    integer(c_size_t), value :: bytes
-
-    memory = c_realloc(old, bytes)
-    if (.not. c_associated(memory) .and. bytes > 0) call end_without_memory(bytes)
-  end function checked_realloc
-
-  !> End the program as an array cannot be allocated.
-  subroutine end_without_memory(bytes)
-    integer(c_size_t), intent(in) :: bytes
-
-    integer(c_size_t), parameter :: megabyte = 1000000_c_size_t
-
-    if (ending) call posix_exit(code_stopped)
-    ending = .true.
-    call put("stopped E202: not enough memory: an array of ")
-    call put_integer(bytes/megabyte + merge(1_c_size_t, 0_c_size_t, bytes < megabyte))
-    call put(" MB could not be allocated"//remedy//new_line("a"))
+    if (finished) return
+    ignored = posix_write(error_stream, "dd3imp: "//message, len("dd3imp: "//message, c_size_t))
+    if (log_descriptor >= 0) ignored = posix_write(log_descriptor, message, len(message, c_size_t))
     call write_run_file()
     call posix_exit(code_stopped)
   end subroutine end_without_memory
-
-  !> Called by `exit`: a library has ended the program.
-  subroutine end_in_library() bind(c)
-    if (finished .or. ending) return
-    ending = .true.
-    call put("stopped E202: a library ended the program, most often for lack of memory; its "// &
-        "own message is on the error stream"//remedy//new_line("a"))
-    call write_run_file()
-    call posix_exit(code_stopped)
-  end subroutine end_in_library
-
-  !> Write a text on the error stream and into job.log.
-  subroutine put(text)
-    character(len=*), intent(in) :: text
-
-    integer(c_size_t) :: ignored
-
-    if (index(text, "stopped") == 1) ignored = posix_write(error_stream, "dd3imp: ", 8_c_size_t)
-    ignored = posix_write(error_stream, text, len(text, c_size_t))
-    if (log_descriptor >= 0) ignored = posix_write(log_descriptor, text, len(text, c_size_t))
-  end subroutine put
 
   !> Write run.json under its temporary name and rename it.
   subroutine write_run_file()
@@ -155,22 +96,5 @@ contains
     if (posix_write(file, run_text, len(run_text, c_size_t)) == len(run_text, c_size_t)) &
         ignored = posix_rename(run_part, run_path)
   end subroutine write_run_file
-
-  !> Write a number.
-  subroutine put_integer(number)
-    integer(c_size_t), intent(in) :: number
-
-    character(len=20) :: digits
-    integer(c_size_t) :: rest
-    integer :: i
-
-    rest = number
-    do i = len(digits), 1, -1
-      digits(i:i) = achar(iachar("0") + int(mod(rest, 10_c_size_t)))
-      rest = rest/10_c_size_t
-      if (rest == 0) exit
-    end do
-    call put(digits(max(1, i):))
-  end subroutine put_integer
 
 end module dd3_app_memory

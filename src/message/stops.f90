@@ -30,7 +30,7 @@ contains
       row("E202", "not enough memory, or ended by a library", &
           "An array could not be allocated, or a library ended the program.", &
           "A mesh with fewer elements, `method = cgs` in `*SOLVER`, a higher limit of the "// &
-          "system."), &
+          "system; with a limit of the address space `OPENBLAS_NUM_THREADS=1`."), &
       row("E203", "a file cannot be written or read", &
           "The disk is full, the folder was removed or replaced, another run writes into it, "// &
           "or "// &
