@@ -109,7 +109,6 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     associate (system => self%system)
-      if (first) call system%threads%begin_iteration()
       call system%profile%start()
       call update_material(system, self%model, self%committed, self%trial, first, verdict)
       call system%profile%add(section_material)
@@ -166,16 +165,14 @@ contains
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: residual(3, self%model%n_node)
-    logical :: first
 
-    first = self%assembled
     residual = self%system%problem%residual
     self%status(:, 2:) = self%status(:, :n_kept - 1)
     self%status(:, 1) = self%system%contact%status
     associate (model => self%model, trial => self%trial, system => self%system, &
         phase => self%model%phase(self%trial%phase))
       call system%profile%start()
-      if (.not. first) call assemble_stiffness(system, model, self%committed, trial)
+      if (.not. self%assembled) call assemble_stiffness(system, model, self%committed, trial)
       system%problem%residual = system%problem%residual - system%enhanced%force
       call add_stiffness(trial%term, model, trial%configuration_t, system%matrix)
       if (system%problem%missed) then
@@ -183,7 +180,6 @@ contains
       end if
       call system%profile%add(section_assembly)
       call solve_reduced(system, model, trial, self%solver, verdict)
-      if (first) call system%threads%end_iteration()
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
       call read_step(system, model, trial, self%step)

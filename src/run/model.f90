@@ -3,7 +3,7 @@
 module dd3_run_model
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_code, cause_text
-  use dd3_base_clock, only : section_output, wall_time
+  use dd3_base_clock, only : processor_time, section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
@@ -32,6 +32,7 @@ module dd3_run_model
   use dd3_report_tool_depth, only : observe_tools
   use dd3_report_attempt_report, only : failure_message, status_row
   use dd3_report_phase_warnings, only : end_notes, start_notes
+  use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
   use dd3_system_system, only : new_system
   implicit none
   private
@@ -59,6 +60,7 @@ module dd3_run_model
     type(records_t) :: records
     type(progress_t) :: progress
     type(run_summary_t) :: summary
+    type(thread_choice_t) :: threads
     !> Whether the log has told of a perturbed pivot.
     logical :: told_perturbed = .false.
   end type run_t
@@ -85,6 +87,7 @@ contains
 
     began = wall_time()
     call set_threads(start%threads)
+    call new_thread_choice(run%threads, start%threads)
     run%committed = start%state
     start%state = state_t()
     call summary%start(size(model%phase), run%committed)
@@ -216,10 +219,9 @@ contains
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
 
-    associate (threads => run%stepper%system%threads, &
-        perturbed => run%stepper%attempt%solver%perturbed)
-      if (len_trim(threads%news) > 0) call log%note(trim(threads%news))
-      threads%news = ""
+    if (run%threads%news /= "") call log%note(trim(run%threads%news))
+    run%threads%news = ""
+    associate (perturbed => run%stepper%attempt%solver%perturbed)
       if (run%told_perturbed .or. perturbed%blocks == 0) return
       run%told_perturbed = .true.
       if (perturbed%row == 0) then
@@ -267,12 +269,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     type(status_row_t) :: row
-    real(wp) :: began
+    real(wp) :: began, processor
     logical :: predicted, again
 
     associate (stepper => run%stepper, attempt => run%stepper%attempt, &
         phase => model%phase(run%committed%phase), totals => run%summary%phase(run%committed%phase))
       began = wall_time()
+      processor = processor_time()
       call prepare_increment(model, run%committed, stepper)
       predicted = attempt%verdict%outcome == verdict_converged
       if (predicted .and. .not. makes_progress(attempt, stepper%prediction%progress)) then
@@ -289,7 +292,9 @@ contains
         end if
         row = status_row(model, run%committed, stepper)
         row%seconds = wall_time() - began
+        call run%threads%record(row%seconds, processor_time() - processor, row%iterations)
         began = wall_time()
+        processor = processor_time()
         again = .false.
         if (predicted .and. phase%newton%cutback .and. attempt%verdict%outcome == verdict_retry) &
             call cut_back(attempt, again)

@@ -16,7 +16,6 @@ module dd3_system_system
   use dd3_system_formulation, only : formulation_t
   use dd3_system_partition, only : new_partition, partition_t, rows_held
   use dd3_system_linear_problem, only : linear_problem_t, new_linear_problem
-  use dd3_system_thread_choice, only : new_thread_choice, thread_choice_t
   implicit none
   private
   public :: system_t, new_system, new_stiffness_pattern
@@ -52,7 +51,6 @@ module dd3_system_system
     real(wp), allocatable :: tangent(:, :, :, :)
     !> Workspaces of the element kernels, one per thread.
     type(element_work_t), allocatable :: element(:)
-    type(thread_choice_t) :: threads
     type(batches_t) :: batches
     !> Condensation of the enhanced strains.
     type(enhanced_t) :: enhanced
@@ -83,9 +81,8 @@ contains
     call new_partition(self%partition, model)
     call find_positions(self%matrix, model%connectivity(:, model%part%element), self%position)
     allocate (self%tangent(6, 6, model%element%n_point, size(model%part%element)), source=0.0_wp)
-    call new_thread_choice(self%threads, most_threads())
     call new_batches(self%batches, model)
-    allocate (self%element(self%threads%all))
+    allocate (self%element(most_threads()))
     do i = 1, size(self%element)
       associate (element => model%element)
         call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
