@@ -20,7 +20,7 @@ module dd3_run_file_head
   !> Mark and version of the format, as in docs/run.schema.json. The version grows when a member is
   !> removed or changes its meaning.
   character(len=*), parameter :: mark = "dd3imp run"
-  integer, parameter :: format_version = 1
+  integer, parameter :: format_version = 2
 
   !> Call of the program.
   type :: command_t

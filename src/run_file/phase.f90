@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Part of run.json: the phases as resolved, and what happened in them.
+!> Part of run.json: the phases as resolved, and what happened in them. Motions and loads of nodes
+!> are in its `input` only.
 module dd3_run_file_phase
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
@@ -12,7 +13,6 @@ module dd3_run_file_phase
   use dd3_output_run_summary, only : phase_summary_t
   use dd3_report_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
-  use dd3_run_file_sheet, only : add_axes
   implicit none
   private
   public :: add_phases
@@ -55,9 +55,6 @@ contains
       call json%add("length", phase%length)
       call json%add("unload", spec%unload)
       call add_tool_motions(json, model, phase, spec)
-      call add_node_motions(json, spec)
-      call add_loads(json, spec)
-      call add_tables(json, spec)
       call add_supports(json, phase)
       call add_until(json, model, phase)
       call add_limits(json, phase%limits)
@@ -162,101 +159,6 @@ contains
     call json%add("unit", trim(merge("thicknesses", "mm         ", gap(1)%in_thicknesses)))
     call json%end_object()
   end subroutine add_gap
-
-  !> Add the prescribed motions of nodes, and the directions that are free again.
-  subroutine add_node_motions(json, spec)
-    type(json_t), intent(inout) :: json
-    type(phase_spec_t), intent(in) :: spec
-
-    integer :: i
-
-    call json%begin_array("displace")
-    do i = 1, size(spec%displace)
-      call json%begin_object("", flat=.true.)
-      call json%add("set", spec%displace(i)%set)
-      call json%add("axis", axis_name(spec%displace(i)%axis))
-      call json%add("value", spec%displace(i)%value)
-      call json%end_object()
-    end do
-    call json%end_array()
-    call json%begin_array("free")
-    do i = 1, size(spec%free)
-      call json%begin_object("", flat=.true.)
-      call json%add("set", spec%free(i)%set)
-      call add_axes(json, "axes", spec%free(i)%direction)
-      call json%end_object()
-    end do
-    call json%end_array()
-    call json%begin_array("rotations")
-    do i = 1, size(spec%motion)
-      call json%begin_object("", flat=.true.)
-      call json%add("kind", trim(merge("bend  ", "rotate", spec%motion(i)%bends)))
-      call json%add("set", spec%motion(i)%set)
-      call json%add("point", spec%motion(i)%value(:3))
-      call json%add("axis", spec%motion(i)%value(4:6))
-      call json%add("angle", spec%motion(i)%value(7))
-      call json%end_object()
-    end do
-    call json%end_array()
-  end subroutine add_node_motions
-
-  !> Add the loads and pressures.
-  subroutine add_loads(json, spec)
-    type(json_t), intent(inout) :: json
-    type(phase_spec_t), intent(in) :: spec
-
-    integer :: i
-
-    call json%begin_array("loads")
-    do i = 1, size(spec%load)
-      call json%begin_object("", flat=.true.)
-      call json%add("set", spec%load(i)%set)
-      call json%add("force", spec%load(i)%force)
-      call json%end_object()
-    end do
-    call json%end_array()
-    if (spec%has_gravity) call json%add("gravity", spec%gravity)
-    call json%begin_array("pressures")
-    do i = 1, size(spec%pressure)
-      call json%begin_object("", flat=.true.)
-      call json%add("set", spec%pressure(i)%set)
-      call json%add("pressure", spec%pressure(i)%value)
-      call json%end_object()
-    end do
-    call json%end_array()
-  end subroutine add_loads
-
-  !> Add the tables of the factors.
-  subroutine add_tables(json, spec)
-    type(json_t), intent(inout) :: json
-    type(phase_spec_t), intent(in) :: spec
-
-    call add_table("table", spec%table)
-    call add_table("move_table", spec%move_table)
-    call add_table("turn_table", spec%turn_table)
-    call add_table("press_table", spec%press_table)
-
-  contains
-
-    !> Add numbers in pairs; null without any.
-    subroutine add_table(name, pairs)
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: pairs(:)
-
-      integer :: i
-
-      if (size(pairs) == 0) then
-        call json%add_null(name)
-        return
-      end if
-      call json%begin_array(name, flat=.true.)
-      do i = 1, size(pairs), 2
-        call json%add("", pairs(i:i + 1))
-      end do
-      call json%end_array()
-    end subroutine add_table
-
-  end subroutine add_tables
 
   !> Add the supports that the program chose.
   subroutine add_supports(json, phase)

@@ -22,7 +22,7 @@ module dd3_run_file_writer
   use dd3_run_file_input, only : add_input, add_location
   use dd3_run_file_material, only : add_materials, add_points
   use dd3_run_file_phase, only : add_phases
-  use dd3_run_file_sheet, only : add_boundaries, add_histories, add_output, add_sets, add_sheet
+  use dd3_run_file_sheet, only : add_sets, add_sheet
   use dd3_run_file_tool, only : add_drawbeads, add_tools
   implicit none
   private
@@ -74,9 +74,6 @@ contains
       call add_materials(json, case, model)
       call add_tools(json, case, model)
       call add_drawbeads(json, case, model)
-      call add_boundaries(json, case)
-      call add_histories(json, case, model)
-      call add_output(json, case%output)
       call add_points(json, case)
     end associate
   end subroutine run_file_start

@@ -41,7 +41,7 @@ def write_run(run, start, now, cells, history, status, fields=(), at_cells=(), *
     (run / "history.csv").write_text(history)
     (run / "status.csv").write_text(status)
     (run / "run.json").write_text(json.dumps({
-        "format": "dd3imp run", "format_version": 1, "program": {"name": "dd3imp", "version": "0.1.0"},
+        "format": "dd3imp run", "format_version": 2, "program": {"name": "dd3imp", "version": "0.1.0"},
         "command": {"file": "job.dat", "working_directory": str(run.parent)}, "started": "2026-01-01T00:00:00+00:00",
         "title": "", "outcome": {"state": "reached", "message": None}, "input": {"blocks": []}, "materials": [],
         "tools": [], "drawbeads": [], "phases": [], "warnings": [], "seconds": 1.5, "sections": {"material": 1.0}, **job}))

@@ -117,7 +117,7 @@ def test_description(tmp_path):
     for text, said in (("no json", "not a description"), ('{"format": "dd3imp run", "format_version": 9}', "version")):
         (run / "run.json").write_text(text)
         refused(said, lambda: dd3.open(run).job)
-    job = {"format": "dd3imp run", "format_version": 1, "command": {"working_directory": "/nowhere"}}
+    job = {"format": "dd3imp run", "format_version": 2, "command": {"working_directory": "/nowhere"}}
     (run / "run.json").write_text(json.dumps(job))
     assert dd3.open(run).job == job
     assert str(file_of(job, run, "tools/die.bez")) == "/nowhere/tools/die.bez"

@@ -237,7 +237,7 @@ def test_report(run, tmp_path):
                                                       tmp_path / "report", expect=2)
     assert "No such file" in call("report", tmp_path / "none.out", "--output", tmp_path / "other", expect=2)
     (tmp_path / "points.out").mkdir()
-    (tmp_path / "points.out" / "run.json").write_text('{"format": "dd3imp run", "format_version": 1, "points": ["a"]}')
+    (tmp_path / "points.out" / "run.json").write_text('{"format": "dd3imp run", "format_version": 2, "points": ["a"]}')
     assert "a run of material points, without a sheet; see dd3 plot point" in call("report", tmp_path / "points.out",
                                                                                     expect=2)
     assert not (tmp_path / "other").exists()

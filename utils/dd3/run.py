@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from dd3.fields import Fields
 
-FORMAT, VERSION = "dd3imp run", 1
+FORMAT, VERSIONS = "dd3imp run", (1, 2)
 TEXTS = {"phase", "point", "limiter", "outcome", "reason", "solver"}  # columns that are never numbers
 
 
@@ -86,8 +86,8 @@ def read_job(folder: Path) -> dict[str, Any]:
         job: dict[str, Any] = json.loads(read_text(path))
     except ValueError:
         raise Problem(f"{path}: not a description of a run") from None
-    if job.get("format") != FORMAT or job.get("format_version") != VERSION:
-        raise Problem(f"{path}: expected {FORMAT!r} of version {VERSION}")
+    if job.get("format") != FORMAT or job.get("format_version") not in VERSIONS:
+        raise Problem(f"{path}: expected {FORMAT!r} of version {VERSIONS[0]} to {VERSIONS[-1]}")
     if job.get("outcome", {}).get("state") == "running" and not is_held(folder / "job.log"):
         job["outcome"]["state"] = "killed"
     return job
