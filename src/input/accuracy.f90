@@ -4,7 +4,7 @@
 module dd3_input_accuracy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_input_case, only : limit_spec_t, limits_spec_t
+  use dd3_settings_limits, only : limit_spec_t, limits_spec_t
   implicit none
   private
   public :: set_by_accuracy, accuracy_names, default_by_accuracy

@@ -9,32 +9,29 @@ module dd3_input_case
   use dd3_base_text, only : text_t
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
+  use dd3_settings_limits, only : limits_spec_t
+  use dd3_settings_newton, only : newton_spec_t
+  use dd3_settings_output, only : history_quantities_t, output_spec_t
+  use dd3_settings_solver, only : solver_spec_t
+  use dd3_settings_until, only : until_spec_t
   implicit none
   private
   public :: case_t, blank_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
   public :: material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
-  public :: limits_spec_t, limit_spec_t, newton_spec_t
-  public :: solver_spec_t, phase_spec_t, history_spec_t, output_spec_t
-  public :: tool_gap_t, tool_name_t, tool_tilt_t, tool_turn_t, tool_vector_t, displace_spec_t, free_spec_t
-  public :: load_spec_t, until_spec_t
-  public :: motion_spec_t, pressure_spec_t
+  public :: phase_spec_t, history_spec_t
+  public :: tool_gap_t, tool_name_t, tool_tilt_t, tool_turn_t, tool_vector_t
+  public :: displace_spec_t, free_spec_t
+  public :: load_spec_t, motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
-  public :: until_never, until_displacement, until_force
   public :: point_spec_t, point_goal_t, gradient_values
-  public :: fields_ends, fields_every, fields_at, fields_increments
 
   !> Node sets of a structured blank: first and last nodes along each axis, then all nodes.
   character(len=5), parameter :: blank_sets(7) = [character(len=5) :: "x_min", "x_max", "y_min", &
       "y_max", "z_min", "z_max", "all"]
   !> Selection of a node set.
   integer, parameter :: set_plane = 1, set_box = 2, set_nodes = 3, set_near = 4
-  !> Quantity that ends a phase early.
-  integer, parameter :: until_never = 0, until_displacement = 1, until_force = 2
-  !> When fields are written: first and last state only, at intervals of the travel, at given
-  !> travels, at intervals in increments.
-  integer, parameter :: fields_ends = 0, fields_every = 1, fields_at = 2, fields_increments = 3
 
   !> A structured blank.
   type :: blank_spec_t
@@ -226,70 +223,6 @@ module dd3_input_case
     type(block_t) :: source
   end type boundary_spec_t
 
-  !> Limit with a switch.
-  type :: limit_spec_t
-    logical :: active = .false.
-    !> If not active, a value that never limits.
-    real(wp) :: value = huge(1.0_wp)
-    !> Whether the input gives it.
-    logical :: given = .false.
-  end type limit_spec_t
-
-  !> Limits of the predictor; all are off until set.
-  type :: limits_spec_t
-    !> Accuracy, from which the limits strain, rotation, depth and r_max follow that are not
-    !> given.
-    character(len=8) :: accuracy = "standard"
-    !> Maximum strain increment.
-    type(limit_spec_t) :: strain
-    !> Maximum rotation increment, degrees.
-    type(limit_spec_t) :: rotation
-    !> Maximum stress increments tangential (a) and normal (b) to the yield surface, over the flow
-    !> stress.
-    type(limit_spec_t) :: stress_tangential, stress_normal
-    !> c, d, e of the contact force limit.
-    type(limit_spec_t) :: force(3)
-    !> Floor of the reference contact force.
-    type(limit_spec_t) :: force_floor = limit_spec_t(value=0.0_wp)
-    !> Maximum predicted depth of a node beyond the onset of contact, over the thickness.
-    type(limit_spec_t) :: depth
-    !> Maximum fraction of the plastic points that unload in a prediction that is not repeated.
-    type(limit_spec_t) :: unloading
-    !> Minimum and maximum of the factor r on the trial increment.
-    type(limit_spec_t) :: r_min = limit_spec_t(value=0.0_wp), r_max
-  end type limits_spec_t
-
-  !> Settings of the corrector.
-  type :: newton_spec_t
-    !> Tolerance of the convergence criterion.
-    real(wp) :: tolerance = 0.0_wp
-    !> Maximum number of iterations of an increment.
-    integer :: iterations = 0
-    !> Whether a failed increment is repeated with a smaller r.
-    logical :: cutback = .false.
-    !> Whether there is a line search.
-    logical :: line_search = .false.
-    !> Whether there is nonlinear elimination.
-    logical :: elimination = .false.
-  end type newton_spec_t
-
-  !> Settings of the linear solver.
-  type :: solver_spec_t
-    !> Not yet checked against the registry of solvers.
-    character(len=:), allocatable :: method
-    type(location_t) :: method_at
-    !> Level of fill of the incomplete factorisation.
-    integer :: ilu_level = 0
-    !> Tolerance of the relative residual.
-    real(wp) :: tolerance = 0.0_wp
-    !> Maximum number of iterations.
-    integer :: iterations = 0
-    character(len=:), allocatable :: ordering
-    !> Where MUMPS keeps its factors, and the place of the word.
-    character(len=:), allocatable :: factors
-    type(location_t) :: factors_at
-  end type solver_spec_t
-
   !> A tool named in a phase.
   type :: tool_name_t
     !> Position in `case%tool`.
@@ -385,17 +318,6 @@ module dd3_input_case
     type(location_t) :: at
   end type pressure_spec_t
 
-  !> Condition that ends a phase early.
-  type :: until_spec_t
-    !> One of the `until_*` values.
-    integer :: kind = until_never
-    !> Position in `case%tool`.
-    integer :: tool = 0
-    !> Magnitude in the tool's direction of motion, mm or N.
-    real(wp) :: value = huge(1.0_wp)
-    type(location_t) :: at
-  end type until_spec_t
-
   !> A phase of the process.
   type :: phase_spec_t
     character(len=:), allocatable :: name
@@ -434,31 +356,12 @@ module dd3_input_case
   end type phase_spec_t
 
   !> Additional columns of the history table.
-  type :: history_spec_t
+  type, extends(history_quantities_t) :: history_spec_t
     character(len=:), allocatable :: name
     !> Node set.
     character(len=:), allocatable :: set
-    !> Quantities written.
-    logical :: displacement = .false., reaction = .false., position = .false., moment = .false.
-    logical :: draw_in = .false.
     type(block_t) :: source
   end type history_spec_t
-
-  !> What is written, and when.
-  type :: output_spec_t
-    !> Interval of the rows of the history table, in increments.
-    integer :: history = 0
-    !> One of the `fields_*` values.
-    integer :: fields = fields_ends
-    !> Interval (mm, or increments), or the travels at which fields are written, mm.
-    real(wp), allocatable :: fields_value(:)
-    !> Whether a restart file is written at the end of each phase and when a run stops.
-    logical :: restart = .true.
-    !> Interval of the restart file in increments; 0 for none in between.
-    integer :: restart_every = 0
-    !> Folder of the results; empty for the default beside the input file.
-    character(len=:), allocatable :: directory
-  end type output_spec_t
 
   !> Input of a job.
   type :: case_t

@@ -6,9 +6,11 @@ module dd3_input_cross_check
   use dd3_base_text, only : to_text
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, blank_spec_t, node_set_spec_t, material_spec_t, &
-      contact_spec_t, limits_spec_t, start_spec_t, fields_every, fields_at
+      contact_spec_t, start_spec_t
   use dd3_input_forming_limit_check, only : check_forming_limit
   use dd3_input_sheet_sets, only : n_quarters
+  use dd3_settings_limits, only : limits_spec_t
+  use dd3_settings_output, only : fields_every, fields_at
   implicit none
   private
   public :: cross_check, check_material

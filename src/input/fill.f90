@@ -5,14 +5,15 @@ module dd3_input_fill
   use dd3_base_text, only : lower_case
   use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t, deck_t
-  use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, &
-      output_spec_t, solver_spec_t, tool_spec_t, fields_every, fields_at, fields_increments
+  use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, tool_spec_t
   use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set, fill_start, fill_trim
   use dd3_input_fill_material, only : fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
   use dd3_input_table, only : axis_of
   use dd3_input_text_file, only : resolve_path
+  use dd3_settings_output, only : output_spec_t, fields_every, fields_at, fields_increments
+  use dd3_settings_solver, only : solver_spec_t
   implicit none
   private
   public :: fill_case

@@ -5,8 +5,10 @@ module dd3_input_fill_phase
   use dd3_base_text, only : same_name
   use dd3_input_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, limits_spec_t, limit_spec_t, &
-      newton_spec_t, tool_name_t, tool_vector_t, until_spec_t, until_displacement, until_force
+  use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, tool_name_t, tool_vector_t
+  use dd3_settings_limits, only : limits_spec_t, limit_spec_t
+  use dd3_settings_newton, only : newton_spec_t
+  use dd3_settings_until, only : until_spec_t, until_displacement, until_force
   implicit none
   private
   public :: fill_phase, fill_limits, fill_newton, fill_contact

@@ -4,8 +4,9 @@ module dd3_input_phase_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
-  use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_vector_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_vector_t
   use dd3_input_phase_tables, only : check_tables
+  use dd3_settings_until, only : until_never
   implicit none
   private
   public :: check_phases

@@ -6,8 +6,6 @@ module dd3_model_model
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
-  use dd3_input_case, only : fields_at, fields_every, fields_increments, history_spec_t, &
-      output_spec_t
   use dd3_material_material, only : material_t
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_drawbead, only : drawbead_t
@@ -17,12 +15,11 @@ module dd3_model_model
   use dd3_model_phase, only : phase_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_tolerances, only : tolerances_t
+  use dd3_settings_output, only : history_quantities_t, output_spec_t
   use dd3_tools_tool, only : tool_t
   implicit none
   private
   public :: model_t, history_set_t, node_set_t
-  !> For the outputs of the model.
-  public :: fields_at, fields_every, fields_increments, output_spec_t
 
   !> Node set by its name.
   type :: node_set_t
@@ -31,7 +28,8 @@ module dd3_model_model
   end type node_set_t
 
   !> Node set with quantities in history.csv; its name is the prefix of their columns.
-  type, extends(history_spec_t) :: history_set_t
+  type, extends(history_quantities_t) :: history_set_t
+    character(len=:), allocatable :: name
     integer, allocatable :: node(:)
   end type history_set_t
 

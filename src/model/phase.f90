@@ -3,11 +3,13 @@
 !> displaced and loaded, early end. It never changes in a run.
 module dd3_model_phase
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : limits_spec_t, newton_spec_t, until_spec_t
   use dd3_model_motions, only : motion_t
   use dd3_model_tolerances, only : tangential
   use dd3_model_tilt, only : tilt_t
   use dd3_model_turn, only : turn_t
+  use dd3_settings_limits, only : limits_spec_t
+  use dd3_settings_newton, only : newton_spec_t
+  use dd3_settings_until, only : until_spec_t
   implicit none
   private
   public :: phase_t, is_normal_held, is_slip_prescribed

@@ -4,12 +4,13 @@
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
   use dd3_base_ranks, only : broadcast_integers, this_rank
-  use dd3_model_model, only : fields_increments, model_t
+  use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_fields, only : field_record_t
   use dd3_output_history, only : history_record_t
   use dd3_output_restart, only : write_restart
   use dd3_output_status, only : status_record_t, status_row_t
+  use dd3_settings_output, only : fields_increments
   implicit none
   private
   public :: records_t

@@ -7,7 +7,6 @@ module dd3_process_limiters
   use dd3_base_ranks, only : any_rank, broadcast_integers, count_over_ranks, rank_of_smallest, &
       sum_over_ranks
   use dd3_contact_operator, only : status_gap
-  use dd3_input_case, only : until_displacement
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_contact_layer, only : progress_left
@@ -17,6 +16,7 @@ module dd3_process_limiters
   use dd3_model_terms_drawbeads, only : presses_by_bead
   use dd3_process_phase_end, only : next_output_progress, until_value
   use dd3_process_step_control, only : limit_t, stepper_t
+  use dd3_settings_until, only : until_displacement
   implicit none
   private
   public :: limit_increment

@@ -2,10 +2,11 @@
 !> End of a phase and its outputs of fields, as progress of the phase.
 module dd3_process_phase_end
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : fields_at, fields_every, output_spec_t, until_displacement
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
+  use dd3_settings_output, only : fields_at, fields_every, output_spec_t
+  use dd3_settings_until, only : until_displacement
   implicit none
   private
   public :: phase_is_over, next_output_progress, until_met, until_value, until_fraction, &

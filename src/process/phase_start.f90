@@ -7,7 +7,6 @@ module dd3_process_phase_start
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
   use dd3_contact_operator, only : status_gap
-  use dd3_input_case, only : until_force
   use dd3_model_contact_point, only : contact_point_t
   use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
@@ -22,6 +21,7 @@ module dd3_process_phase_start
   use dd3_model_turning, only : begin_turns
   use dd3_model_tolerances, only : start_depth, tangential, wrong_side_depth
   use dd3_process_phase_end, only : until_value
+  use dd3_settings_until, only : until_force
   use dd3_tools_closest, only : hint_t, hit_t
   implicit none
   private

@@ -9,7 +9,6 @@ module dd3_report_phase_warnings
   use dd3_base_text, only : to_text
   use dd3_contact_compliant, only : gap_under_force
   use dd3_contact_operator, only : status_gap
-  use dd3_input_case, only : until_force
   use dd3_linalg_tensor, only : identity
   use dd3_model_contact_layer, only : layer_at
   use dd3_model_energy, only : elastic_energy, energy_error
@@ -26,6 +25,7 @@ module dd3_report_phase_warnings
   use dd3_process_phase_start, only : gap_of_tool
   use dd3_report_tool_warnings, only : add_tool_warnings
   use dd3_report_unload_report, only : add_reactions, imbalance_warning, unload_note
+  use dd3_settings_until, only : until_force
   use dd3_tools_closest, only : hint_t, hit_t
   use dd3_tools_tool, only : find_on_tool
   implicit none

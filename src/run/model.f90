@@ -13,7 +13,6 @@ module dd3_run_model
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
-  use dd3_input_case, only : solver_spec_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : solver_names
   use dd3_model_model, only : model_t
@@ -33,6 +32,7 @@ module dd3_run_model
   use dd3_report_attempt_report, only : failure_message, status_row
   use dd3_report_phase_warnings, only : end_notes, start_notes
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
+  use dd3_settings_solver, only : solver_spec_t
   use dd3_system_system, only : new_system
   implicit none
   private

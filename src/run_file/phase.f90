@@ -5,14 +5,16 @@ module dd3_run_file_phase
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : axis_name
-  use dd3_input_case, only : case_t, limit_spec_t, limits_spec_t, newton_spec_t, phase_spec_t, &
-      tool_gap_t, tool_turn_t, until_force
+  use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_turn_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_tilt, only : tilt_t
   use dd3_output_run_summary, only : phase_summary_t
   use dd3_report_attempt_report, only : tool_name
   use dd3_run_file_input, only : add_location
+  use dd3_settings_limits, only : limit_spec_t, limits_spec_t
+  use dd3_settings_newton, only : newton_spec_t
+  use dd3_settings_until, only : until_force
   implicit none
   private
   public :: add_phases

@@ -7,6 +7,7 @@ module dd3_run_file_sheet
   use dd3_input_case, only : case_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
+  use dd3_settings_output, only : fields_at, fields_every, fields_increments, output_spec_t
   implicit none
   private
   public :: add_sheet, add_sets

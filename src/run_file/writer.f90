@@ -13,7 +13,7 @@ module dd3_run_file_writer
   use dd3_base_message, only : message_t
   use dd3_base_ranks, only : this_rank
   use dd3_base_text, only : newline
-  use dd3_input_case, only : case_t, solver_spec_t
+  use dd3_input_case, only : case_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_run_summary, only : phase_summary_t, run_summary_t
@@ -24,6 +24,7 @@ module dd3_run_file_writer
   use dd3_run_file_phase, only : add_phases
   use dd3_run_file_sheet, only : add_sets, add_sheet
   use dd3_run_file_tool, only : add_drawbeads, add_tools
+  use dd3_settings_solver, only : solver_spec_t
   implicit none
   private
   public :: run_file_t, run_file_name

@@ -6,7 +6,7 @@ program benchmark_contact
   use dd3_base_kinds, only : wp
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : location_t, error_list_t
-  use dd3_model_tool_surface, only : read_tool_surface
+  use dd3_setup_tool_surface, only : read_tool_surface
   use dd3_contact_operator, only : contact_operator_of_status, contact_status
   use dd3_tools_surface, only : surface_t
   use dd3_tools_closest, only : hint_t, hit_t, find_contact

@@ -10,7 +10,7 @@ module run_samples
   use dd3_input_reader, only : read_case
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_solver, only : solver_options_t
-  use dd3_model_build, only : new_model
+  use dd3_setup_model, only : new_model
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state, state_t
   use dd3_process_increment, only : accept_increment, prepare_increment, try_increment

@@ -9,7 +9,7 @@
 program benchmark_tool_surface
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_kinds, only : wp
-  use dd3_model_tool_surface, only : read_tool_surface
+  use dd3_setup_tool_surface, only : read_tool_surface
   use dd3_tools_closest, only : find_contact, hint_t, hit_t
   use dd3_tools_surface, only : surface_t
   implicit none

@@ -34,7 +34,7 @@ TABLE = re.compile(r"(<!-- no measurement -->\n)?((?:^\|.*\n)+)(?=\n*(.*))", re.
 ONCE = "measured once"  # stamp of a table that no script makes
 HOUR = 60
 RUN = " --program {program} --work {work} --write"
-MECHANICS = "src/contact src/element src/material src/model src/process src/system src/tools"
+MECHANICS = "src/contact src/element src/material src/model src/process src/setup src/system src/tools"
 
 
 @dataclass

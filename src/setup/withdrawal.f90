@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Path along which a tool is withdrawn from the sheet: its line of motion, or that of another tool
 !> where it has none, or an axis, away from the faces of the sheet that it may touch.
-module dd3_model_withdrawal
+module dd3_setup_withdrawal
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
@@ -76,4 +76,4 @@ contains
     direction = identity(:, maxloc(abs(side), dim=1))
   end function line_towards
 
-end module dd3_model_withdrawal
+end module dd3_setup_withdrawal

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Build of the draw-beads from the case: their lines, laws and the faces on which they act.
-module dd3_model_drawbead_build
+module dd3_setup_drawbeads
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -138,4 +138,4 @@ contains
     end associate
   end subroutine check_slopes
 
-end module dd3_model_drawbead_build
+end module dd3_setup_drawbeads

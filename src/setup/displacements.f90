@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Prescribed displacements of the phases. A direction that a phase displaces stays prescribed in
 !> later phases, with no further displacement, until one frees it.
-module dd3_model_displacements
+module dd3_setup_displacements
   use dd3_base_kinds, only : wp, pi
   use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t
@@ -126,4 +126,4 @@ contains
 
   end subroutine list_kept
 
-end module dd3_model_displacements
+end module dd3_setup_displacements

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Loads on directions that supports or `displace` hold: there they do not act on the sheet.
-module dd3_model_held_loads
+module dd3_setup_held_loads
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
   use dd3_base_text, only : axis_name
@@ -94,4 +94,4 @@ contains
     end do
   end subroutine find_held_loads
 
-end module dd3_model_held_loads
+end module dd3_setup_held_loads

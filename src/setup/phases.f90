@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Phases of the case with all names resolved. What a phase does not name stays unchanged: tools are
 !> held, forces and loads kept.
-module dd3_model_phases
+module dd3_setup_phases
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t, phase_spec_t, until_never
+  use dd3_input_case, only : case_t, phase_spec_t
   use dd3_mesh_mesh, only : mesh_t
-  use dd3_model_displacements, only : set_displacements
+  use dd3_settings_until, only : until_never
+  use dd3_setup_displacements, only : set_displacements
   use dd3_model_load_sets, only : face_load_weights, load_set_t, pressure_set_t
   use dd3_model_gravity, only : gravity_name, new_weight_set
   use dd3_model_model, only : model_t
@@ -14,7 +15,7 @@ module dd3_model_phases
   use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_tilt, only : new_tilt, tilt_t
   use dd3_model_turn, only : new_turn, turn_t
-  use dd3_model_withdrawal, only : withdrawal
+  use dd3_setup_withdrawal, only : withdrawal
   use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
@@ -448,4 +449,4 @@ contains
     end do
   end function aside
 
-end module dd3_model_phases
+end module dd3_setup_phases

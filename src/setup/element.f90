@@ -2,7 +2,7 @@
 !> Element of the sheet: that of the input, of the run whose sheet goes on, or the default, which
 !> depends on the number of layers. The default bends one layer exactly whatever the length of its
 !> elements; in several layers the elements of a section share its bending.
-module dd3_model_sheet_element
+module dd3_setup_element
   use dd3_base_error, only : error_list_t, error_t
   use dd3_base_text, only : newline, to_text
   use dd3_element_registry, only : element_names, new_element
@@ -172,4 +172,4 @@ contains
     end associate
   end function is_one_layer
 
-end module dd3_model_sheet_element
+end module dd3_setup_element

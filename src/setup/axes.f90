@@ -2,7 +2,7 @@
 !> Normal of the initial sheet, and the axes of its materials. A mesh from a file may stand in any
 !> plane: where the input leaves `normal_direction` out, the normal is that of the elements of the
 !> material.
-module dd3_model_sheet_normal
+module dd3_setup_axes
   use dd3_base_kinds, only : pi, wp
   use dd3_base_error, only : error_list_t
   use dd3_base_message, only : message_list_t
@@ -197,4 +197,4 @@ contains
     text = to_text(clean(1), 4)//" "//to_text(clean(2), 4)//" "//to_text(clean(3), 4)
   end function in_words
 
-end module dd3_model_sheet_normal
+end module dd3_setup_axes

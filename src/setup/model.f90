@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Build of the model from the checked case: names become numbers, and what needs the mesh or the
 !> tools is checked. All errors of the input are collected.
-module dd3_model_build
+module dd3_setup_model
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : n_ranks
   use dd3_base_error, only : error_list_t, location_t
@@ -17,23 +17,23 @@ module dd3_model_build
   use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_model_contact_points, only : keep_own_points, set_contact_points
   use dd3_model_contact_results, only : candidate_hits
-  use dd3_model_drawbead_build, only : new_drawbeads
+  use dd3_setup_drawbeads, only : new_drawbeads
   use dd3_model_fingerprint, only : tool_digest
-  use dd3_model_held_loads, only : check_loads
+  use dd3_setup_held_loads, only : check_loads
   use dd3_model_internal_variables, only : new_variables
-  use dd3_model_materials, only : new_materials
+  use dd3_setup_materials, only : new_materials
   use dd3_model_model, only : model_t
   use dd3_model_part, only : new_part
-  use dd3_model_phases, only : new_phases
+  use dd3_setup_phases, only : new_phases
   use dd3_model_rigid_motion, only : new_supported_part, part_name, parts_of_nodes, &
       rigid_motion_t
   use dd3_model_rim, only : set_rim
-  use dd3_model_sheet_element, only : set_element, set_element_of_mesh
+  use dd3_setup_element, only : set_element, set_element_of_mesh
   use dd3_model_sheet_faces, only : new_sheet_faces
-  use dd3_model_sheet_normal, only : set_axes
+  use dd3_setup_axes, only : set_axes
   use dd3_model_thickness_columns, only : set_columns, set_thickness
   use dd3_model_tolerances, only : new_tolerances, start_depth, wrong_side_depth
-  use dd3_model_tool_surface, only : read_tool_surface
+  use dd3_setup_tool_surface, only : read_tool_surface
   use dd3_sheet_curves, only : curve_t, read_curves
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   use dd3_sheet_trim, only : trim_sheet
@@ -363,7 +363,8 @@ contains
     model%output = case%output
     allocate (model%history(size(case%history)))
     do h = 1, size(case%history)
-      model%history(h)%history_spec_t = case%history(h)
+      model%history(h)%history_quantities_t = case%history(h)%history_quantities_t
+      model%history(h)%name = case%history(h)%name
       model%history(h)%node = mesh%nodes_of(case%history(h)%set)
     end do
   end subroutine set_output
@@ -435,4 +436,4 @@ contains
     end do
   end subroutine check_supports
 
-end module dd3_model_build
+end module dd3_setup_model

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Tool surfaces: the patches of a `.bez` file as a contact surface, and the checks of its geometry.
-module dd3_model_tool_surface
+module dd3_setup_tool_surface
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
@@ -117,4 +117,4 @@ contains
     end do
   end subroutine check_orientation
 
-end module dd3_model_tool_surface
+end module dd3_setup_tool_surface

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> What the input says about the tools: the joints of their surfaces as text, and warnings of edges
 !> that nearly coincide and of candidates on the wrong face of the sheet.
-module dd3_report_tool_report
+module dd3_setup_tool_report
   use dd3_base_kinds, only : wp, pi
   use dd3_base_error, only : location_t
   use dd3_base_message, only : message_list_t
@@ -181,4 +181,4 @@ contains
     end do
   end subroutine count_faces
 
-end module dd3_report_tool_report
+end module dd3_setup_tool_report

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Materials of the model from the case, and the sources of their laws.
-module dd3_model_materials
+module dd3_setup_materials
   use dd3_base_error, only : error_list_t
   use dd3_base_text, only : newline
   use dd3_input_case, only : case_t
@@ -64,4 +64,4 @@ contains
         trim(description%source)
   end function source_line
 
-end module dd3_model_materials
+end module dd3_setup_materials
