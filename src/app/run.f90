@@ -21,18 +21,18 @@ module dd3_app_run
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_linalg_solver, only : linear_solver_t
-  use dd3_setup_materials, only : law_sources
   use dd3_model_model, only : model_t
-  use dd3_setup_element, only : default_report
-  use dd3_setup_axes, only : normal_report
   use dd3_output_run_summary, only : phase_summary_t, run_summary_t
   use dd3_point_run, only : run_points
   use dd3_report_settings_report, only : contact_report, drawbead_report, limits_report
-  use dd3_setup_tool_report, only : tool_report
   use dd3_report_job_size, only : find_job_size, job_size_t, memory_warning, size_report
   use dd3_run_model, only : run_model, run_start_t, solver_options
   use dd3_run_file_head, only : command_t
   use dd3_run_file_writer, only : run_file_name, run_file_t
+  use dd3_setup_axes, only : normal_report
+  use dd3_setup_element, only : default_report
+  use dd3_setup_materials, only : law_sources
+  use dd3_setup_tool_report, only : tool_report
   implicit none
   private
   public :: command_of, run_checked

@@ -10,10 +10,10 @@ module dd3_app_warnings
   use dd3_input_case, only : case_t
   use dd3_model_element_length, only : element_length_t, excess_moment, &
       longest_known, measure_elements
-  use dd3_setup_held_loads, only : find_held_loads, held_load_t
   use dd3_model_model, only : model_t
-  use dd3_setup_axes, only : normal_warnings
   use dd3_report_settings_report, only : initial_bead_lengths
+  use dd3_setup_axes, only : normal_warnings
+  use dd3_setup_held_loads, only : find_held_loads, held_load_t
   use dd3_setup_tool_report, only : tool_warnings
   implicit none
   private

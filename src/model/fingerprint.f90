@@ -5,9 +5,9 @@
 module dd3_model_fingerprint
   use dd3_base_digest, only : digest_t
   use dd3_base_kinds, only : wp
-  use dd3_model_drawbead, only : drawbead_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_terms_drawbead, only : drawbead_t
   implicit none
   private
   public :: fingerprint_t, model_fingerprint, changed_parts, tool_digest
@@ -171,13 +171,13 @@ contains
       call digest%add(reshape(prescribed, [size(prescribed)]))
       call digest%add(reshape(phase%displacement, [size(phase%displacement)]))
       do s = 1, size(model%load_set)
-        if (phase%keeps_load(s)) cycle
-        call digest%add(phase%load_end(:, s))
+        if (phase%loads%keeps(s)) cycle
+        call digest%add(phase%loads%final(:, s))
         call digest%add(model%load_set(s)%node)
       end do
       do s = 1, size(model%pressure_set)
-        if (phase%keeps_pressure(s)) cycle
-        call digest%add([phase%pressure_end(s)])
+        if (phase%pressures%keeps(s)) cycle
+        call digest%add([phase%pressures%final(s)])
         call digest%add(reshape(model%pressure_set(s)%node, [size(model%pressure_set(s)%node)]))
       end do
       do s = 1, size(phase%motion)

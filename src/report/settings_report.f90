@@ -6,10 +6,10 @@ module dd3_report_settings_report
   use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_text, only : newline, to_text
   use dd3_contact_compliant, only : layer_gap
-  use dd3_model_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_model, only : model_t
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_phase, only : phase_t
+  use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_settings_limits, only : limit_spec_t
   implicit none
   private

@@ -4,11 +4,11 @@ module dd3_run_file_tool
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t
-  use dd3_model_drawbead, only : drawbead_t
   use dd3_model_model, only : model_t
+  use dd3_model_terms_drawbead, only : drawbead_t
   use dd3_report_settings_report, only : initial_bead_lengths
-  use dd3_setup_tool_report, only : near_gap
   use dd3_run_file_input, only : add_location
+  use dd3_setup_tool_report, only : near_gap
   use dd3_tools_joints, only : new_surface_report, surface_report_t
   implicit none
   private

@@ -6,9 +6,9 @@ module dd3_setup_drawbeads
   use dd3_base_text, only : to_text
   use dd3_input_case, only : case_t, drawbead_spec_t
   use dd3_input_point_file, only : read_points
-  use dd3_model_drawbead, only : drawbead_t, elastic_slip, new_drawbead
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_area, part_of_nine
+  use dd3_model_terms_drawbead, only : drawbead_t, elastic_slip, new_drawbead
   implicit none
   private
   public :: new_drawbeads

@@ -6,17 +6,16 @@ module dd3_setup_phases
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t
   use dd3_mesh_mesh, only : mesh_t
-  use dd3_settings_until, only : until_never
-  use dd3_setup_displacements, only : set_displacements
-  use dd3_model_load_sets, only : face_load_weights, load_set_t, pressure_set_t
-  use dd3_model_gravity, only : gravity_name, new_weight_set
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_tilt, only : new_tilt, tilt_t
   use dd3_model_turn, only : new_turn, turn_t
+  use dd3_settings_until, only : until_never
+  use dd3_setup_displacements, only : set_displacements
+  use dd3_setup_gaps, only : set_gaps
+  use dd3_setup_loads, only : check_density, new_load_sets, new_pressure_sets, set_loads
   use dd3_setup_withdrawal, only : withdrawal
-  use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
   public :: new_phases
@@ -60,7 +59,7 @@ contains
       model%phase(i)%unloaded = unloaded
       model%phase(i)%has_gravity = case%phase(i)%has_gravity
       call set_supports(model, unloaded, led, model%phase(i))
-      call set_drawbeads(model, unloaded, before%bead_active, model%phase(i))
+      call set_drawbeads(model, unloaded, before%beads%active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
@@ -79,21 +78,21 @@ contains
     n_load = size(model%load_set)
     phase%name = ""
     allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
-    allocate (phase%tool_load_end(3, n_tool), phase%load_end(3, n_load), source=0.0_wp)
+    allocate (phase%tool_load_end(3, n_tool), phase%loads%final(3, n_load), source=0.0_wp)
     allocate (phase%turn(n_tool), phase%tilt(n_tool))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), phase%goes_back(n_tool), &
         source=.false.)
     allocate (phase%active(n_tool), phase%keeps_tool_load(n_tool), source=.true.)
-    allocate (phase%keeps_load(n_load), source=.true.)
+    allocate (phase%loads%keeps(n_load), source=.true.)
     allocate (phase%displacement(3, n_node), source=0.0_wp)
     allocate (phase%motion(0))
-    allocate (phase%pressure_end(size(model%pressure_set)), source=0.0_wp)
-    allocate (phase%keeps_pressure(size(model%pressure_set)), source=.true.)
-    allocate (phase%bead_active(size(model%drawbead)), source=.false.)
-    phase%bead_new = phase%bead_active
-    phase%bead_leaves = phase%bead_active
+    allocate (phase%pressures%final(size(model%pressure_set)), source=0.0_wp)
+    allocate (phase%pressures%keeps(size(model%pressure_set)), source=.true.)
+    allocate (phase%beads%active(size(model%drawbead)), source=.false.)
+    phase%beads%new = phase%beads%active
+    phase%beads%leaves = phase%beads%active
     phase%prescribed = model%fixed
   end subroutine new_idle_phase
 
@@ -112,8 +111,8 @@ contains
     phase%gap_other = 0
     phase%displacement = 0.0_wp
     phase%keeps_tool_load = .true.
-    phase%keeps_load = .true.
-    phase%keeps_pressure = .true.
+    phase%loads%keeps = .true.
+    phase%pressures%keeps = .true.
     phase%motion = phase%motion(:0)
     if (allocated(phase%table)) deallocate (phase%table)
     if (allocated(phase%move_table)) deallocate (phase%move_table)
@@ -285,168 +284,18 @@ contains
 
     integer :: b
 
-    phase%bead_active = .not. unloaded
-    phase%bead_leaves = spread(unloaded .and. any(phase%withdrawn), 1, size(model%drawbead))
+    phase%beads%active = .not. unloaded
+    phase%beads%leaves = spread(unloaded .and. any(phase%withdrawn), 1, size(model%drawbead))
     do b = 1, size(model%drawbead)
       associate (tool => model%drawbead(b)%tool)
         if (tool == 0) cycle
-        phase%bead_active(b) = phase%acts(tool)
-        phase%bead_leaves(b) = phase%withdrawn(tool)
+        phase%beads%active(b) = phase%acts(tool)
+        phase%beads%leaves(b) = phase%withdrawn(tool)
       end associate
     end do
-    phase%bead_leaves = phase%bead_leaves .and. before
-    phase%bead_active = phase%bead_active .or. phase%bead_leaves
-    phase%bead_new = phase%bead_active .and. .not. before
+    phase%beads%leaves = phase%beads%leaves .and. before
+    phase%beads%active = phase%beads%active .or. phase%beads%leaves
+    phase%beads%new = phase%beads%active .and. .not. before
   end subroutine set_drawbeads
-
-  !> Set the loads of the sets that the phase names.
-  subroutine set_loads(spec, model, phase)
-    type(phase_spec_t), intent(in) :: spec
-    type(model_t), intent(in) :: model
-    type(phase_t), intent(inout) :: phase
-
-    integer :: i, s
-
-    do i = 1, size(spec%load)
-      do s = 1, size(model%load_set)
-        if (model%load_set(s)%name /= spec%load(i)%set) cycle
-        phase%load_end(:, s) = spec%load(i)%force
-        phase%keeps_load(s) = .false.
-      end do
-    end do
-    do s = 1, size(model%load_set)
-      if (.not. spec%has_gravity .or. model%load_set(s)%name /= gravity_name) cycle
-      phase%load_end(:, s) = model%load_set(s)%scale*spec%gravity
-      phase%keeps_load(s) = .false.
-    end do
-    do i = 1, size(spec%pressure)
-      do s = 1, size(model%pressure_set)
-        if (model%pressure_set(s)%name /= spec%pressure(i)%set) cycle
-        phase%pressure_end(s) = spec%pressure(i)%value
-        phase%keeps_pressure(s) = .false.
-      end do
-    end do
-  end subroutine set_loads
-
-  !> Report the first phase with gravity if a material of the sheet has no density.
-  subroutine check_density(model, case, errors)
-    type(model_t), intent(in) :: model
-    type(case_t), intent(in) :: case
-    !> Errors found are added.
-    type(error_list_t), intent(inout) :: errors
-
-    integer :: i, m
-
-    do i = 1, size(case%phase)
-      if (.not. case%phase(i)%has_gravity) cycle
-      do m = 1, size(case%material)
-        if (case%material(m)%density > 0.0_wp .or. .not. any(model%material_of == m)) cycle
-        call errors%push_input(case%phase(i)%source%at("gravity"), "material '"// &
-            case%material(m)%source%called()//"' has no density", &
-            "density = 7.85e-9 (t/mm3, steel) in *MATERIAL "//case%material(m)%source%called(), &
-            code="E121")
-      end do
-      return
-    end do
-  end subroutine check_density
-
-  !> List the sets that carry a pressure in some phase, with their faces on the boundary.
-  subroutine new_pressure_sets(model, case, mesh)
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    type(mesh_t), intent(in) :: mesh
-
-    type(pressure_set_t) :: set
-    logical :: member(mesh%n_node), inside(model%face%n)
-    integer :: i, j, s, f
-
-    allocate (model%pressure_set(0))
-    do i = 1, size(case%phase)
-      do j = 1, size(case%phase(i)%pressure)
-        associate (name => case%phase(i)%pressure(j)%set)
-          if (any([(model%pressure_set(s)%name == name, s=1, size(model%pressure_set))])) cycle
-          set%name = name
-          member = .false.
-          member(mesh%nodes_of(name)) = .true.
-          inside = [(all(member(model%face%node(:, f))), f=1, model%face%n)]
-          set%node = model%face%node(:, pack([(f, f=1, model%face%n)], inside))
-          model%pressure_set = [model%pressure_set, set]
-        end associate
-      end do
-    end do
-  end subroutine new_pressure_sets
-
-  !> List the sets that carry a load in some phase, in the order of the phases, then the weight.
-  subroutine new_load_sets(model, case, mesh)
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    type(mesh_t), intent(in) :: mesh
-
-    type(load_set_t) :: set
-    integer :: i, j, s
-
-    allocate (model%load_set(0))
-    do i = 1, size(case%phase)
-      do j = 1, size(case%phase(i)%load)
-        associate (name => case%phase(i)%load(j)%set)
-          if (any([(model%load_set(s)%name == name, s=1, size(model%load_set))])) cycle
-          set%name = name
-          set%node = mesh%nodes_of(name)
-          call face_load_weights(model%element, model%connectivity, model%x0, set%node, set%weight)
-          model%load_set = [model%load_set, set]
-        end associate
-      end do
-    end do
-    if (.not. any(case%phase%has_gravity)) return
-    call new_weight_set(set, model, case%material%density)
-    model%load_set = [model%load_set, set]
-  end subroutine new_load_sets
-
-  !> Set the displacements at which tools have the gaps of the input.
-  subroutine set_gaps(model, case, errors)
-    !> With its tools and phases.
-    type(model_t), intent(inout) :: model
-    type(case_t), intent(in) :: case
-    !> Errors found are added.
-    type(error_list_t), intent(inout) :: errors
-
-    real(wp) :: gap, start(3)
-    logical :: found
-    integer :: i, k
-
-    do i = 1, size(case%phase)
-      do k = 1, size(case%phase(i)%gap)
-        associate (spec => case%phase(i)%gap(k))
-          gap = spec%value
-          if (spec%in_thicknesses) gap = gap*model%thickness
-          associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
-            start = tool%position - other%position
-            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
-            call offset_at_gap(tool%surface, other%surface, start, gap, &
-                model%phase(i)%gap_offset(spec%tool), found)
-            if (.not. found) call errors%push_input(spec%at, "no displacement along z gives "// &
-                "this gap between '"//tool%name//"' and '"//other%name//"'", &
-                "two tools whose surfaces face each other along z", code="E144")
-          end associate
-        end associate
-      end do
-    end do
-  end subroutine set_gaps
-
-  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
-  pure function aside(model, phase, tool)
-    type(model_t), intent(in) :: model
-    !> Number of the phase.
-    integer, intent(in) :: phase
-    integer, intent(in) :: tool
-    real(wp) :: aside(2)
-
-    integer :: i
-
-    aside = 0.0_wp
-    do i = 1, phase
-      aside = aside + model%phase(i)%move(:2, tool)
-    end do
-  end function aside
 
 end module dd3_setup_phases

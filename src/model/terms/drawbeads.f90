@@ -8,10 +8,10 @@ module dd3_model_terms_drawbeads
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of
   use dd3_linalg_partition, only : holds_row
-  use dd3_model_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_configuration, only : configuration_t
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
+  use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_model_terms_term, only : term_t
   implicit none
   private
@@ -107,7 +107,7 @@ contains
 
     closed = 1.0_wp
     associate (phase => model%phase(state%phase), tool => model%drawbead(bead)%tool)
-      if (.not. phase%bead_leaves(bead)) return
+      if (.not. phase%beads%leaves(bead)) return
       if (tool > 0) then
         distance = phase%opened(tool, state%progress)
       else
@@ -128,7 +128,7 @@ contains
     presses_by_bead = .false.
     do b = 1, size(model%drawbead)
       if (model%drawbead(b)%tool /= tool .or. .not. abs(model%drawbead(b)%normal) > 0.0_wp) cycle
-      if (model%phase(state%phase)%bead_leaves(b)) presses_by_bead = presses_by_bead &
+      if (model%phase(state%phase)%beads%leaves(b)) presses_by_bead = presses_by_bead &
           .or. closed(model, state, b, elastic) > 0.0_wp
     end do
   end function presses_by_bead
@@ -145,8 +145,8 @@ contains
     type(drawbeads_t) :: remaining
 
     if (size(self%load) == 0 .or. number == 1) return
-    associate (active => model%phase(number)%bead_active, new => model%phase(number)%bead_new)
-      if (all(active .or. .not. model%phase(number - 1)%bead_active)) return
+    associate (active => model%phase(number)%beads%active, new => model%phase(number)%beads%new)
+      if (all(active .or. .not. model%phase(number - 1)%beads%active)) return
       select type (self)
       type is (drawbeads_t)
         remaining = self
@@ -169,7 +169,7 @@ contains
     type(configuration_t), intent(in) :: state
 
     self%normal = self%normal_fraction(state%progress)
-    where (model%phase(number)%bead_new) self%normal = 0.0_wp
+    where (model%phase(number)%beads%new) self%normal = 0.0_wp
   end subroutine begin_phase
 
   !> Return the fraction of the normal force of each bead that acts.
@@ -192,7 +192,7 @@ contains
 
     if (size(self%load) == 0) return
     call self%keep()
-    call find_bead_points(model, model%phase(committed%phase)%bead_active, committed%x, self%point)
+    call find_bead_points(model, model%phase(committed%phase)%beads%active, committed%x, self%point)
     do p = 1, size(self%point)
       associate (point => self%point(p), i => self%point(p)%interval, &
           share => grip(model, committed, self%point(p)%bead))
@@ -245,7 +245,7 @@ contains
     do b = 1, size(self%length)
       self%length(b) = 0.0_wp
       if (grip(model, trial, b) > 0.0_wp) self%length(b) = covered_length(self%point, b)
-      if (.not. model%phase(trial%phase)%bead_active(b)) cycle
+      if (.not. model%phase(trial%phase)%beads%active(b)) cycle
       associate (bead => model%drawbead(b))
         do p = bead%offset + 1, bead%offset + size(bead%line, 3)
           if (weight(p) <= 0.0_wp) self%path(p) = self%path_before(p)

@@ -11,10 +11,10 @@ module dd3_model_terms_loads
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
   use dd3_model_configuration, only : configuration_t
-  use dd3_model_gravity, only : gravity_name, is_free
-  use dd3_model_load_sets, only : load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
+  use dd3_model_terms_gravity, only : gravity_name, is_free
+  use dd3_model_terms_load_sets, only : load_set_t
   use dd3_model_terms_term, only : term_box_t, term_t
   implicit none
   private
@@ -135,8 +135,8 @@ contains
     integer :: i, s
 
     self%start = self%now
-    self%final = model%phase(number)%load_end
-    where (spread(model%phase(number)%keeps_load, 1, 3)) self%final = self%start
+    self%final = model%phase(number)%loads%final
+    where (spread(model%phase(number)%loads%keeps, 1, 3)) self%final = self%start
     do s = 1, size(model%load_set)
       associate (set => model%load_set(s), from => self%start(:, s), to => self%final(:, s))
         if (set%name /= gravity_name .or. norm2(from) > 0.0_wp .or. .not. norm2(to) > 0.0_wp) cycle

@@ -9,9 +9,9 @@ module dd3_model_terms_pressures
   use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : cross
   use dd3_model_configuration, only : configuration_t
-  use dd3_model_load_sets, only : pressure_set_t
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
+  use dd3_model_terms_load_sets, only : pressure_set_t
   use dd3_model_terms_term, only : term_t
   implicit none
   private
@@ -51,8 +51,8 @@ contains
     type(configuration_t), intent(in) :: state
 
     self%start = self%now
-    self%final = model%phase(number)%pressure_end
-    where (model%phase(number)%keeps_pressure) self%final = self%start
+    self%final = model%phase(number)%pressures%final
+    where (model%phase(number)%pressures%keeps) self%final = self%start
   end subroutine begin_phase
 
   !> Add the change of the pressures.

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Weight of the sheet: a load on all nodes by their masses, which are those of the initial
 !> elements, consistent with the shape functions.
-module dd3_model_gravity
+module dd3_model_terms_gravity
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : determinant
-  use dd3_model_load_sets, only : load_set_t
   use dd3_model_model, only : model_t
   use dd3_model_rigid_motion, only : new_supported_part, parts_of_nodes, rigid_motion_t
+  use dd3_model_terms_load_sets, only : load_set_t
   implicit none
   private
   public :: gravity_name, new_weight_set, is_free
@@ -64,4 +64,4 @@ contains
     end do
   end function is_free
 
-end module dd3_model_gravity
+end module dd3_model_terms_gravity

@@ -3,12 +3,12 @@
 !> lie on its faces, seen along z. A bead acts with half its force on the lower faces and with half
 !> on the upper ones, so that it does not bend the sheet. Faces with 9 nodes count as four
 !> quadrilaterals.
-module dd3_model_bead_points
+module dd3_model_terms_bead_points
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
-  use dd3_model_drawbead, only : drawbead_t
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_normal
+  use dd3_model_terms_drawbead, only : drawbead_t
   implicit none
   private
   public :: bead_point_t, find_bead_points, covered_length
@@ -193,4 +193,4 @@ contains
     shape = 0.25_wp*(1.0_wp + corner(1, :)*xi(1))*(1.0_wp + corner(2, :)*xi(2))
   end function shape_at
 
-end module dd3_model_bead_points
+end module dd3_model_terms_bead_points

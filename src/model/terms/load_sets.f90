@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Sets of nodes that carry a load in some phase, and sets of faces that carry a pressure.
-module dd3_model_load_sets
+module dd3_model_terms_load_sets
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
   use dd3_model_sheet_faces, only : face_area
   implicit none
   private
-  public :: load_set_t, pressure_set_t, face_load_weights
+  public :: load_set_t, pressure_set_t, phase_loads_t, phase_pressures_t, face_load_weights
 
   !> Node set that carries a load in some phase.
   type :: load_set_t
@@ -24,6 +24,22 @@ module dd3_model_load_sets
     !> Nodes of the faces in the order of the element's table, `(n_face_node, n)`.
     integer, allocatable :: node(:, :)
   end type pressure_set_t
+
+  !> Loads in a phase.
+  type :: phase_loads_t
+    !> Total forces on the sets at the end of the phase, `(3, n_load)`, N; without meaning for those
+    !> whose load the phase leaves unchanged, `(n_load)`.
+    real(wp), allocatable :: final(:, :)
+    logical, allocatable :: keeps(:)
+  end type phase_loads_t
+
+  !> Pressures in a phase.
+  type :: phase_pressures_t
+    !> Pressures at the end of the phase, `(n_pressure)`, MPa; without meaning for those that the
+    !> phase leaves unchanged, `(n_pressure)`.
+    real(wp), allocatable :: final(:)
+    logical, allocatable :: keeps(:)
+  end type phase_pressures_t
 
 contains
 
@@ -64,4 +80,4 @@ contains
     if (all(on_face(node))) weight = force(node)/sum(force(node))
   end subroutine face_load_weights
 
-end module dd3_model_load_sets
+end module dd3_model_terms_load_sets

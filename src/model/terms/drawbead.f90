@@ -3,11 +3,11 @@
 !> the bead. The restraining force per length follows a regularised friction law: it grows with an
 !> elastic slip up to a limit, which depends on the path that the sheet has slid so far.
 !> Line beads with a force per length: LS-DYNA Keyword User's Manual, *CONTACT_DRAWBEAD.
-module dd3_model_drawbead
+module dd3_model_terms_drawbead
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: drawbead_t, elastic_slip, new_drawbead
+  public :: drawbead_t, elastic_slip, new_drawbead, phase_beads_t
 
   !> Slip at which a bead reaches its largest force, in thicknesses of the sheet.
   real(wp), parameter :: elastic_slip = 0.01_wp
@@ -38,6 +38,12 @@ module dd3_model_drawbead
     procedure :: restrain
     procedure :: sliding_stiffness
   end type drawbead_t
+
+  !> Draw-beads in a phase: those that act, those that did not in the phase before, and those that
+  !> leave with the withdrawn tools, `(n_bead)`.
+  type :: phase_beads_t
+    logical, allocatable :: active(:), new(:), leaves(:)
+  end type phase_beads_t
 
 contains
 
@@ -157,4 +163,4 @@ contains
     end do
   end subroutine limit_at
 
-end module dd3_model_drawbead
+end module dd3_model_terms_drawbead

@@ -1,0 +1,62 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Gaps between tools at the end of a phase.
+module dd3_setup_gaps
+  use dd3_base_error, only : error_list_t
+  use dd3_base_kinds, only : wp
+  use dd3_input_case, only : case_t
+  use dd3_model_model, only : model_t
+  use dd3_tools_separation, only : offset_at_gap
+  implicit none
+  private
+  public :: set_gaps
+
+contains
+
+  !> Set the displacements at which tools have the gaps of the input.
+  subroutine set_gaps(model, case, errors)
+    !> With its tools and phases.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: gap, start(3)
+    logical :: found
+    integer :: i, k
+
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%gap)
+        associate (spec => case%phase(i)%gap(k))
+          gap = spec%value
+          if (spec%in_thicknesses) gap = gap*model%thickness
+          associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
+            start = tool%position - other%position
+            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
+            call offset_at_gap(tool%surface, other%surface, start, gap, &
+                model%phase(i)%gap_offset(spec%tool), found)
+            if (.not. found) call errors%push_input(spec%at, "no displacement along z gives "// &
+                "this gap between '"//tool%name//"' and '"//other%name//"'", &
+                "two tools whose surfaces face each other along z", code="E144")
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine set_gaps
+
+  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
+  pure function aside(model, phase, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: phase
+    integer, intent(in) :: tool
+    real(wp) :: aside(2)
+
+    integer :: i
+
+    aside = 0.0_wp
+    do i = 1, phase
+      aside = aside + model%phase(i)%move(:2, tool)
+    end do
+  end function aside
+
+end module dd3_setup_gaps

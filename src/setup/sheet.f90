@@ -1,0 +1,80 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> The sheet at the start of a job: that of the blank, of the mesh file or of another run, and its
+!> cuts.
+module dd3_setup_sheet
+  use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : same_name
+  use dd3_input_case, only : case_t
+  use dd3_mesh_build, only : new_mesh
+  use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_model, only : model_t
+  use dd3_setup_element, only : set_element_of_mesh
+  use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
+  use dd3_sheet_trim, only : trim_sheet
+  implicit none
+  private
+  public :: new_sheet
+
+contains
+
+  !> Make the sheet, that of the blank, of the mesh file or of another run, and cut it.
+  subroutine new_sheet(sheet, model, case, errors)
+    !> The sheet of another run on entry, if the case starts from one.
+    type(sheet_t), intent(inout) :: sheet
+    !> With its materials and, but for the default of a mesh from a file, its element.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    type(mesh_t) :: mesh
+    integer :: i
+
+    if (size(case%start) > 0) then
+      call match_materials(sheet, model, case, errors)
+    else
+      call new_mesh(mesh, case, model%element%node, errors)
+      if (errors%count == 0) call set_element_of_mesh(model, case, mesh, errors)
+      if (errors%count == 0) call new_flat_sheet(sheet, mesh)
+    end if
+    do i = 1, size(case%trim)
+      if (errors%count == 0) call trim_sheet(sheet, case%trim(i), model%element, errors)
+    end do
+  end subroutine new_sheet
+
+  !> Find the materials of the sheet of another run among those of the case, by their names; they
+  !> must have the same laws.
+  subroutine match_materials(sheet, model, case, errors)
+    !> Its elements get the positions in `case%material`.
+    type(sheet_t), intent(inout) :: sheet
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: position(size(sheet%material)), i, m
+
+    ! A sheet of another program has no check sums.
+    position = 0
+    do i = 1, size(position)
+      if (.not. any(sheet%mesh%material == i)) cycle
+      associate (name => sheet%material(i)%s)
+        do m = size(model%material), 1, -1
+          if (same_name(trim(model%material_name(m)), name)) exit
+        end do
+        position(i) = m
+        if (m == 0) then
+          call errors%push_input(case%start(1)%source%at("from"), "the sheet is of material '"// &
+              name//"', which this input does not define", "*MATERIAL "//name// &
+              " as in the input of that run", code="E152")
+        else if (all(sheet%digest(i) /= [0, model%material_digest(m)])) then
+          call errors%push_input(case%material(m)%source%opened, "material '"//name// &
+              "' differs from that of the sheet, of '"//case%start(1)%from//"'", &
+              "*MATERIAL "//name//" as in the input of that run", code="E152")
+        end if
+      end associate
+    end do
+    if (errors%count == 0) sheet%mesh%material = position(sheet%mesh%material)
+  end subroutine match_materials
+
+end module dd3_setup_sheet
