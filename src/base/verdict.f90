@@ -76,6 +76,9 @@ module dd3_base_verdict
     real(wp) :: norm = huge(1.0_wp)
     !> Location of the largest error: node, element, integration point, tool; 0 if not applicable.
     integer :: node = 0, element = 0, point = 0, tool = 0
+    !> Block row of the matrix of a linear solver; who calls the solver turns it into a node or a
+    !> tool and sets it back to 0.
+    integer :: row = 0
     !> Data of the cause.
     real(wp) :: value(4) = 0.0_wp
     !> Number of contact candidates whose status changed in the last iterations.

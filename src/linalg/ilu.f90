@@ -173,7 +173,7 @@ contains
         if (.not. good) then
           verdict%outcome = verdict_retry
           verdict%cause = cause_solver
-          verdict%node = i
+          verdict%row = i
           verdict%detail = "the factorisation grows without bound"
           return
         end if

@@ -179,7 +179,7 @@ contains
   subroutine multifrontal_build(self, matrix, verdict)
     class(multifrontal_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry if a block of pivots is not finite; `node` is the first of its block rows.
+    !> Retry if a block of pivots is not finite; `row` is the first of them.
     type(verdict_t), intent(out) :: verdict
 
     integer :: b, threads
@@ -196,7 +196,7 @@ contains
     if (all(self%work%failed == 0)) return
     verdict%outcome = verdict_retry
     verdict%cause = cause_solver
-    verdict%node = self%tree%order(self%tree%first(maxval(self%work%failed)))
+    verdict%row = self%tree%order(self%tree%first(maxval(self%work%failed)))
     verdict%detail = "the factorisation grows without bound"
   end subroutine multifrontal_build
 

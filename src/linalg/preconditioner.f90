@@ -44,7 +44,7 @@ module dd3_linalg_preconditioner
       class(preconditioner_t), intent(inout) :: self
       !> Row-scaled matrix.
       type(block_matrix_t), intent(in) :: matrix
-      !> Retry if there is none; `node` is a block row.
+      !> Retry if there is none; `row` is set if a block row is to blame.
       type(verdict_t), intent(out) :: verdict
     end subroutine build_interface
 

@@ -104,7 +104,7 @@ contains
   subroutine scaled_system_fill(self, matrix, verdict)
     class(scaled_system_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
-    !> Retry if a row is zero or not finite; `node` is its block row in the copy.
+    !> Retry if a row is zero or not finite; `row` is that in the copy.
     type(verdict_t), intent(out) :: verdict
 
     integer :: bad_row
@@ -117,7 +117,7 @@ contains
     verdict%outcome = verdict_converged
     if (bad_row == 0) return
     verdict%outcome = verdict_retry
-    verdict%node = bad_row
+    verdict%row = bad_row
     verdict%cause = cause_singular
     verdict%detail = "row of zeros or value that is not finite"
   end subroutine scaled_system_fill

@@ -107,7 +107,7 @@ module dd3_linalg_solver
       class(linear_solver_t), intent(inout) :: self
       !> Scaled matrix of the pattern set up.
       type(block_matrix_t), intent(in) :: matrix
-      !> Retry if the matrix is singular; `node` is a block row, if one is to blame.
+      !> Retry if the matrix is singular; `row` is set if a block row is to blame.
       type(verdict_t), intent(out) :: verdict
     end subroutine factor_interface
 
@@ -154,7 +154,7 @@ contains
     class(linear_solver_t), intent(inout) :: self
     !> Loses its values if the options say so and the solver has a copy.
     type(block_matrix_t), intent(inout), target :: matrix
-    !> Retry if the matrix is singular or not finite; `node` is a block row, if one is to blame.
+    !> Retry if the matrix is singular or not finite; `row` is set if a block row is to blame.
     type(verdict_t), intent(out) :: verdict
 
     self%method = ""
@@ -164,7 +164,7 @@ contains
     if (verdict%outcome == verdict_converged) call self%factor_scaled(self%system%matrix, verdict)
     self%original => null()
     associate (order => self%system%order, row => self%perturbed%row)
-      if (verdict%node > 0) verdict%node = order(verdict%node)
+      if (verdict%row > 0) verdict%row = order(verdict%row)
       if (row > 0) row = order(row)
     end associate
   end subroutine factor

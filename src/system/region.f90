@@ -248,6 +248,8 @@ contains
     call sum_over_ranks(size(self%matrix%value), self%matrix%value)
     call hold(self, rhs)
     call self%solver%factor(self%matrix, verdict)
+    if (verdict%row > 0) verdict%node = self%node(verdict%row)
+    verdict%row = 0
     call share_verdict(verdict)
     if (verdict%outcome /= verdict_converged) return
     call self%solver%solve(rhs, solution, report)

@@ -58,16 +58,27 @@ contains
       verdict%cause = report%cause
       verdict%detail = report%reason
       verdict%norm = report%residual
-      if (report%cause == cause_singular) verdict%node = system%solver%perturbed%row
+      if (report%cause == cause_singular) verdict%row = system%solver%perturbed%row
     else if (len_trim(info%solver) == 0) then
       info%solver = system%solver%method
     end if
-    if (verdict%node <= model%n_node) return
-    verdict%tool = findloc(model%tool_row, verdict%node, dim=1)
-    verdict%node = 0
-    ! Nothing resists a tool whose block row is empty or singular.
-    if (verdict%cause == cause_singular) verdict%cause = cause_lost_tool
+    call name_row(model, verdict)
   end subroutine solve_reduced
+
+  !> Turn the block row of a verdict into its node or tool. A tool whose row is empty or singular is
+  !> lost: nothing resists it.
+  pure subroutine name_row(model, verdict)
+    type(model_t), intent(in) :: model
+    type(verdict_t), intent(inout) :: verdict
+
+    if (verdict%row <= model%n_node) then
+      verdict%node = verdict%row
+    else
+      verdict%tool = findloc(model%tool_row, verdict%row, dim=1)
+      if (verdict%cause == cause_singular) verdict%cause = cause_lost_tool
+    end if
+    verdict%row = 0
+  end subroutine name_row
 
   !> Add the perturbed pivots of a factorisation.
   pure subroutine add_perturbed(pivots, sum)
