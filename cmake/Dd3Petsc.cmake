@@ -42,7 +42,8 @@ dd3_check_petsc_type(PetscInt 4)
 dd3_check_petsc_type(PetscScalar 8)
 
 set(petsc_base src/parallel/ranks.f90)
-set(petsc_linalg src/external/petsc.f90 src/parallel/petsc_solver.f90)
+set(petsc_linalg src/external/petsc.f90 src/parallel/petsc_options.f90
+  src/parallel/petsc_solver.f90)
 set(petsc_packages MPI::MPI_Fortran ${PETSC_LINK_LIBRARIES})
 list(APPEND libraries MPI "${MPI_Fortran_VERSION}" PETSc "${PETSC_VERSION}")
 message(STATUS "MPI ${MPI_Fortran_VERSION}")

@@ -24,7 +24,7 @@ module dd3_app_job
   use dd3_model_model, only : model_t
   use dd3_model_state, only : new_state
   use dd3_output_fields, only : field_record_t
-  use dd3_output_restart, only : read_restart
+  use dd3_output_restart_read, only : read_restart
   use dd3_output_sheet_file, only : read_sheet
   use dd3_output_run_summary, only : run_summary_t
   use dd3_report_settings_report, only : contact_report, drawbead_report, limits_report

@@ -7,7 +7,7 @@ module dd3_app_overwrite
   use dd3_base_text, only : text_t, same_name
   use dd3_input_case, only : case_t, law_spec_t
   use dd3_input_text_file, only : resolve_path
-  use dd3_output_restart, only : restart_name
+  use dd3_output_restart_format, only : restart_name
   use dd3_run_file_writer, only : run_file_name
   implicit none
   private

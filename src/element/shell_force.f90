@@ -7,7 +7,7 @@
 module dd3_element_shell_force
   use dd3_base_kinds, only : inverse_sqrt2, wp
   use dd3_element_shell_modes, only : mode_forces, tilt_operators
-  use dd3_element_shell_strain, only : strain_operators
+  use dd3_element_shell_operators, only : strain_operators
   use dd3_element_shell_work, only : n_column, n_natural, natural_strain, &
       powers_of, shell_work_t
   use dd3_element_table, only : element_t

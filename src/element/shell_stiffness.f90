@@ -14,7 +14,7 @@ module dd3_element_shell_stiffness
   use dd3_element_moduli, only : material_moduli
   use dd3_element_shell_force, only : point_operator, shell_force
   use dd3_element_shell_modes, only : second_derivatives
-  use dd3_element_shell_strain, only : initial_stress
+  use dd3_element_shell_operators, only : initial_stress
   use dd3_element_shell_work, only : mode_of, mode_shape, n_column, n_general, n_mode, n_natural, &
       n_parameter, natural_strain, powers_of, shell_work_t
   use dd3_element_table, only : element_t

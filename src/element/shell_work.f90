@@ -16,7 +16,7 @@ module dd3_element_shell_work
   public :: columns_t, shell_work_t, new_shell_work
   public :: n_column, n_corner, n_natural, n_general, n_mode, n_parameter, corner, plane_point
   public :: membrane_strain, bending_strain, thickness_strain, shear_of, shear_slope_of, mode_of, &
-      mode_shape, natural_strain, powers_of
+      edge_shape, mode_shape, natural_strain, powers_of
 
   !> Number of columns of points, of corners in the plane, and of generalised strains without and
   !> with the enhanced one.
@@ -40,6 +40,8 @@ module dd3_element_shell_work
   !> 1 at an edge and 0 at the one across for directors and mid-surface.
   integer, parameter :: mode_of(n_parameter) = [1, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
   integer, private :: i
+  !> Linear function at the columns that is 1 at an edge and 0 at the one across; edges eta = -1,
+  !> eta = 1, xi = -1, xi = 1.
   real(wp), parameter :: edge_shape(4, n_column) = reshape([( &
       0.5_wp - 0.5_wp*plane_point(2, i), 0.5_wp + 0.5_wp*plane_point(2, i), &
       0.5_wp - 0.5_wp*plane_point(1, i), 0.5_wp + 0.5_wp*plane_point(1, i), i=1, n_column)], &

@@ -3,43 +3,29 @@
 !> another run can take the sheet over (dd3_output_sheet_file). The file is written aside, synced
 !> and renamed, so that a run that is killed leaves the last whole one.
 module dd3_output_restart
-  use dd3_base_error, only : error_t, fatal_error, share_error
+  use dd3_base_error, only : error_t, share_error
   use dd3_base_file, only : file_t
   use dd3_base_file_system, only : part_of, replace_file, sync_file
   use dd3_base_kinds, only : wp, i8
   use dd3_base_ranks, only : this_rank
-  use dd3_base_text, only : join, newline, to_text
+  use dd3_base_text, only : join, newline
   use dd3_base_version, only : program_version
-  use dd3_model_fingerprint, only : changed_parts, fingerprint_t, model_fingerprint
+  use dd3_model_fingerprint, only : fingerprint_t, model_fingerprint
   use dd3_model_model, only : model_t
   use dd3_model_part, only : part_t
-  use dd3_model_state, only : new_state, state_t
+  use dd3_model_state, only : state_t
   use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_state_walk, only : visit_state
   use dd3_output_hdf5, only : integer_attribute, kind_int, kind_real, make_group, series_t, &
       start_hdf5, text_attribute
-  use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integer_attribute, &
-      read_integers, read_reals, read_text_attribute
+  use dd3_output_restart_format, only : format_version, mark, n_sizes, restart_name
   use hdf5, only : hid_t, h5aclose_f, h5fclose_f, h5fcreate_f, h5gclose_f, H5F_ACC_TRUNC_F
   implicit none
   private
-  public :: write_restart, read_restart, restart_name, check_origin
-  public :: at_node, at_element, at_element_node, at_point, at_internal, at_thickness_point, &
-      at_ended, n_sizes
+  public :: write_restart
 
-  !> Name of the file in the folder of the results.
-  character(len=*), parameter :: restart_name = "restart.h5"
-  !> Mark of the file, and the version of its format. Version 1 holds the components of `state_t` by
-  !> name; a change of their meaning makes a new version.
-  character(len=*), parameter :: mark = "dd3imp restart"
-  integer, parameter :: format_version = 3
   !> Room on the disk for what is not the values, bytes.
   integer(i8), parameter :: overhead = 300000_i8
-
-  !> Entries of `mesh/sizes`: numbers of nodes, of elements, of nodes and points of an element, of
-  !> internal variables, of points through the thickness (0: fixed); 1 if the run has ended.
-  integer, parameter :: at_node = 1, at_element = 2, at_element_node = 3, at_point = 4, &
-      at_internal = 5, at_thickness_point = 6, at_ended = 7, n_sizes = 7
 
   !> Visitor that writes the components into a group, a dataset each.
   type, extends(state_visitor_t) :: writer_t
@@ -55,19 +41,6 @@ module dd3_output_restart
     procedure :: reals_of_items => write_reals_of_items
     procedure :: integers_of_items => write_integers_of_items
   end type writer_t
-
-  !> Visitor that reads the components from a group.
-  type, extends(state_visitor_t) :: reader_t
-    integer(hid_t) :: file = -1
-    !> What is wrong with the first unreadable component; empty if none is.
-    character(len=:), allocatable :: problem
-    type(part_t) :: part
-  contains
-    procedure :: reals => reader_reals
-    procedure :: integers => reader_integers
-    procedure :: reals_of_items => reader_reals_of_items
-    procedure :: integers_of_items => reader_integers_of_items
-  end type reader_t
 
 contains
 
@@ -311,227 +284,5 @@ contains
       call self%integers(name, size(number), number)
     end if
   end subroutine write_integers_of_items
-
-  !> Read a restart file for a model.
-  subroutine read_restart(path, model, state, error)
-    character(len=*), intent(in) :: path
-    type(model_t), intent(in) :: model
-    type(state_t), intent(out) :: state
-    !> Set if the file cannot be read or is that of another model, with what differs.
-    type(error_t), allocatable, intent(out) :: error
-
-    integer(hid_t) :: file
-    logical :: there, ok
-
-    inquire (file=path, exist=there)
-    call open_hdf5(path, file, ok)
-    if (.not. there) then
-      call fatal_error(error, "cannot read the restart file '"//path//"': no such file", "E204")
-    else if (ok) then
-      call check_origin(path, file, error)
-      if (.not. allocated(error)) call check_model(path, file, model, error)
-      if (.not. allocated(error)) call read_state(path, file, model, state, error)
-      call close_hdf5(file)
-    else
-      call fatal_error(error, "cannot read the restart file '"//path// &
-          "': truncated or not an HDF5 file", "E204")
-    end if
-  end subroutine read_restart
-
-  !> Check that a file is a restart file of this version.
-  subroutine check_origin(path, file, error)
-    character(len=*), intent(in) :: path
-    integer(hid_t), intent(in) :: file
-    type(error_t), allocatable, intent(out) :: error
-
-    character(len=:), allocatable :: program_mark, version
-    integer :: found
-
-    call read_text_attribute(file, "program", program_mark)
-    call read_text_attribute(file, "version", version)
-    found = read_integer_attribute(file, "format")
-    if (program_mark /= mark) then
-      call fatal_error(error, "'"//path//"' is not a restart file of dd3imp", "E204")
-    else if (found /= format_version) then
-      call fatal_error(error, "'"//path//"' has restart format "//to_text(found)// &
-          ", written by dd3imp "//version//"; this version reads format "// &
-          to_text(format_version), "E204")
-    else if (version /= program_version) then
-      call fatal_error(error, "'"//path//"' was written by dd3imp "//version//"; this is "// &
-          program_version//", and a restart file belongs to one version: continue with that "// &
-          "version, or start the run again", "E204")
-    end if
-  end subroutine check_origin
-
-  !> Check that a restart file belongs to a model, up to the phase that it has reached.
-  subroutine check_model(path, file, model, error)
-    character(len=*), intent(in) :: path
-    integer(hid_t), intent(in) :: file
-    type(model_t), intent(in) :: model
-    type(error_t), allocatable, intent(out) :: error
-
-    type(fingerprint_t), allocatable :: before(:)
-    integer, allocatable :: code(:, :)
-    character(len=:), allocatable :: names
-    integer :: phase(1), n_part, n_code, i, k
-    logical :: ok
-
-    call dataset_size(file, "model/digest", n_part)
-    call dataset_size(file, "model/part", n_code)
-    allocate (before(max(0, n_part)))
-    ok = n_part > 0 .and. n_code == len(before%part)*n_part
-    if (ok) then
-      allocate (code(len(before%part), size(before)))
-      call read_integers(file, "state/phase", phase, ok)
-      call read_integers(file, "model/digest", before%digest, ok)
-      call read_codes(file, size(code), code, ok)
-    end if
-    if (.not. ok) then
-      call fatal_error(error, "'"//path//"' has no fingerprint of its model", "E204")
-      return
-    end if
-    do i = 1, size(before)
-      do k = 1, len(before%part)
-        before(i)%part(k:k) = achar(code(k, i))
-      end do
-    end do
-    names = changed_parts(before, model_fingerprint(model, phase(1)))
-    if (len(names) > 0) call fatal_error(error, "'"//path//"' belongs to another model; "// &
-      "different: "//names, "E204")
-  end subroutine check_model
-
-  !> Read the names of a fingerprint as character codes.
-  subroutine read_codes(file, n, code, ok)
-    integer(hid_t), intent(in) :: file
-    integer, intent(in) :: n
-    integer, intent(out) :: code(n)
-    logical, intent(inout) :: ok
-
-    call read_integers(file, "model/part", code, ok)
-  end subroutine read_codes
-
-  !> Read all components of the state.
-  subroutine read_state(path, file, model, state, error)
-    character(len=*), intent(in) :: path
-    integer(hid_t), intent(in) :: file
-    type(model_t), intent(in) :: model
-    type(state_t), intent(out) :: state
-    type(error_t), allocatable, intent(out) :: error
-
-    type(reader_t) :: reader
-
-    call new_state(state, model)
-    reader%file = file
-    reader%part = model%part
-    reader%problem = ""
-    call visit_state(state, reader)
-    if (len(reader%problem) > 0) call fatal_error(error, "'"//path//"': "//reader%problem, "E204")
-  end subroutine read_state
-
-  !> Read a component of real numbers. Sets with loads that later phases have added or dropped come
-  !> last and have no load yet.
-  subroutine reader_reals(self, name, n, values)
-    class(reader_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: values(n)
-
-    real(wp), allocatable :: found(:)
-    integer :: there
-    logical :: ok
-
-    call dataset_size(self%file, "state/"//name, there)
-    if (any(name == [character(len=18) :: "load", "start_load", "final_load", "pressure", &
-        "start_pressure", "final_pressure"])) then
-      ok = there >= 0
-    else
-      ok = there == n
-    end if
-    if (.not. ok) then
-      call note_size(self, name, there, n)
-      return
-    end if
-    allocate (found(there))
-    call read_reals(self%file, "state/"//name, found, ok)
-    if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
-    there = min(there, n)
-    values(:there) = found(:there)
-  end subroutine reader_reals
-
-  !> Read a component of integers.
-  subroutine reader_integers(self, name, n, values)
-    class(reader_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    integer, intent(inout) :: values(n)
-
-    integer :: there
-    logical :: ok
-
-    call dataset_size(self%file, "state/"//name, there)
-    ok = there == n
-    if (.not. ok) then
-      call note_size(self, name, there, n)
-      return
-    end if
-    call read_integers(self%file, "state/"//name, values, ok)
-    if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
-  end subroutine reader_integers
-
-  !> Read real numbers of the elements or contact points of this rank.
-  subroutine reader_reals_of_items(self, item, name, n, n_item, values)
-    class(reader_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    real(wp), intent(inout) :: values(n, n_item)
-
-    real(wp), allocatable :: all(:, :)
-
-    allocate (all(n, size(self%part%ranks_of(item))), source=0.0_wp)
-    call self%reals(name, size(all), all)
-    values = all(:, self%part%own(item))
-  end subroutine reader_reals_of_items
-
-  !> Read integers of the elements or contact points of this rank.
-  subroutine reader_integers_of_items(self, item, name, n, n_item, values)
-    class(reader_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    integer, intent(inout) :: values(n, n_item)
-
-    integer, allocatable :: all(:, :)
-
-    allocate (all(n, size(self%part%ranks_of(item))), source=0)
-    call self%integers(name, size(all), all)
-    values = all(:, self%part%own(item))
-  end subroutine reader_integers_of_items
-
-  !> Record a component of the wrong size.
-  subroutine note_size(self, name, found, expected)
-    type(reader_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: found, expected
-
-    if (found < 0) then
-      call note_problem(self, "component '"//name//"' is missing")
-    else
-      call note_problem(self, "component '"//name//"': expected "//to_text(expected)// &
-          " values, got "//to_text(found))
-    end if
-  end subroutine note_size
-
-  !> Record the first problem.
-  subroutine note_problem(self, text)
-    type(reader_t), intent(inout) :: self
-    character(len=*), intent(in) :: text
-
-    if (self%problem == "") self%problem = text
-  end subroutine note_problem
 
 end module dd3_output_restart

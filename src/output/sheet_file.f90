@@ -8,8 +8,8 @@ module dd3_output_sheet_file
   use dd3_output_hdf5, only : start_hdf5
   use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integers, read_reals, &
       read_text_attribute
-  use dd3_output_restart, only : check_origin, restart_name, at_node, at_element, at_element_node, &
-      at_point, at_internal, at_thickness_point, at_ended, n_sizes
+  use dd3_output_restart_format, only : at_element, at_element_node, at_ended, at_internal, &
+      at_node, at_point, at_thickness_point, check_origin, n_sizes, restart_name
   use dd3_sheet_sheet, only : sheet_t
   use hdf5, only : hid_t, h5gclose_f, h5gopen_f
   implicit none
@@ -79,7 +79,7 @@ contains
   subroutine read_mesh(sheet, file, sizes, ok)
     type(sheet_t), intent(inout) :: sheet
     integer(hid_t), intent(in) :: file
-    !> See dd3_output_restart.
+    !> See dd3_output_restart_format.
     integer, intent(in) :: sizes(n_sizes)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
@@ -130,7 +130,7 @@ contains
   subroutine read_state(sheet, file, sizes, ok)
     type(sheet_t), intent(inout) :: sheet
     integer(hid_t), intent(in) :: file
-    !> See dd3_output_restart.
+    !> See dd3_output_restart_format.
     integer, intent(in) :: sizes(n_sizes)
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok

@@ -17,17 +17,15 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
       mat_null_space_create_rigid_body, mat_null_space_destroy, mat_residual, mat_set_block_size, &
       mat_set_near_null_space, mat_set_preallocation, mat_set_sizes, mat_set_type, &
       mat_set_values_blocked, norm_2, pc_factor_get_matrix, petsc_comm_world, replace_option, &
-      set_option, vec_assemble, vec_axpy, vec_destroy, vec_duplicate, vec_get_values, &
-      vec_norm, vec_set_values
+      vec_assemble, vec_axpy, vec_destroy, vec_duplicate, vec_get_values, vec_norm, vec_set_values
   use dd3_linalg_dense, only : dgemm
   use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_linalg_mumps, only : cntl_null_pivot, first_workspace, icntl_null_pivots, &
-      icntl_out_of_core, icntl_permutation, icntl_scaling, icntl_workspace, infog_argument, &
-      infog_null_pivots, &
-      infog_status, more_workspace, mumps_verdict, needs_workspace, null_pivot
+  use dd3_linalg_mumps, only : first_workspace, icntl_workspace, infog_argument, &
+      infog_null_pivots, infog_status, more_workspace, mumps_verdict, needs_workspace
   use dd3_linalg_partition, only : own_rows
   use dd3_linalg_preconditioner, only : perturbed_pivots_t
   use dd3_linalg_solver, only : solver_report_t
+  use dd3_parallel_petsc_options, only : set_solver_options
   implicit none
 
   !> Relative residual of a complete factorisation accepted where the tolerance asks for less.
@@ -35,12 +33,6 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   !> Largest round-off of the product of matrix and solution, over the right-hand side, that is
   !> taken for that of a slender sheet and not of a singular matrix.
   real(wp), parameter :: largest_round_off = 1.0e-3_wp
-  !> Tolerance of the iterations, whose own residual drifts, as a fraction of the one asked for.
-  real(wp), parameter :: margin = 0.1_wp
-
-  !> Vectors that GMRES keeps before it restarts, and its iterations as a smoother. With four the
-  !> number of iterations grows with the sheet, with two there is no convergence at 20,164 elements.
-  integer, parameter :: krylov_vectors = 100, smoothing_steps = 8
   !> Most restarts of the iterations and refinements of a factorisation, and the ratio of residuals
   !> above which a refinement is the last one.
   integer, parameter :: most_restarts = 5
@@ -191,7 +183,8 @@ contains
     ignored = mat_create_vecs(self%a, self%x, self%b)
     ignored = vec_duplicate(self%b, self%r)
     ignored = vec_duplicate(self%b, self%d)
-    call set_options(self)
+    call set_solver_options("dd3_"//trim(self%name)//"_", self%iterative, self%options, &
+        self%workspace)
     ignored = ksp_create(petsc_comm_world, self%ksp)
     ignored = ksp_set_options_prefix(self%ksp, "dd3_"//trim(self%name)//"_"//c_null_char)
     ignored = ksp_set_from_options(self%ksp)
@@ -240,44 +233,6 @@ contains
     call dgemm("n", "n", n, n, n, 1.0_wp, buffer, n, buffer(n**2 + 1), n, 0.0_wp, &
         buffer(2*n**2 + 1), n)
   end subroutine reserve_blas_buffer
-
-  !> Set the options of the solver.
-  subroutine set_options(self)
-    type(petsc_solver_t), intent(in) :: self
-
-    character(len=:), allocatable :: prefix
-    logical :: on_disk
-
-    prefix = "-dd3_"//trim(self%name)//"_"
-    if (.not. self%iterative) then
-      call set_option(prefix//"ksp_type", "preonly")
-      call set_option(prefix//"pc_type", "lu")
-      call set_option(prefix//"pc_factor_mat_solver_type", "mumps")
-      prefix = prefix//"mat_mumps_"
-      call set_option(prefix//"icntl_"//to_text(icntl_permutation), "0")
-      call set_option(prefix//"icntl_"//to_text(icntl_scaling), "0")
-      call set_option(prefix//"icntl_"//to_text(icntl_workspace), to_text(self%workspace))
-      call set_option(prefix//"icntl_"//to_text(icntl_null_pivots), "1")
-      on_disk = self%options%factor_folder /= ""
-      ! The input decides, and not the options of the user or of a solver before.
-      call replace_option(prefix//"icntl_"//to_text(icntl_out_of_core), merge("1", "0", on_disk))
-      if (on_disk) call replace_option(prefix//"ooc_tmpdir", trim(self%options%factor_folder))
-      call set_option(prefix//"cntl_"//to_text(cntl_null_pivot), to_text(null_pivot))
-      return
-    end if
-    call set_option(prefix//"ksp_type", "fgmres")
-    call set_option(prefix//"ksp_gmres_restart", to_text(krylov_vectors))
-    call set_option(prefix//"ksp_rtol", to_text(margin*self%options%tolerance))
-    call set_option(prefix//"ksp_max_it", to_text(self%options%iterations))
-    call set_option(prefix//"pc_type", "gamg")
-    call set_option(prefix//"pc_gamg_reuse_interpolation", "false")
-    prefix = prefix//"mg_levels_"
-    call set_option(prefix//"ksp_type", "gmres")
-    call set_option(prefix//"ksp_max_it", to_text(smoothing_steps))
-    call set_option(prefix//"pc_type", "asm")
-    call set_option(prefix//"sub_pc_type", "ilu")
-    call set_option(prefix//"sub_pc_factor_levels", to_text(self%options%ilu_level))
-  end subroutine set_options
 
   !> Scale the own rows and hand them to PETSc, which holds the only copy. Of the rows and columns
   !> behind those of the nodes, which are dense, a matrix of the nodes alone has unit diagonals.
