@@ -10,7 +10,7 @@ module dd3_input_forming_limit_check
   public :: check_forming_limit
 
   !> Largest logarithmic strain; larger values are in per cent.
-  real(wp), parameter :: largest = 2.0_wp
+  real(wp), parameter :: largest_strain = 2.0_wp
   character(len=*), parameter :: key = "forming_limit", &
       pairs = "minor and major logarithmic strain of two or more points, as in -0.2 0.5 0 0.3"
 
@@ -34,7 +34,7 @@ contains
     end if
     associate (value => block%entry(block%find(key))%value)
       do i = 1, size(strain), 2
-        if (any(abs(strain(i:i + 1)) > largest)) then
+        if (any(abs(strain(i:i + 1)) > largest_strain)) then
           call errors%push_input(value(i)%at, "strains above 2", "fractions, not per cent", &
               code="E133")
         else if (strain(i) > strain(i + 1)) then

@@ -212,7 +212,7 @@ contains
     end associate
   end subroutine evaluate
 
-  !> There are no further conditions.
+  !> Whether the region had a residual at the start, which scales its norm.
   function is_admissible(self) result(admissible)
     class(local_equilibrium_t), intent(in) :: self
     logical :: admissible

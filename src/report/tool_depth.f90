@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Depth by which tools enter the faces of the sheet between its nodes. Contact is nodal: a tool can
-!> pass a face where it is more strongly curved than the mesh resolves, or narrower than an element.
+!> Depth by which tools enter the faces of the sheet between its contact points, at which alone the
+!> contact holds: a tool can pass a face where it is more strongly curved than they resolve, or
+!> narrower than an element.
 !> Measured both ways: points of the faces inside the tool, and points of the tool behind the faces.
 module dd3_report_tool_depth
   use dd3_base_kinds, only : wp

@@ -31,13 +31,13 @@ module dd3_tools_border_turn
 contains
 
   !> Set the turn of the normal of a hit beside the border, and limit it.
-  pure subroutine limit_turn(hit, patch, x, largest)
+  pure subroutine limit_turn(hit, patch, x, largest_turn)
     !> On the border.
     type(hit_t), intent(inout) :: hit
     !> That of the hit.
     type(patch_t), intent(in) :: patch
     !> Position of the node, mm, and largest turn.
-    real(wp), intent(in) :: x(3), largest
+    real(wp), intent(in) :: x(3), largest_turn
 
     real(wp) :: point(3), first(3, 2), second(3, 3), m(3), q(3), t(3), sine, k, square
     integer :: i
@@ -51,11 +51,11 @@ contains
     if (sine <= no_turn) return
     q = q/sine
     hit%turn = atan2(sine, dot_product(hit%normal, m))
-    if (largest >= hit%turn) return
-    hit%normal = cos(largest)*m + sin(largest)*q
+    if (largest_turn >= hit%turn) return
+    hit%normal = cos(largest_turn)*m + sin(largest_turn)*q
     on_bound = abs([hit%u, hit%v] - 0.5_wp) >= 0.5_wp
     if (all(on_bound)) then
-      k = sin(largest)/dot_product(q, x - point)
+      k = sin(largest_turn)/dot_product(q, x - point)
     else
       i = merge(2, 1, on_bound(1))
       square = dot_product(first(:, i), first(:, i))

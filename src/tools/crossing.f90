@@ -83,7 +83,7 @@ contains
   end function near_border
 
   !> Find the closest points of an edge of the mesh and of the border of a surface.
-  pure subroutine find_crossing(surface, ends, outward, border, largest, crossing)
+  pure subroutine find_crossing(surface, ends, outward, border, largest_gap, crossing)
     type(surface_t), intent(in) :: surface
     !> Ends of the edge in the surface's frame, mm.
     real(wp), intent(in) :: ends(3, 2)
@@ -91,14 +91,14 @@ contains
     real(wp), intent(in) :: outward(3)
     type(border_t), intent(in) :: border
     !> Largest gap, mm.
-    real(wp), intent(in) :: largest
+    real(wp), intent(in) :: largest_gap
     type(crossing_t), intent(out) :: crossing
 
     type(crossing_t) :: candidate
     real(wp) :: lower(3), upper(3), reach
     integer :: b
 
-    reach = border%radius + largest
+    reach = border%radius + largest_gap
     lower = minval(ends, dim=2) - reach
     upper = maxval(ends, dim=2) + reach
     if (any(lower > surface%upper .or. upper < surface%lower)) return
@@ -111,7 +111,7 @@ contains
       if (dot_product(candidate%normal, outward) > 0.0_wp) cycle
       crossing = candidate
     end do
-    crossing%found = crossing%distance <= largest
+    crossing%found = crossing%distance <= largest_gap
   end subroutine find_crossing
 
   !> Find the closest points of an edge of the mesh and of one of a patch.

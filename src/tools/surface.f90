@@ -178,13 +178,13 @@ contains
   end subroutine find_neighbours
 
   !> Return the pair of the number that occurs most often.
-  pure function most_frequent(pair, largest)
+  pure function most_frequent(pair, largest_number)
     integer, intent(in) :: pair(:, :)
     !> Largest number that may occur.
-    integer, intent(in) :: largest
+    integer, intent(in) :: largest_number
     integer :: most_frequent(2)
 
-    integer :: frequency(largest), p
+    integer :: frequency(largest_number), p
 
     frequency = 0
     do p = 1, size(pair, 2)

@@ -11,7 +11,7 @@ module dd3_tools_tool
   private
   public :: tool_t, find_on_tool, find_crossing_on_tool
 
-  !> A rigid tool; it moves by translation.
+  !> A rigid tool, without its place, which the state holds.
   type :: tool_t
     !> Name in the input.
     character(len=:), allocatable :: name
@@ -55,20 +55,21 @@ contains
 
   !> Find where an edge of the mesh crosses the border of a tool in its place, as `find_crossing` does
   !> on its surface.
-  pure subroutine find_crossing_on_tool(tool, placement, ends, outward, border, largest, crossing)
+  pure subroutine find_crossing_on_tool(tool, placement, ends, outward, border, largest_gap, &
+      crossing)
     type(tool_t), intent(in) :: tool
     type(placement_t), intent(in) :: placement
     !> Ends of the edge, mm, and the outward normal of the sheet.
     real(wp), intent(in) :: ends(3, 2), outward(3)
     type(border_t), intent(in) :: border
     !> Largest gap, mm.
-    real(wp), intent(in) :: largest
+    real(wp), intent(in) :: largest_gap
     !> Vectors in the global frame.
     type(crossing_t), intent(out) :: crossing
 
     call find_crossing(tool%surface, reshape([placement%to_tool(ends(:, 1)), &
         placement%to_tool(ends(:, 2))], [3, 2]), placement%vector_to_tool(outward), border, &
-        largest, crossing)
+        largest_gap, crossing)
     if (.not. crossing%found) return
     crossing%normal = placement%vector_to_global(crossing%normal)
     crossing%by_point = placement%vector_to_global(crossing%by_point)
