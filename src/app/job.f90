@@ -25,7 +25,6 @@ module dd3_app_job
   use dd3_model_state, only : new_state
   use dd3_output_fields, only : field_record_t
   use dd3_output_restart_read, only : read_restart
-  use dd3_output_sheet_file, only : read_sheet
   use dd3_output_run_summary, only : run_summary_t
   use dd3_report_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_report_job_size, only : find_job_size, job_size_t, memory_warning, size_report
@@ -34,6 +33,7 @@ module dd3_app_job
   use dd3_setup_axes, only : normal_report
   use dd3_setup_element, only : default_report
   use dd3_setup_model, only : new_model
+  use dd3_setup_sheet_file, only : read_sheet
   use dd3_setup_tool_report, only : tool_report
   use dd3_sheet_sheet, only : sheet_t
   implicit none

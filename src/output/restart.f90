@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> restart.h5: the committed state of a run, the fingerprint of its model, and its mesh, from which
-!> another run can take the sheet over (dd3_output_sheet_file). The file is written aside, synced
+!> another run can take the sheet over (dd3_setup_sheet_file). The file is written aside, synced
 !> and renamed, so that a run that is killed leaves the last whole one.
 module dd3_output_restart
   use dd3_base_error, only : error_t, share_error

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> The sheet of another run, read from its restart file: mesh and state, moved to its new place.
-module dd3_output_sheet_file
+module dd3_setup_sheet_file
   use dd3_base_error, only : error_list_t, error_t
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : newline, text_t
@@ -211,4 +211,4 @@ contains
     end do
   end subroutine read_names
 
-end module dd3_output_sheet_file
+end module dd3_setup_sheet_file
