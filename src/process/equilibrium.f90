@@ -42,6 +42,9 @@ module dd3_process_equilibrium
     type(system_t), pointer :: system => null()
     !> Trial state before the last step, and that step.
     type(unknowns_t) :: start, step
+    !> Norm of the contact forces of this rank in the last solution, N: the step before it is
+    !> shortened, of which eq. (19) estimates the distance from the solution.
+    real(wp), private :: force_step = 0.0_wp
     integer, allocatable, private :: start_tool(:)
     type(hint_t), allocatable, private :: start_hint(:, :)
     !> Rotations of the tools there, `(3, 3, n_tool)`.
@@ -94,6 +97,7 @@ contains
       self%step = step
       self%step%tool = 0.0_wp
       self%step%tilt = 0.0_wp
+      self%force_step = norm2(step%lambda)
       allocate (self%status(size(trial%contact%status), n_kept), source=unknown)
       problem%prescribed = 0.0_wp
       problem%tool_prescribed = 0.0_wp
@@ -126,7 +130,7 @@ contains
   type(residual_t) function norm(self)
     class(equilibrium_t), intent(in) :: self
 
-    norm = norm_of(self%model, self%trial, self%system, norm2(self%step%lambda))
+    norm = norm_of(self%model, self%trial, self%system, self%force_step)
   end function norm
 
   !> Once all else has converged, balance the pressed tools by their motion alone.
@@ -183,6 +187,7 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call keep_start(self)
       call read_step(system, model, trial, self%step)
+      self%force_step = norm2(self%step%lambda)
       self%step%enhanced = self%step%enhanced - system%enhanced%offset
       system%problem%residual = residual
     end associate

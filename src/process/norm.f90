@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Norm that decides the convergence of a trial state: the residuals of nodes, contact and enhanced
-!> strains, and the balance of the pressed tools. It is a function of the state evaluated and of the
-!> last step. All its factors and tolerances stand here; they have no unit.
+!> strains, or the balance of the pressed tools if that is farther off. It is a continuous function
+!> of the state evaluated and of the last step. All its factors and tolerances stand here; they have no unit.
 !> Source: Oliveira and Menezes 2004, eq. (19), scaled by the norm of the internal forces where it
 !> exceeds that of the contact forces, and such that a residual that is round-off has converged.
 !> Round-off: a node's position is the multiple of `spacing` nearest to the solution, and the
@@ -23,7 +23,8 @@ module dd3_process_norm
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: residual_t, norm_of, convergence_tolerance, attainable_residual
+  public :: residual_t, norm_of, attainable_residual
+  public :: convergence_tolerance, opening_phase_tolerance, final_tolerance
   public :: pressed_force, balanced
 
   !> Norm of the residuals.
@@ -41,8 +42,7 @@ module dd3_process_norm
   !> Largest tolerance of the norm when all tools are released, and under gravity: the residual
   !> stresses, by which it is scaled, are far larger than those that bend a slender sheet.
   !> Smaller: a more accurate shape for more iterations; a strip drawn by 30 mm and released ends
-  !> 0.06 mm elsewhere with 1e-2, 0.01 mm with 1e-3. It bounds the tolerance and does not weigh
-  !> the norm, whose value tells the corrector how far from the solution a state is.
+  !> 0.06 mm elsewhere with 1e-2, 0.01 mm with 1e-3.
   real(wp), parameter :: free_tolerance = 1.0e-5_wp
   !> The same while the tools are withdrawn and touch the sheet: its shape is not final, and stick and
   !> slip at the last nodes do not settle to the last digit.
@@ -55,7 +55,8 @@ module dd3_process_norm
   !> parameters of the enhanced strains, the stresses and the forces are rounded too.
   real(wp), parameter :: round_off_factor = 5.0_wp
   !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
-  !> an increment is a step in the force of the next. Larger: smaller steps for more iterations.
+  !> an increment is a step in the force of the next. A strip drawn under a holder of 35 N has a
+  !> punch force 0.004 % off with 10, 0.08 % with 3 and 0.2 % with 1, in 157, 145 and 149 iterations.
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Residual of a pressed tool, over its force, that counts as balanced.
   real(wp), parameter :: balanced = 1.0e-6_wp
@@ -70,36 +71,48 @@ contains
     !> Trial state, with whether the tools had opened before.
     type(state_t), intent(in) :: state
 
-    tolerance = phase%newton%tolerance
     if (any(phase%withdrawn) .and. .not. state%open .and. state%progress < 1.0_wp) then
-      tolerance = min(tolerance, opening_tolerance)
-    else if (phase%unloaded .or. phase%has_gravity .or. &
-        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) then
-      tolerance = min(tolerance, free_tolerance)
+      tolerance = opening_phase_tolerance(phase)
+    else
+      tolerance = final_tolerance(phase)
     end if
   end function convergence_tolerance
 
-  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is larger
-  !> and the former has met the tolerance.
+  !> Return the tolerance of a phase that withdraws tools, until they have left the sheet.
+  pure real(wp) function opening_phase_tolerance(phase) result(tolerance)
+    type(phase_t), intent(in) :: phase
+
+    tolerance = min(phase%newton%tolerance, opening_tolerance)
+  end function opening_phase_tolerance
+
+  !> Return the tolerance of a phase, of one that withdraws tools after that.
+  pure real(wp) function final_tolerance(phase) result(tolerance)
+    type(phase_t), intent(in) :: phase
+
+    tolerance = phase%newton%tolerance
+    if (phase%unloaded .or. phase%has_gravity .or. &
+        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) &
+        tolerance = min(tolerance, free_tolerance)
+  end function final_tolerance
+
+  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is larger.
   type(residual_t) function norm_of(model, trial, system, step) result(residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     !> Evaluated at the trial state.
     type(system_t), intent(in) :: system
-    !> Norm of the last change of the contact forces of this rank, N.
+    !> Norm of the last full step of the contact forces of this rank, N.
     real(wp), intent(in) :: step
 
     call evaluate_residual(model, trial, system, residual)
     call scale_norm(model, trial, system, step, residual)
     residual%tools = tool_weight*tool_imbalance(model, trial, system)
     if (residual%tools <= tool_weight*balanced) residual%tools = 0.0_wp
-    residual%scaled = residual%sheet
-    if (residual%sheet < convergence_tolerance(model%phase(trial%phase), trial)) &
-        residual%scaled = max(residual%sheet, residual%tools)
+    residual%scaled = max(residual%sheet, residual%tools)
   end function norm_of
 
   !> Evaluate the norm of the residuals of equilibrium and contact at the free degrees of freedom,
-  !> of the enhanced strains and of the pressed tools in contact.
+  !> and of the enhanced strains.
   subroutine evaluate_residual(model, trial, system, found)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
@@ -107,7 +120,7 @@ contains
     type(residual_t), intent(out) :: found
 
     real(wp) :: contribution(model%n_node), square(1), worst(2)
-    integer :: node, c, rank, tool
+    integer :: node, c, rank
 
     rank = this_rank()
     associate (phase => model%phase(trial%phase), problem => system%problem)
@@ -126,11 +139,6 @@ contains
       found%worst = sqrt(max(worst(2), 0.0_wp))
       square = sum(contribution) + sum((system%enhanced%residual*(0.5_wp*model%thickness))**2)
       call sum_over_ranks(1, square)
-      do tool = 1, model%n_tool
-        if (.not. phase%pressed(tool)) cycle
-        if (trial%tools%touches(tool)) square = square &
-            + sum(as_forces(phase, tool, problem%tool_residual(:, tool))**2)
-      end do
     end associate
     found%norm = sqrt(square(1))
   end subroutine evaluate_residual
