@@ -3,7 +3,7 @@
 module dd3_input_fill
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : lower_case
-  use dd3_input_accuracy, only : set_by_accuracy
+  use dd3_settings_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, tool_spec_t
   use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set, fill_start, fill_trim

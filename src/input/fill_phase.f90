@@ -3,7 +3,7 @@
 module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
-  use dd3_input_accuracy, only : set_by_accuracy
+  use dd3_settings_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, tool_name_t, tool_vector_t
   use dd3_settings_limits, only : limits_spec_t, limit_spec_t

@@ -4,7 +4,7 @@ module dd3_input_keys
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : parameter_t, row, kind_real, kind_integer, kind_logical, &
       kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, kind_other
-  use dd3_input_accuracy, only : accuracy_names, default_by_accuracy
+  use dd3_settings_accuracy, only : accuracy_names, default_by_accuracy
   implicit none
   private
   public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, &

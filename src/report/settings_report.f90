@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Settings that follow from the model where the input gives no value, as text for `--check` and the
-!> log: contact, limits of the predictor, lengths of the draw-beads on the initial sheet.
+!> log: contact, limits of the predictor, tolerance of the iterations, lengths of the draw-beads on
+!> the initial sheet.
 module dd3_report_settings_report
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks
@@ -10,6 +11,8 @@ module dd3_report_settings_report
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_phase, only : phase_t
   use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
+  use dd3_process_norm, only : final_tolerance, opening_phase_tolerance
+  use dd3_settings_accuracy, only : mixed_defaults
   use dd3_settings_limits, only : limit_spec_t
   implicit none
   private
@@ -28,12 +31,12 @@ contains
     text = changes(model, contact_settings)
   end function contact_report
 
-  !> Return the limits of the predictor.
+  !> Return the limits of the predictor and the tolerance of the iterations.
   function limits_report(model) result(text)
     type(model_t), intent(in) :: model
     character(len=:), allocatable :: text
 
-    text = changes(model, limits_settings)
+    text = changes(model, limits_settings)//changes(model, tolerance_settings)
   end function limits_report
 
   !> Return a line for the first phase and for each later one with other settings.
@@ -133,8 +136,27 @@ contains
       text = "limits of an increment: strain "//value(limits%strain, "")//", rotation "// &
           value(limits%rotation, " degrees")//", depth "//value(limits%depth, " thicknesses")// &
           ", r_max "//value(limits%r_max, "")
+      if (.not. model%phase(i)%mixed) return
+      if (mixed_defaults(limits) /= "") text = text//" ("//mixed_defaults(limits)//")"
     end associate
   end function limits_settings
+
+  !> Return the tolerance in a phase, and that of the input where it is larger.
+  function tolerance_settings(model, i) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+
+    associate (phase => model%phase(i), given => model%phase(i)%newton%tolerance)
+      text = "tolerance of the iterations: "
+      if (any(phase%withdrawn)) text = text//to_text(opening_phase_tolerance(phase), 3)// &
+          " while tools are withdrawn, then "
+      text = text//to_text(final_tolerance(phase), 3)
+      if (final_tolerance(phase) < given) text = text//", as the sheet is free or has its weight"
+      if (final_tolerance(phase) < given .or. any(phase%withdrawn)) &
+          text = text//" (tolerance of *NEWTON "//to_text(given, 3)//")"
+    end associate
+  end function tolerance_settings
 
   !> Return a limit with its unit.
   pure function value(limit, unit) result(text)

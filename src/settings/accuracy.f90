@@ -1,13 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Limits of the predictor by the accuracy that the user states. Their errors are those of
 !> docs/reports/increments.md.
-module dd3_input_accuracy
+module dd3_settings_accuracy
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_settings_limits, only : limit_spec_t, limits_spec_t
   implicit none
   private
-  public :: set_by_accuracy, accuracy_names, default_by_accuracy
+  public :: set_by_accuracy, accuracy_names, default_by_accuracy, mixed_defaults
 
   !> Level of the accuracy: maximum strain increment, rotation increment in degrees, depth over the
   !> thickness, and factor on the trial increment.
@@ -55,6 +55,20 @@ contains
     if (.not. limit%given) limit = limit_spec_t(active=.true., value=value)
   end subroutine set_default
 
+  !> Return a note on the limits that are smaller by default in the mixed formulation, as a text;
+  !> empty if all are given.
+  pure function mixed_defaults(limits) result(text)
+    type(limits_spec_t), intent(in) :: limits
+    character(len=:), allocatable :: text
+
+    text = ""
+    if (.not. limits%strain%given) text = text//", strain 1/"//to_text(mixed_divisor)
+    if (.not. limits%rotation%given) text = text//", rotation 1/"//to_text(mixed_divisor)
+    if (.not. limits%depth%given) text = text//", depth 1/"//to_text(mixed_depth_divisor)
+    if (text == "") return
+    text = "of accuracy = "//trim(limits%accuracy)//" in the mixed formulation: "//text(3:)
+  end function mixed_defaults
+
   !> Return the names of the levels, separated by blanks.
   pure function accuracy_names() result(text)
     character(len=:), allocatable :: text
@@ -96,4 +110,4 @@ contains
     if (divisor > 1.0_wp) text = text//"; mixed: 1/"//to_text(divisor)//" of that"
   end function default_by_accuracy
 
-end module dd3_input_accuracy
+end module dd3_settings_accuracy
