@@ -2,47 +2,44 @@
 !> Nonlinear elimination: the equilibrium of the few nodes that have most of the residual, with the
 !> rest of the sheet and the tools held. Where elements begin to bend over a radius, change their
 !> plastic zones or meet a tool within an increment, a step of the corrector overshoots at a few
-!> nodes; without them it need not be shortened for all.
+!> nodes; without them it need not be shortened for all. A region is the equilibrium of the sheet on
+!> a smaller system, with its own norm.
 !> Source: X.-C. Cai, X. Li, SIAM J. Sci. Comput. 33 (2011) 746-762.
 module dd3_process_elimination
+  use dd3_base_clock, only : section_elimination
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, sum_over_ranks, this_rank
-  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_base_verdict, only : verdict_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_process_newton, only : newton_converged, newton_course_t, newton_problem_t, solve
-  use dd3_system_linear_problem, only : unknowns_t
-  use dd3_system_region, only : new_region, region_t
+  use dd3_model_terms_viscous, only : has_viscous
+  use dd3_process_equilibrium, only : equilibrium_t
+  use dd3_process_forces, only : evaluate_forces
+  use dd3_process_newton, only : newton_converged, newton_course_t, solve
+  use dd3_process_norm, only : residual_t
+  use dd3_system_region, only : lend, new_region
   use dd3_system_system, only : system_t
-  use dd3_tools_closest, only : hint_t
   implicit none
   private
-  public :: local_equilibrium_t, find_worst
+  public :: sheet_equilibrium_t, region_equilibrium_t, find_worst
 
-  !> Equilibrium of a region as the problem of an iteration of its own. What it is built on is
-  !> pointed to, as in the equilibrium of the sheet.
-  type, extends(newton_problem_t) :: local_equilibrium_t
-    type(model_t), pointer :: model => null()
-    type(state_t), pointer :: committed => null(), trial => null()
-    type(system_t), pointer :: system => null()
-    type(region_t) :: region
-    !> State of the region before the last step, and at first.
-    type(unknowns_t), private :: start, origin
-    integer, allocatable, private :: start_tool(:), origin_tool(:)
-    type(hint_t), allocatable, private :: start_hint(:, :), origin_hint(:, :)
-    !> Internal forces of its nodes at first, those of its elements alone among them, `(3, n)`, N,
-    !> and the norm of its residual, N.
-    real(wp), allocatable, private :: origin_force(:, :), first_force(:, :)
-    real(wp), private :: scale = 0.0_wp
+  !> Equilibrium of the sheet, with elimination.
+  type, extends(equilibrium_t) :: sheet_equilibrium_t
   contains
-    procedure :: evaluate
+    procedure :: eliminate
+  end type sheet_equilibrium_t
+
+  !> Equilibrium of a region, on its system.
+  type, extends(equilibrium_t) :: region_equilibrium_t
+    !> Norm of its residual, N, and internal forces of its elements, `(3, n_node)`, N, at first.
+    real(wp), private :: scale = 1.0_wp
+    real(wp), allocatable, private :: first_force(:, :)
+  contains
+    procedure :: measure
     procedure :: is_admissible
-    procedure :: linearise
-    procedure :: apply
-    procedure :: slope
     procedure :: settle
     procedure :: restore
-  end type local_equilibrium_t
+  end type region_equilibrium_t
 
   !> Part of the square of the residual that the worst nodes have. Larger: larger regions.
   real(wp), parameter :: part_of_residual = 0.9_wp
@@ -97,166 +94,128 @@ contains
     if (real(count(chosen), wp) > largest_part*real(model%n_node, wp)) chosen = .false.
   end subroutine find_worst
 
-  !> Return the squares of the residuals of the nodes, with those of the enhanced strains, N2.
+  !> Return the squares of the residuals of the free nodes, with those of the enhanced strains of
+  !> the system's elements, N2; the norm of the sheet has the same.
   function squares(model, trial, system) result(square)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial
     type(system_t), intent(in) :: system
     real(wp) :: square(model%n_node)
 
-    integer :: e, rank
+    integer :: i, rank
 
-    square = sum(system%problem%law_residual**2, mask=.not. model%phase(trial%phase)%prescribed, &
-        dim=1)
+    associate (problem => system%problem, phase => model%phase(trial%phase))
+      square = sum(problem%law_residual**2, dim=1, &
+          mask=.not. (phase%prescribed .or. spread(problem%held(:model%n_node), 1, 3)))
+    end associate
     rank = this_rank()
     if (model%part%divided) square = merge(square, 0.0_wp, model%part%node_owner == rank)
-    do e = 1, size(model%part%element)
-      associate (nodes => model%connectivity(:, model%part%element(e)))
-        square(nodes) = square(nodes) + enhanced_square(model, system%enhanced%residual(:, e)) &
-            /real(size(nodes), wp)
+    do i = 1, size(system%batches%element)
+      associate (e => system%batches%element(i), &
+          nodes => model%connectivity(:, model%part%element(system%batches%element(i))))
+        square(nodes) = square(nodes) + sum((system%enhanced%residual(:, e) &
+            *(0.5_wp*model%thickness))**2)/real(size(nodes), wp)
       end associate
     end do
     call sum_over_ranks(size(square), square)
   end function squares
 
-  !> Return the square of the residual of the enhanced strains of an element, as a force, N2; the
-  !> norm has the same.
-  pure real(wp) function enhanced_square(model, residual) result(square)
-    type(model_t), intent(in) :: model
-    !> N/mm.
-    real(wp), intent(in) :: residual(:)
+  !> Solve the equilibrium of the nodes with most of the residual alone, in the compliant
+  !> formulation; without it if that leaves the norm above the bound.
+  recursive subroutine eliminate(self, bound, eliminated)
+    class(sheet_equilibrium_t), intent(inout) :: self
+    real(wp), intent(in) :: bound
+    logical, intent(out) :: eliminated
 
-    square = sum((residual*(0.5_wp*model%thickness))**2)
-  end function enhanced_square
+    type(system_t), target :: region
+    type(region_equilibrium_t) :: local, origin
+    type(residual_t) :: before
+    real(wp) :: force(3, self%model%n_node)
+    logical :: chosen(self%model%n_node), converged
 
-  !> Solve the equilibrium of a region of free nodes. The internal forces follow.
-  recursive subroutine settle(self, chosen, converged)
-    class(local_equilibrium_t), intent(inout) :: self
-    !> The free nodes, `(n_node)`.
-    logical, intent(in) :: chosen(:)
-    !> If not, the trial state is as before, but for the round-off of the contact.
+    eliminated = .false.
+    associate (model => self%model, committed => self%committed, trial => self%trial, &
+        system => self%system)
+      if (.not. (system%formulation%eliminates &
+          .and. model%phase(trial%phase)%newton%elimination)) return
+      if (has_viscous(trial%term)) return
+      call system%profile%start()
+      call find_worst(model, trial, system, chosen)
+      if (any(chosen)) then
+        before = self%residual
+        force = trial%sheet%internal_force
+        call new_region(region, model, trial, chosen)
+        call local%attach(model, committed, trial, region)
+        origin = local
+        call lend(system, region)
+        call local%settle(force, converged)
+        call lend(region, system)
+        if (converged) then
+          call evaluate_forces(model, committed, trial, system)
+          call self%measure()
+          eliminated = self%residual%scaled < min(bound, before%scaled)
+        end if
+        if (.not. eliminated) then
+          call lend(system, region)
+          call origin%restore(force)
+          call lend(region, system)
+          if (converged) call evaluate_forces(model, committed, trial, system)
+          self%residual = before
+          self%scaled_norm = before%scaled
+        end if
+        call region%solver%release()
+      end if
+      call system%profile%add(section_elimination)
+    end associate
+  end subroutine eliminate
+
+  !> Solve the equilibrium of the region. The internal forces follow.
+  recursive subroutine settle(self, force, converged)
+    class(region_equilibrium_t), intent(inout) :: self
+    !> Internal forces of the sheet before, `(3, n_node)`, N.
+    real(wp), intent(in) :: force(:, :)
     logical, intent(out) :: converged
 
     type(newton_course_t) :: course
 
-    associate (trial => self%trial, region => self%region)
-      call new_region(region, self%model, chosen, self%model%phase(trial%phase)%prescribed)
-      call keep_start(self)
-      self%origin = self%start
-      self%origin_tool = self%start_tool
-      self%origin_hint = self%start_hint
-      self%origin_force = trial%sheet%internal_force(:, region%node)
-      call solve(self, local_tolerance, most_iterations, .true., course)
-      converged = course%outcome == newton_converged
-      if (converged) then
-        trial%sheet%internal_force(:, region%node) = self%origin_force &
-            + (region%force - self%first_force)
-      else
-        call self%restore()
-      end if
-    end associate
+    call solve(self, local_tolerance, most_iterations, .true., course)
+    converged = course%outcome == newton_converged
+    if (converged) self%trial%sheet%internal_force = force &
+        + (self%trial%sheet%internal_force - self%first_force)
   end subroutine settle
 
-  !> Return to the state before.
-  subroutine restore(self)
-    class(local_equilibrium_t), intent(inout) :: self
+  !> Return to the state that the region began at.
+  subroutine restore(self, force)
+    class(region_equilibrium_t), intent(inout) :: self
+    !> Internal forces of the sheet there, `(3, n_node)`, N.
+    real(wp), intent(in) :: force(:, :)
 
     type(verdict_t) :: verdict
 
-    self%start = self%origin
-    self%start_tool = self%origin_tool
-    self%start_hint = self%origin_hint
     call self%apply(0.0_wp)
     call self%evaluate(.false., verdict)
-    self%trial%sheet%internal_force(:, self%region%node) = self%origin_force
+    self%trial%sheet%internal_force = force
   end subroutine restore
 
-  !> Keep the state of the region before a step.
-  subroutine keep_start(self)
-    class(local_equilibrium_t), intent(inout) :: self
+  !> Set the norm of the region's residual, over that at first.
+  subroutine measure(self)
+    class(region_equilibrium_t), intent(inout) :: self
 
-    associate (trial => self%trial, region => self%region)
-      self%start%x = trial%x(:, region%node)
-      self%start%enhanced = trial%sheet%enhanced(:, region%element)
-      self%start%lambda = trial%contact%lambda(:, region%point)
-      self%start_tool = trial%contact%tool(region%point)
-      self%start_hint = trial%contact%hint(:, region%point)
-    end associate
-  end subroutine keep_start
-
-  !> Evaluate the residual of the region.
-  subroutine evaluate(self, first, verdict)
-    class(local_equilibrium_t), intent(inout) :: self
-    !> Gives the scale. The stiffness is assembled where it is needed.
-    logical, intent(in) :: first
-    type(verdict_t), intent(out) :: verdict
-
-    real(wp) :: square(1)
-    integer :: k
-
-    associate (region => self%region)
-      call region%evaluate(self%model, self%committed, self%trial, self%system, verdict)
-      if (verdict%outcome /= verdict_converged) return
-      square = 0.0_wp
-      do k = 1, size(region%element)
-        square = square + enhanced_square(self%model, &
-            self%system%enhanced%residual(:, region%element(k)))
-      end do
-      call sum_over_ranks(1, square)
-      self%scaled_norm = agreed(sqrt(square(1) + sum(region%residual**2)))
-      if (first) then
-        self%first_force = region%force
-        self%scale = self%scaled_norm
-      end if
-      self%scaled_norm = self%scaled_norm/max(self%scale, tiny(1.0_wp))
-    end associate
-  end subroutine evaluate
+    self%residual%norm = agreed(sqrt(sum(squares(self%model, self%trial, self%system))))
+    if (.not. allocated(self%first_force)) then
+      self%scale = max(self%residual%norm, tiny(1.0_wp))
+      self%first_force = self%trial%sheet%internal_force
+    end if
+    self%residual%scaled = self%residual%norm/self%scale
+    self%scaled_norm = self%residual%scaled
+  end subroutine measure
 
   !> Whether the region had a residual at the start, which scales its norm.
   function is_admissible(self) result(admissible)
-    class(local_equilibrium_t), intent(in) :: self
+    class(region_equilibrium_t), intent(in) :: self
     logical :: admissible
 
     admissible = self%scale > 0.0_wp
   end function is_admissible
-
-  !> Linearise at the trial state and solve for the step.
-  subroutine linearise(self, verdict)
-    class(local_equilibrium_t), intent(inout) :: self
-    type(verdict_t), intent(out) :: verdict
-
-    call keep_start(self)
-    call self%region%solve(self%model, self%committed, self%trial, self%system, verdict)
-  end subroutine linearise
-
-  !> Set the trial state of the region to that before the step and a fraction of the step.
-  subroutine apply(self, fraction)
-    class(local_equilibrium_t), intent(inout) :: self
-    real(wp), intent(in) :: fraction
-
-    associate (trial => self%trial, region => self%region, start => self%start, &
-        step => self%region%step)
-      trial%x(:, region%node) = start%x + fraction*step%x
-      trial%sheet%enhanced(:, region%element) = start%enhanced + fraction*step%enhanced
-      trial%contact%lambda(:, region%point) = start%lambda + fraction*step%lambda
-      if (fraction >= 1.0_wp) return
-      trial%contact%tool(region%point) = self%start_tool
-      trial%contact%hint(:, region%point) = self%start_hint
-    end associate
-  end subroutine apply
-
-  !> Return the work of the residual in the last step, mJ.
-  function slope(self) result(work)
-    class(local_equilibrium_t), intent(in) :: self
-    real(wp) :: work
-
-    real(wp) :: own(1)
-
-    associate (region => self%region)
-      own = sum(self%system%enhanced%residual(:, region%element)*region%step%enhanced)
-      call sum_over_ranks(1, own)
-      work = agreed(own(1) + sum(region%residual*region%step%x))
-    end associate
-  end function slope
 
 end module dd3_process_elimination

@@ -4,8 +4,7 @@
 !> in one residual.
 !> Source: Menezes and Teodosiu 2000.
 module dd3_process_equilibrium
-  use dd3_base_clock, only : section_assembly, section_contact, section_elimination, &
-      section_material
+  use dd3_base_clock, only : section_assembly, section_contact, section_material
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
@@ -16,7 +15,6 @@ module dd3_process_equilibrium
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : add_stiffness
   use dd3_model_terms_viscous, only : has_viscous
-  use dd3_process_elimination, only : find_worst, local_equilibrium_t
   use dd3_process_forces, only : evaluate_forces, lost_tool
   use dd3_process_newton, only : newton_problem_t
   use dd3_process_norm, only : convergence_tolerance, norm_of, residual_t
@@ -62,13 +60,14 @@ module dd3_process_equilibrium
     integer, private :: farthest = 0
     real(wp), private :: farthest_moved = 0.0_wp
   contains
+    procedure :: attach
     procedure :: begin
     procedure :: evaluate
+    procedure :: measure
     procedure :: is_admissible
     procedure :: linearise
     procedure :: apply
     procedure :: slope
-    procedure :: eliminate
     procedure :: explain
     procedure :: changing
   end type equilibrium_t
@@ -82,6 +81,23 @@ module dd3_process_equilibrium
   integer, parameter :: n_kept = 3, unknown = -1
 
 contains
+
+  !> Set what the problem is built on, and begin at the trial state as it is.
+  subroutine attach(self, model, committed, trial, system)
+    class(equilibrium_t), intent(inout) :: self
+    type(model_t), target, intent(in) :: model
+    type(state_t), target, intent(in) :: committed
+    type(state_t), target, intent(inout) :: trial
+    type(system_t), target, intent(inout) :: system
+
+    self%model => model
+    self%committed => committed
+    self%trial => trial
+    self%system => system
+    allocate (self%status(size(trial%contact%status), n_kept), source=unknown)
+    call keep_start(self)
+    self%step = self%start%scaled(0.0_wp)
+  end subroutine attach
 
   !> Begin at the committed state with the step of the prediction. The tools make the whole of their
   !> step, whatever fraction the sheet makes.
@@ -98,7 +114,6 @@ contains
       self%step%tool = 0.0_wp
       self%step%tilt = 0.0_wp
       self%force_step = norm2(step%lambda)
-      allocate (self%status(size(trial%contact%status), n_kept), source=unknown)
       problem%prescribed = 0.0_wp
       problem%tool_prescribed = 0.0_wp
     end associate
@@ -120,18 +135,18 @@ contains
       if (verdict%outcome /= verdict_converged) return
       call evaluate_forces(self%model, self%committed, self%trial, system)
       call system%profile%add(section_contact)
-      self%residual = norm(self)
+      call self%measure()
       if (system%formulation%balances_tools .and. .not. first) call balance(self)
-      self%scaled_norm = self%residual%scaled
     end associate
   end subroutine evaluate
 
-  !> Return the norm of the trial state after the last step.
-  type(residual_t) function norm(self)
-    class(equilibrium_t), intent(in) :: self
+  !> Set the norm of the trial state after the last step.
+  subroutine measure(self)
+    class(equilibrium_t), intent(inout) :: self
 
-    norm = norm_of(self%model, self%trial, self%system, self%force_step)
-  end function norm
+    self%residual = norm_of(self%model, self%trial, self%system, self%force_step)
+    self%scaled_norm = self%residual%scaled
+  end subroutine measure
 
   !> Once all else has converged, balance the pressed tools by their motion alone.
   subroutine balance(self)
@@ -143,7 +158,7 @@ contains
       if (self%residual%sheet >= convergence_tolerance(phase, self%trial)) return
     end associate
     call balance_tools(self%model, self%committed, self%trial, self%system, moved)
-    if (moved) self%residual = norm(self)
+    if (moved) call self%measure()
   end subroutine balance
 
   !> Whether no pressed tool has lost the sheet, no candidate lies inside a tool, and the nodes with
@@ -287,47 +302,6 @@ contains
       work = agreed(work)
     end associate
   end function slope
-
-  !> Solve the equilibrium of the nodes with most of the residual alone, in the compliant
-  !> formulation; without it if that leaves the norm above the bound.
-  recursive subroutine eliminate(self, bound, eliminated)
-    class(equilibrium_t), intent(inout) :: self
-    real(wp), intent(in) :: bound
-    logical, intent(out) :: eliminated
-
-    type(local_equilibrium_t) :: local
-    type(residual_t) :: before
-    logical :: chosen(self%model%n_node)
-
-    eliminated = .false.
-    associate (model => self%model, trial => self%trial, system => self%system, &
-        phase => self%model%phase(self%trial%phase))
-      if (.not. (system%formulation%eliminates .and. phase%newton%elimination)) return
-      if (has_viscous(trial%term)) return
-      call system%profile%start()
-      call find_worst(model, trial, system, chosen)
-      if (any(chosen)) then
-        before = self%residual
-        local%model => self%model
-        local%committed => self%committed
-        local%trial => self%trial
-        local%system => self%system
-        call local%settle(chosen, eliminated)
-        if (eliminated) then
-          call evaluate_forces(model, self%committed, trial, system)
-          self%residual = norm(self)
-          eliminated = self%residual%scaled < min(bound, before%scaled)
-          if (.not. eliminated) then
-            call local%restore()
-            call evaluate_forces(model, self%committed, trial, system)
-            self%residual = before
-          end if
-          self%scaled_norm = self%residual%scaled
-        end if
-      end if
-      call system%profile%add(section_elimination)
-    end associate
-  end subroutine eliminate
 
   !> Return the number of candidates whose status changed in the last linearisations.
   integer function changing(self)

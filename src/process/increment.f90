@@ -12,6 +12,7 @@ module dd3_process_increment
   use dd3_model_terms_released, only : has_released
   use dd3_model_terms_viscous, only : set_viscous, viscous_coefficients
   use dd3_model_turning, only : set_rotations
+  use dd3_process_elimination, only : sheet_equilibrium_t
   use dd3_process_equilibrium, only : equilibrium_t
   use dd3_process_forces, only : set_tools
   use dd3_process_limiters, only : limit_increment
@@ -56,13 +57,10 @@ contains
     type(state_t), target, intent(inout) :: trial
     type(stepper_t), target, intent(inout) :: stepper
 
-    type(equilibrium_t) :: equilibrium
+    type(sheet_equilibrium_t) :: equilibrium
 
     trial = committed
-    equilibrium%model => model
-    equilibrium%committed => committed
-    equilibrium%trial => trial
-    equilibrium%system => stepper%system
+    call equilibrium%attach(model, committed, trial, stepper%system)
     associate (prediction => stepper%prediction, attempt => stepper%attempt, &
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
@@ -91,7 +89,7 @@ contains
   !> Conclude from the course of the corrector: the contact forces of a converged state, or the
   !> cause of a failure.
   subroutine conclude(equilibrium, attempt)
-    type(equilibrium_t), intent(inout) :: equilibrium
+    class(equilibrium_t), intent(inout) :: equilibrium
     type(attempt_t), intent(inout) :: attempt
 
     integer :: c

@@ -159,8 +159,7 @@ contains
           norm2(trial%sheet%internal_force), &
           negligible_strain*model%least_shear()*model%thickness**2))
       if (force >= convergence_tolerance(phase, trial)*scale) then
-        round_off = attainable_residual(system%column_square + system%enhanced%unfollowed_square, &
-            trial%x)
+        round_off = attainable_residual(system%column_square, trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase, trial))
       end if
     end associate

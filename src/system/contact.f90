@@ -36,21 +36,20 @@ contains
     end if
   end subroutine choose
 
-  !> Evaluate the contact in a trial state: search, status, force and linearisation. The outward
-  !> normals are those of the predictor.
-  subroutine evaluate_contact(system, model, committed, trial, points)
+  !> Evaluate the contact of the system's points in a trial state: search, status, force and
+  !> linearisation. The outward normals are those of the predictor.
+  subroutine evaluate_contact(system, model, committed, trial)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     !> Origin of the slip.
     type(state_t), intent(in) :: committed
     !> Gets status, tool and closest points.
     type(state_t), intent(inout) :: trial
-    !> Numbers of the points; all if not present.
-    integer, intent(in), optional :: points(:)
 
     call choose(system%formulation, model%phase(trial%phase)%mixed)
     system%contact%search_distance = model%phase(trial%phase)%search_distance
-    call system%formulation%evaluate(system%contact, model, committed, trial, points)
+    call system%formulation%evaluate(system%contact, model, committed, trial, &
+        system%problem%point)
   end subroutine evaluate_contact
 
   !> Evaluate the contact of the predictor: the committed state with its stored status.

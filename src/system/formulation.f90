@@ -39,8 +39,8 @@ module dd3_system_formulation
       type(state_t), intent(in) :: committed
       !> Gets status, tool and closest points.
       type(state_t), intent(inout) :: trial
-      !> Numbers of the points; all if not present.
-      integer, intent(in), optional :: points(:)
+      !> Numbers of the points.
+      integer, intent(in) :: points(:)
     end subroutine evaluate_interface
 
     !> Evaluate the contact of the predictor: the committed state with its stored status.

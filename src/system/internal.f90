@@ -8,6 +8,7 @@ module dd3_system_internal
   !$ use omp_lib, only : omp_get_thread_num
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
+  use dd3_base_threads, only : least_points, threads_for
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear, copy_values
@@ -18,7 +19,7 @@ module dd3_system_internal
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: update_material, assemble_stiffness, update_element, set_element
+  public :: update_material, assemble_stiffness
 
 contains
 
@@ -58,7 +59,7 @@ contains
     call system%partition%complete_forces(model%n_node, system%enhanced%force)
   end subroutine assemble_stiffness
 
-  !> Update the elements of this rank, or set their workspaces, and add their stiffness.
+  !> Update the elements of the system, or set their workspaces, and add their stiffness.
   subroutine visit_elements(system, model, committed, updates, with_stiffness, verdict, trial)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
@@ -70,23 +71,25 @@ contains
     type(state_t), intent(inout), optional :: trial
 
     type(verdict_t) :: mine
-    integer :: colour, k, e, batch, thread
+    integer :: colour, k, i, e, batch, thread
 
     verdict%outcome = verdict_converged
     if (with_stiffness) then
       call clear(system%matrix)
       system%enhanced%force = 0.0_wp
+      system%enhanced%offset = 0.0_wp
       system%enhanced%unfollowed_square = 0.0_wp
     end if
-    !$omp parallel num_threads(model%element_threads()) default(shared) &
-    !$omp& private(mine, colour, k, e, batch, thread)
+    !$omp parallel default(shared) private(mine, colour, k, i, e, batch, thread) &
+    !$omp& num_threads(threads_for(size(system%batches%element)*model%element%n_point, least_points))
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(system%batches%colour_start) - 1
       !$omp do schedule(dynamic)
       do k = system%batches%colour_start(colour), system%batches%colour_start(colour + 1) - 1
         batch = system%batches%coloured(k)
-        do e = system%batches%start(batch), system%batches%start(batch + 1) - 1
+        do i = system%batches%start(batch), system%batches%start(batch + 1) - 1
+          e = system%batches%element(i)
           mine%outcome = verdict_converged
           if (updates) then
             call update_element(model, committed, trial, e, system%element(thread), &

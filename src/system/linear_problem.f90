@@ -21,8 +21,12 @@ module dd3_system_linear_problem
     procedure :: scaled
   end type unknowns_t
 
-  !> Right-hand sides and prescribed values of one linear problem.
+  !> Unknowns, right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
+    !> Whether a node or a tool keeps its place, as those outside a region, by block rows, `(n_row)`.
+    logical, allocatable :: held(:)
+    !> Contact points that are evaluated, and whose forces are unknown, in ascending order.
+    integer, allocatable :: point(:)
     !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N, and
     !> that with the forces F_equ of the contact law; of several ranks each has those of its nodes.
     real(wp), allocatable :: residual(:, :), law_residual(:, :)
@@ -58,13 +62,17 @@ contains
         fraction*self%tool, fraction*self%tilt)
   end function scaled
 
-  !> Allocate a linear problem and set it to zero.
+  !> Allocate a linear problem, in which nothing is held, and set it to zero.
   subroutine new_linear_problem(self, model, n_row)
     type(linear_problem_t), intent(out) :: self
     type(model_t), intent(in) :: model
     !> Number of block rows of the reduced system.
     integer, intent(in) :: n_row
 
+    integer :: c
+
+    self%point = [(c, c=1, model%n_contact)]
+    allocate (self%held(n_row), source=.false.)
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)

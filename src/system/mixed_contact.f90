@@ -59,20 +59,14 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
     type(state_t), intent(inout) :: trial
-    integer, intent(in), optional :: points(:)
+    integer, intent(in) :: points(:)
 
-    integer :: c
+    integer :: k
 
-    if (present(points)) then
-      do c = 1, size(points)
-        call evaluate_point(contact, model, committed, trial, points(c))
-      end do
-      return
-    end if
-    !$omp parallel do num_threads(threads_for(model%n_contact, least_nodes)) private(c) &
+    !$omp parallel do num_threads(threads_for(size(points), least_nodes)) private(k) &
     !$omp& schedule(dynamic, chunk)
-    do c = 1, model%n_contact
-      call evaluate_point(contact, model, committed, trial, c)
+    do k = 1, size(points)
+      call evaluate_point(contact, model, committed, trial, points(k))
     end do
     !$omp end parallel do
   end subroutine evaluate

@@ -3,8 +3,8 @@
 !> their nodes; the rows of nodes that belong to another rank are sent there and added.
 module dd3_system_partition
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : broadcast_integers, exchange_reals, n_ranks, rank_of_smallest, &
-      this_rank
+  use dd3_base_ranks, only : broadcast_integers, broadcast_reals, exchange_reals, n_ranks, &
+      rank_of_smallest, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_linalg_matrix, only : block_matrix_t, lists_t
   use dd3_model_model, only : model_t
@@ -16,9 +16,12 @@ module dd3_system_partition
   !> this rank to which it adds. Not allocated if there is one rank.
   type :: partition_t
     type(lists_t), private :: sent, received
+    !> Whether every rank gets all rows and solves the whole system, as that of a region.
+    logical :: gathers = .false.
   contains
     procedure :: complete_rows
     procedure :: complete_forces
+    procedure :: share_solution
   end type partition_t
 
 contains
@@ -84,6 +87,7 @@ contains
     integer, allocatable :: n_sent(:), n_received(:)
     integer :: i, n, at
 
+    if (self%gathers) call sum_over_ranks(size(matrix%value), matrix%value)
     if (.not. allocated(self%sent%item)) return
     n_sent = counts(self%sent, matrix)
     n_received = counts(self%received, matrix)
@@ -136,6 +140,7 @@ contains
     real(wp), allocatable :: received(:, :)
     integer :: i
 
+    if (self%gathers) call sum_over_ranks(size(force), force)
     if (.not. allocated(self%sent%item)) return
     allocate (received(3, size(self%received%item)))
     associate (sent => self%sent%start, from => self%received%start)
@@ -148,6 +153,14 @@ contains
       end associate
     end do
   end subroutine complete_forces
+
+  !> Give all ranks the solution of the first one where each has solved the whole system.
+  subroutine share_solution(self, solution)
+    class(partition_t), intent(in) :: self
+    real(wp), intent(inout) :: solution(:)
+
+    if (self%gathers) call broadcast_reals(0, size(solution), solution)
+  end subroutine share_solution
 
   !> Give all ranks the verdict of the failed element with the lowest number; converged if none
   !> failed.

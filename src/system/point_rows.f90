@@ -42,10 +42,11 @@ contains
     type(state_t), intent(in) :: state
 
     real(wp) :: motion(3)
-    integer :: c, e
+    integer :: c, e, k
 
     associate (point => model%contact_point, phase => model%phase(state%phase))
-      do c = 1, model%n_contact
+      do k = 1, size(problem%point)
+        c = problem%point(k)
         motion = 0.0_wp
         if (contact%status(c) == status_gap) then
           if (all(abs(problem%contact_residual(:, c)) <= 0.0_wp)) cycle
@@ -55,8 +56,7 @@ contains
         e = 0
         if (point(c)%n_node > 1) e = model%part%place(point(c)%element)
         call add_point(point(c)%at_place(contact%place(c)), contact, c, &
-            problem%contact_residual(:, c), motion, state%x, point(c)%node, position, e, matrix, &
-            problem%rhs)
+            problem%contact_residual(:, c), motion, state%x, position, e, matrix, problem%rhs)
         if (contact%status(c) == status_gap) cycle
         if (phase%pressed(contact%tool(c))) call couple_tool(matrix, problem, contact, model, &
             state, c)
@@ -65,7 +65,7 @@ contains
   end subroutine add_points
 
   !> Add the contributions of a point to the rows of its nodes.
-  pure subroutine add_point(point, contact, c, residual, motion, x, row, position, e, matrix, rhs)
+  pure subroutine add_point(point, contact, c, residual, motion, x, position, e, matrix, rhs)
     type(contact_point_t), intent(in) :: point
     type(contact_work_t), intent(in) :: contact
     !> Number of the point.
@@ -76,9 +76,9 @@ contains
     real(wp), intent(in) :: motion(3)
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Block rows of its nodes; positions of the blocks of elements, and its element among them. A
-    !> point at a node needs none: its element may belong to another rank.
-    integer, intent(in) :: row(:), position(:, :, :), e
+    !> Positions of the blocks of elements, and its element among them. A point at a node needs none:
+    !> its element may belong to another rank.
+    integer, intent(in) :: position(:, :, :), e
     type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(inout) :: rhs(:)
 
@@ -86,17 +86,17 @@ contains
 
     call point%gradient(x, b)
     if (contact%status(c) == status_gap) then
-      call add_force(point, b, -residual, row, rhs)
+      call add_force(point, b, -residual, rhs)
       return
     end if
     call eliminate(contact, c, weight, stiffness)
-    call add_force(point, b, matmul(stiffness, motion) - matmul(weight, residual), row, rhs)
+    call add_force(point, b, matmul(stiffness, motion) - matmul(weight, residual), rhs)
     if (point%n_node > 1) then
       call add_stiffness(matrix, point, position(:, :, e), x, b, stiffness, contact%force(:, c))
       if (point%moves) call add_crossing_stiffness(matrix, point, position(:, :, e), contact, c, &
           matmul(weight, contact%by_edge(:, :, c)))
     else
-      associate (block => matrix%value(:, :, matrix%diagonal(row(1))))
+      associate (block => matrix%value(:, :, matrix%diagonal(point%node(1))))
         block = block + stiffness
       end associate
     end if
@@ -144,19 +144,17 @@ contains
   end subroutine couple_tool
 
   !> Add nodal forces B^T f to a right-hand side.
-  pure subroutine add_force(point, b, force, row, rhs)
+  pure subroutine add_force(point, b, force, rhs)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: b(:, :, :)
     !> N.
     real(wp), intent(in) :: force(3)
-    !> Block rows of the nodes of the point.
-    integer, intent(in) :: row(:)
     real(wp), intent(inout) :: rhs(:)
 
     integer :: i
 
     do i = 1, point%n_node
-      associate (n => 3*row(i))
+      associate (n => 3*point%node(i))
         rhs(n - 2:n) = rhs(n - 2:n) + matmul(force, b(:, :, i))
       end associate
     end do
@@ -243,10 +241,12 @@ contains
 
     type(contact_point_t) :: point
     real(wp) :: motion(3)
-    integer :: c
+    integer :: c, k
 
-    step%lambda = -state%contact%lambda
-    do c = 1, model%n_contact
+    step%lambda = 0.0_wp*state%contact%lambda
+    do k = 1, size(problem%point)
+      c = problem%point(k)
+      step%lambda(:, c) = -state%contact%lambda(:, c)
       if (contact%status(c) == status_gap) cycle
       associate (tilt => step%tilt(:, contact%tool(c)), normal => contact%normal(:, c))
         point = model%contact_point(c)%at_place(contact%place(c))

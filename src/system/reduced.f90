@@ -5,7 +5,6 @@ module dd3_system_reduced
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : this_rank
   use dd3_linalg_matrix, only : set_unit_row
-  use dd3_linalg_partition, only : holds_row
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : motion_of
@@ -55,20 +54,30 @@ contains
     end do
   end subroutine start_rhs
 
-  !> Make the rows of prescribed displacements unit rows.
+  !> Make the rows of prescribed displacements, and of what is held, unit rows.
   subroutine prescribe(system, phase)
     type(system_t), intent(inout) :: system
     type(phase_t), intent(in) :: phase
 
-    integer :: node, i
+    logical :: fixed(3)
+    real(wp) :: value(3)
+    integer :: row, i
 
-    associate (reduced => system%matrix)
-      do node = 1, size(phase%prescribed, 2)
-        system%problem%rhs(3*node - 2:3*node) = merge(system%problem%prescribed(:, node), &
-            system%problem%rhs(3*node - 2:3*node), phase%prescribed(:, node))
-        if (.not. holds_row(reduced, node)) cycle
+    associate (reduced => system%matrix, problem => system%problem)
+      do row = 1, reduced%n
+        fixed = problem%held(row)
+        value = 0.0_wp
+        if (row <= size(phase%prescribed, 2)) then
+          fixed = fixed .or. phase%prescribed(:, row)
+          value = problem%prescribed(:, row)
+        end if
+        associate (rhs => problem%rhs(3*row - 2:3*row))
+          rhs = merge(value, rhs, fixed)
+        end associate
+        ! Of several ranks some have no blocks in this row.
+        if (reduced%diagonal(row) == 0) cycle
         do i = 1, 3
-          if (phase%prescribed(i, node)) call set_unit_row(reduced, node, i)
+          if (fixed(i)) call set_unit_row(reduced, row, i)
         end do
       end do
     end associate

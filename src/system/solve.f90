@@ -9,6 +9,7 @@ module dd3_system_solve
   use dd3_linalg_solver, only : solver_report_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_system_partition, only : share_verdict
   use dd3_system_reduced, only : reduce
   use dd3_system_system, only : system_t
   implicit none
@@ -47,18 +48,23 @@ contains
     call reduce(system, model, state)
     call system%profile%add(section_assembly)
     if (system%solver%needs_positions) system%solver%positions = state%x
-    system%column_square = system%formulation%squares(system%matrix, model%n_node)
+    system%column_square = system%formulation%squares(system%matrix, model%n_node) &
+        + system%enhanced%unfollowed_square
     call system%solver%factor(system%matrix, verdict)
+    call share_verdict(verdict)
     call system%profile%add(section_factorisation)
     call add_perturbed(system%solver%perturbed, info%perturbed)
     if (verdict%outcome == verdict_converged) then
       call solve_factorised(system, system%problem%solution, info, report)
-      if (report%converged) return
-      verdict%outcome = verdict_retry
-      verdict%cause = report%cause
-      verdict%detail = report%reason
-      verdict%norm = report%residual
-      if (report%cause == cause_singular) verdict%row = system%solver%perturbed%row
+      if (.not. report%converged) then
+        verdict%outcome = verdict_retry
+        verdict%cause = report%cause
+        verdict%detail = report%reason
+        verdict%norm = report%residual
+        if (report%cause == cause_singular) verdict%row = system%solver%perturbed%row
+      end if
+      call share_verdict(verdict)
+      if (verdict%outcome == verdict_converged) return
     else if (len_trim(info%solver) == 0) then
       info%solver = system%solver%method
     end if
@@ -100,6 +106,7 @@ contains
 
     call system%profile%start()
     call system%solver%solve(system%problem%rhs, solution, report)
+    call system%partition%share_solution(solution)
     call system%profile%add(section_solve)
     info%iterations = info%iterations + report%iterations
     if (len_trim(info%solver) == 0 .or. report%fallback) info%solver = report%method
