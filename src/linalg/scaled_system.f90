@@ -15,9 +15,10 @@ module dd3_linalg_scaled_system
 
   !> Renumbered and scaled copy of a linear system.
   type :: scaled_system_t
-    !> Copy: its block row i is the original's block row `order(i)`.
+    !> Copy: its block row i is the original's block row `order(i)`. It may have a part of the rows, and
+    !> has the same columns then: the unknowns that are left out are zero.
     type(block_matrix_t) :: matrix
-    !> Original number of each block row, `(n)`.
+    !> Original number of each block row of the copy.
     integer, allocatable :: order(:)
     !> Factor of each scalar row of the copy, `(3, n)`; zero in rows of other ranks.
     real(wp), allocatable :: scale(:, :)
@@ -46,21 +47,23 @@ contains
     integer, allocatable :: rank(:)
     integer :: i, k, n, n_block, next, first
 
-    n = matrix%n
+    n = size(order)
+    allocate (rank(matrix%n), source=0)
+    rank(order) = [(i, i=1, n)]
     n_block = 0
     do i = 1, n
-      if (holds_row(matrix, i)) n_block = n_block + matrix%row_start(i + 1) - matrix%row_start(i)
+      if (holds_row(matrix, order(i))) n_block = n_block + count(rank(matrix%column( &
+          matrix%row_start(order(i)):matrix%row_start(order(i) + 1) - 1)) > 0)
     end do
     self%order = order
     self%matrix = block_matrix_t()
     if (allocated(matrix%owner)) self%matrix%owner = matrix%owner(order)
     if (allocated(self%source)) deallocate (self%source, self%scale)
-    allocate (rank(n), self%source(n_block))
+    allocate (self%source(n_block))
     allocate (self%scale(3, n), source=0.0_wp)
     allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n), self%matrix%column(n_block))
     allocate (self%matrix%value(3, 3, merge(n_block, 0, self%has_values)), source=0.0_wp)
     self%matrix%n = n
-    rank(order) = [(i, i=1, n)]
     next = 1
     do i = 1, n
       first = next
@@ -68,6 +71,7 @@ contains
       self%matrix%diagonal(i) = 0
       if (.not. holds_row(matrix, order(i))) cycle
       do k = matrix%row_start(order(i)), matrix%row_start(order(i) + 1) - 1
+        if (rank(matrix%column(k)) == 0) cycle
         self%matrix%column(next) = rank(matrix%column(k))
         self%source(next) = k
         next = next + 1
@@ -202,12 +206,12 @@ contains
     end do
   end subroutine scaled_system_scale_rhs
 
-  !> Return a solution to the original numbering.
+  !> Return a solution to the original numbering; unknowns that are left out keep their values.
   pure subroutine scaled_system_restore_order(self, copy, x)
     class(scaled_system_t), intent(in) :: self
     !> Solution in the copy's numbering.
     real(wp), intent(in) :: copy(:)
-    real(wp), intent(out) :: x(:)
+    real(wp), intent(inout) :: x(:)
 
     integer :: i, j
 

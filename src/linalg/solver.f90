@@ -128,16 +128,20 @@ module dd3_linalg_solver
 contains
 
   !> Prepare for matrices of one pattern.
-  subroutine setup(self, matrix)
+  subroutine setup(self, matrix, rows)
     class(linear_solver_t), intent(inout) :: self
     !> Matrix of the pattern; its values are not used.
     type(block_matrix_t), intent(in) :: matrix
+    !> Block rows that are solved, in this order; the unknowns of the others are zero.
+    integer, intent(in), optional :: rows(:)
 
     type(error_t), allocatable :: error
     integer, allocatable :: order(:)
 
     call self%release()
-    if (allocated(matrix%owner)) then
+    if (present(rows)) then
+      order = rows
+    else if (allocated(matrix%owner)) then
       order = order_by_owner(matrix)
     else
       call find_ordering(trim(self%options%ordering), matrix, order, error)
@@ -145,7 +149,7 @@ contains
     end if
     call self%system%setup(matrix, order)
     if (allocated(self%scaled_b)) deallocate (self%scaled_b, self%scaled_x)
-    allocate (self%scaled_b(3*matrix%n), self%scaled_x(3*matrix%n))
+    allocate (self%scaled_b(3*size(order)), self%scaled_x(3*size(order)))
     call self%setup_scaled(self%system%matrix)
   end subroutine setup
 

@@ -106,7 +106,7 @@ contains
 
     associate (problem => system%problem, phase => model%phase(trial%phase))
       square = sum(problem%law_residual**2, dim=1, &
-          mask=.not. (phase%prescribed .or. spread(problem%held(:model%n_node), 1, 3)))
+          mask=.not. (phase%prescribed .or. spread(problem%held, 1, 3)))
     end associate
     rank = this_rank()
     if (model%part%divided) square = merge(square, 0.0_wp, model%part%node_owner == rank)

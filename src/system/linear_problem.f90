@@ -23,7 +23,8 @@ module dd3_system_linear_problem
 
   !> Unknowns, right-hand sides and prescribed values of one linear problem.
   type :: linear_problem_t
-    !> Whether a node or a tool keeps its place, as those outside a region, by block rows, `(n_row)`.
+    !> Whether a node keeps its place, as those outside a region, `(n_node)`. The linear system is
+    !> solved without it.
     logical, allocatable :: held(:)
     !> Contact points that are evaluated, and whose forces are unknown, in ascending order.
     integer, allocatable :: point(:)
@@ -72,7 +73,7 @@ contains
     integer :: c
 
     self%point = [(c, c=1, model%n_contact)]
-    allocate (self%held(n_row), source=.false.)
+    allocate (self%held(model%n_node), source=.false.)
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)

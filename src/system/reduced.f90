@@ -54,30 +54,21 @@ contains
     end do
   end subroutine start_rhs
 
-  !> Make the rows of prescribed displacements, and of what is held, unit rows.
+  !> Make the rows of prescribed displacements unit rows.
   subroutine prescribe(system, phase)
     type(system_t), intent(inout) :: system
     type(phase_t), intent(in) :: phase
 
-    logical :: fixed(3)
-    real(wp) :: value(3)
-    integer :: row, i
+    integer :: node, i
 
-    associate (reduced => system%matrix, problem => system%problem)
-      do row = 1, reduced%n
-        fixed = problem%held(row)
-        value = 0.0_wp
-        if (row <= size(phase%prescribed, 2)) then
-          fixed = fixed .or. phase%prescribed(:, row)
-          value = problem%prescribed(:, row)
-        end if
-        associate (rhs => problem%rhs(3*row - 2:3*row))
-          rhs = merge(value, rhs, fixed)
-        end associate
+    associate (reduced => system%matrix)
+      do node = 1, size(phase%prescribed, 2)
+        system%problem%rhs(3*node - 2:3*node) = merge(system%problem%prescribed(:, node), &
+            system%problem%rhs(3*node - 2:3*node), phase%prescribed(:, node))
         ! Of several ranks some have no blocks in this row.
-        if (reduced%diagonal(row) == 0) cycle
+        if (reduced%diagonal(node) == 0) cycle
         do i = 1, 3
-          if (fixed(i)) call set_unit_row(reduced, row, i)
+          if (phase%prescribed(i, node)) call set_unit_row(reduced, node, i)
         end do
       end do
     end associate

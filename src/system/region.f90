@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Region of the sheet: the system of a few free nodes, with their elements and contact points. All
-!> other nodes and the tools are held. It has its own matrix, linear problem and solver; tangents,
+!> other nodes and the tools are held: their block rows are not solved. It has its own matrix, linear problem and solver; tangents,
 !> workspaces, enhanced strains and contact are those of the sheet, lent while it is in use.
 !>
 !> Of several ranks each evaluates its elements and points; matrix and forces are summed, and all
@@ -38,18 +38,18 @@ contains
     call new_stiffness_pattern(self%matrix, model, elements)
     call make_umfpack_solver(self%solver, solver_options_t(method="umfpack", ilu_level=0, &
         tolerance=1.0e-10_wp, iterations=1, ordering="none"))
-    call self%solver%setup(self%matrix)
+    call self%solver%setup(self%matrix, rows=pack([(i, i=1, model%n_node)], chosen))
     associate (place => model%part%place(elements))
       call set_elements(self, model, pack(place, place > 0))
     end associate
     call new_linear_problem(self%problem, model, self%matrix%n)
     associate (problem => self%problem)
-      problem%held = [.not. chosen, (.true., i=model%n_node + 1, self%matrix%n)]
+      problem%held = .not. chosen
       problem%point = pack(problem%point, acts_on(model, chosen))
       problem%target = state%x
     end associate
     self%partition%gathers = .true.
-    self%matrix%owner = rows_added(model, self%problem%held)
+    self%matrix%owner = rows_added(model, chosen, self%matrix%n)
   end subroutine new_region
 
   !> Return whether the forces of the contact points act on chosen nodes.
@@ -69,14 +69,15 @@ contains
 
   !> Return the rank that adds the stiffness of the terms to each block row; -1 for those that are
   !> held, whose blocks may be missing.
-  function rows_added(model, held) result(owner)
+  function rows_added(model, chosen, n_row) result(owner)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: held(:)
-    integer :: owner(size(held))
+    logical, intent(in) :: chosen(:)
+    integer, intent(in) :: n_row
+    integer :: owner(n_row)
 
-    owner = this_rank()
-    if (model%part%divided) owner(:model%n_node) = model%part%node_owner
-    where (held) owner = -1
+    owner = -1
+    owner(:model%n_node) = merge(this_rank(), -1, chosen)
+    if (model%part%divided) owner(:model%n_node) = merge(model%part%node_owner, -1, chosen)
   end function rows_added
 
   !> Hand on what the systems of sheet and region share.
