@@ -76,8 +76,11 @@ contains
     integer :: owner(n_row)
 
     owner = -1
-    owner(:model%n_node) = merge(this_rank(), -1, chosen)
-    if (model%part%divided) owner(:model%n_node) = merge(model%part%node_owner, -1, chosen)
+    if (model%part%divided) then
+      owner(:model%n_node) = merge(model%part%node_owner, -1, chosen)
+    else
+      owner(:model%n_node) = merge(this_rank(), -1, chosen)
+    end if
   end function rows_added
 
   !> Hand on what the systems of sheet and region share.
