@@ -14,7 +14,7 @@ module dd3_process_elimination
   use dd3_model_state, only : state_t
   use dd3_model_terms_viscous, only : has_viscous
   use dd3_process_equilibrium, only : equilibrium_t
-  use dd3_process_forces, only : evaluate_forces
+  use dd3_process_forces, only : evaluate_residuals
   use dd3_process_newton, only : newton_converged, newton_course_t, solve
   use dd3_process_norm, only : residual_t
   use dd3_system_region, only : lend, new_region
@@ -121,7 +121,8 @@ contains
   end function squares
 
   !> Solve the equilibrium of the nodes with most of the residual alone, in the compliant
-  !> formulation; without it if that leaves the norm above the bound.
+  !> formulation; without it if that leaves the norm above the bound. The contact is that of the
+  !> region's last evaluation: elsewhere it does not change.
   recursive subroutine eliminate(self, bound, eliminated)
     class(sheet_equilibrium_t), intent(inout) :: self
     real(wp), intent(in) :: bound
@@ -151,7 +152,7 @@ contains
         call local%settle(force, converged)
         call lend(region, system)
         if (converged) then
-          call evaluate_forces(model, committed, trial, system)
+          call evaluate_residuals(model, committed, trial, system)
           call self%measure()
           eliminated = self%residual%scaled < min(bound, before%scaled)
         end if
@@ -159,7 +160,7 @@ contains
           call lend(system, region)
           call origin%restore(force)
           call lend(region, system)
-          if (converged) call evaluate_forces(model, committed, trial, system)
+          if (converged) call evaluate_residuals(model, committed, trial, system)
           self%residual = before
           self%scaled_norm = before%scaled
         end if

@@ -13,7 +13,7 @@ module dd3_process_forces
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: set_tools, evaluate_forces, lost_tool
+  public :: set_tools, evaluate_forces, evaluate_residuals, lost_tool
 
 contains
 
@@ -42,10 +42,21 @@ contains
     !> Gets contact and residuals.
     type(system_t), intent(inout) :: system
 
+    call evaluate_contact(system, model, committed, trial)
+    call evaluate_residuals(model, committed, trial, system)
+  end subroutine evaluate_forces
+
+  !> Evaluate the residuals of a trial state from its internal forces and its contact.
+  subroutine evaluate_residuals(model, committed, trial, system)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: committed
+    type(state_t), intent(inout) :: trial
+    !> Has the contact, and gets the residuals.
+    type(system_t), intent(inout) :: system
+
     real(wp) :: nearest(1), contact_forces(3, model%n_node)
     integer :: c, k, tool
 
-    call evaluate_contact(system, model, committed, trial)
     call trial%find_touching()
     call evaluate_terms(trial%term, model, committed%configuration_t, trial%configuration_t)
     trial%external_force = external_forces(trial%term, model, trial%configuration_t)
@@ -82,7 +93,7 @@ contains
             *(-nearest(1) + model%tolerance%touch)
       end do
     end associate
-  end subroutine evaluate_forces
+  end subroutine evaluate_residuals
 
   !> Return a tool that is pressed and has no contact; 0 if there is none.
   pure integer function lost_tool(model, trial)
