@@ -41,9 +41,9 @@ module dd3_process_limiters
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
   !> The first motion over the height of a contact layer, of which the smallest in thicknesses; two
-  !> tools open by twice of it. A drawn strip snaps between tools that open; in five runs with holder
-  !> forces within 0.3 % its springback is 5.82 to 5.94 mm with 0.25, 5.91 to 5.94 with 0.125, 5.94
-  !> to 5.97 with 0.0625, and 5.83 to 5.95 with 0.03, where the first increment fails in some.
+  !> tools open by twice of it. A drawn strip snaps between tools that open; in runs with holder
+  !> forces within 0.3 % its springback is 5.81 to 5.94 mm with 0.25, 5.91 to 5.94 with 0.125, 5.94
+  !> to 5.97 with 0.0625, and 5.83 to 5.95 with 0.03, where increments fail in some.
   real(wp), parameter :: first = 0.0625_wp, least_layer = 0.01_wp
   !> The first motion in the mixed formulation, in thicknesses.
   real(wp), parameter :: first_mixed = 0.0025_wp

@@ -5,8 +5,8 @@
 !> the derivative of the potential along the step, if there is one. The full step is taken if it
 !> ends short of the minimum or g there is small against g(0), if g(0) says nothing, or near the
 !> solution; otherwise it is shortened to where g is small, or where it is in the domain of the
-!> problem. Full steps are too
-!> long where points return from plastic to elastic behaviour: the tangent is that of plastic flow.
+!> problem. Full steps are too long where points return from plastic to elastic behaviour: the
+!> tangent is that of plastic flow.
 !>
 !> A few unknowns may be far more nonlinear than the rest; a step that suits them would be short for
 !> all. A problem may therefore solve for them alone after a full step, the rest held: nonlinear
@@ -105,10 +105,10 @@ module dd3_process_newton
   !> fewer iterations; larger: more iterations where sheets bend and unbend over radii.
   real(wp), parameter :: largest_ratio = 0.3_wp
   !> Scaled norm below which steps are not shortened, with smaller tolerances too. Near the solution
-  !> residual and step may be nearly orthogonal: with friction and exact contact |g(1)/g(0)| was 4e4,
-  !> the full step raised the norm by 6 %, and a search shortened every step to 0.003 of it. With
-  !> 1e-4 the draw of tests/cases/springback stops there at a tolerance of 1e-5, with 1e-3 it takes
-  !> 3 % more iterations.
+  !> residual and step may be nearly orthogonal: with friction and exact contact |g(1)/g(0)| was
+  !> 4e4, the full step raised the norm by 6 %, and a search shortened every step to 0.003 of it.
+  !> With 1e-4 the draw of tests/cases/springback stops there at a tolerance of 1e-5, with 1e-3 it
+  !> takes 3 % more iterations.
   real(wp), parameter :: near = 1.0e-2_wp
   !> Ratio |g(1)/g(0)| above which the residual was nearly orthogonal to the step, so that g says
   !> nothing. The full step is taken then if it reduces the norm. Where points stick to a tool that

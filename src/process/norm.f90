@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Norm that decides the convergence of a trial state: the residuals of nodes, contact and enhanced
 !> strains, or the balance of the pressed tools if that is farther off. It is a continuous function
-!> of the state evaluated and of the last step. All its factors and tolerances stand here; they have no unit.
+!> of the state evaluated and of the last step. All its factors and tolerances stand here; they have
+!> no unit.
 !> Source: Oliveira and Menezes 2004, eq. (19), scaled by the norm of the internal forces where it
 !> exceeds that of the contact forces, and such that a residual that is round-off has converged.
 !> Round-off: a node's position is the multiple of `spacing` nearest to the solution, and the
@@ -56,7 +57,7 @@ module dd3_process_norm
   real(wp), parameter :: round_off_factor = 5.0_wp
   !> Weight of the balance of a pressed tool, its residual over its force: what is off at the end of
   !> an increment is a step in the force of the next. A strip drawn under a holder of 35 N has a
-  !> punch force 0.004 % off with 10, 0.08 % with 3 and 0.2 % with 1, in 157, 145 and 149 iterations.
+  !> punch force 0.004 % off with 10, 0.08 % with 3, 0.2 % with 1, in 157, 145, 149 iterations.
   real(wp), parameter :: tool_weight = 10.0_wp
   !> Residual of a pressed tool, over its force, that counts as balanced.
   real(wp), parameter :: balanced = 1.0e-6_wp
@@ -95,7 +96,8 @@ contains
         tolerance = min(tolerance, free_tolerance)
   end function final_tolerance
 
-  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is larger.
+  !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is
+  !> larger.
   type(residual_t) function norm_of(model, trial, system, step) result(residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: trial

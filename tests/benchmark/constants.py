@@ -216,7 +216,7 @@ def main():
             cells.append(summary(base, all_of(folder, executable)))
             executable.unlink()
         place = constant.module.removeprefix("dd3_").replace("model_terms_", "")
-        rows.append([f"`{place}` `{constant.name}`", f"{constant.value:g}", constant.meaning, *cells])
+        rows.append([f"`{place}` `{constant.name}`", f"{constant.value:g}", constant.meaning.replace("|", "\\|"), *cells])
         print(*rows[-1], sep=" | ", flush=True)
     if arguments.write:
         put_table(REPORT, "constants", table(["constant", "value", "meaning", "half", "twice"], rows),
