@@ -199,6 +199,11 @@ def main():
     def all_of(folder, executable):
         return {name: measure(executable, folder / name, *case) for name, case in runs.items()}
 
+    if not (work / "commit").exists():  # of the sources that are copied, which are not under version control there
+        head, changes = (subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True,
+                                        check=True).stdout for command in (["rev-parse", "HEAD"],
+                                                                           ["status", "--porcelain", "src"]))
+        (work / "commit").write_text(head[:7] + ("+" if changes else ""), encoding="utf-8")
     base = all_of(work / "base", program)
     print({name: one for name, one in base.items()}, flush=True)
     if None in base.values():
@@ -219,8 +224,10 @@ def main():
         rows.append([f"`{place}` `{constant.name}`", f"{constant.value:g}", constant.meaning.replace("|", "\\|"), *cells])
         print(*rows[-1], sep=" | ", flush=True)
     if arguments.write:
-        put_table(REPORT, "constants", table(["constant", "value", "meaning", "half", "twice"], rows),
-                  [read_job(work / "base" / name / "out") for name in runs])
+        jobs = [read_job(work / "base" / name / "out") for name in runs]
+        for job in jobs:
+            job["program"]["commit"] = (work / "commit").read_text(encoding="utf-8").strip()
+        put_table(REPORT, "constants", table(["constant", "value", "meaning", "half", "twice"], rows), jobs)
 
 
 if __name__ == "__main__":
