@@ -25,8 +25,8 @@ module dd3_contact_compliant
       status_slip, status_stick, traction_t
   implicit none
   private
-  public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, layer_energy, compliant_operator, &
-      rotated
+  public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, layer_energy
+  public :: compliant_operator, rotated
 
   !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is
   !> of this order, pressures of bending over a radius and of ironing are far above.
