@@ -46,7 +46,7 @@ module dd3_system_mixed_contact
   !> Factor on the penalty of a candidate whose supports hold it along the normal: its force does
   !> not follow from equilibrium, but grows or falls by the penalty times the gap in every
   !> iteration. Without the factor a ram that is lifted keeps its force there, 1993 of 2000 N in
-  !> tests/cases/held_under_tool/mixed.dat.
+  !> tests/cases/held_under_tool/held_in_mixed_contact.dat.
   real(wp), parameter :: held_factor = 1.0e4_wp
   !> Points that a thread takes at a time.
   integer, parameter :: chunk = 64
