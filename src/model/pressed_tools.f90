@@ -22,7 +22,7 @@ module dd3_model_pressed_tools
   implicit none
   private
   public :: point_motion, force_turn, arm_change, tool_balance, unknowns_of, motion_of
-  public :: motion_at, turn_tools, begin_tilts, tilt_of, contact_moment, as_forces
+  public :: is_free, support_stiffness, motion_at, turn_tools, begin_tilts, tilt_of, contact_moment, as_forces
 
 contains
 
@@ -38,6 +38,25 @@ contains
     a = moments(phase, tool, place - tools%centre(:, tool) - tools%displacement(:, tool))
     a(:, 1) = phase%direction(:, tool)
   end function point_motion
+
+  !> Whether each unknown of a tool is free: none of one that is not pressed, the first of one that
+  !> does not tilt.
+  pure function is_free(phase, tool) result(free)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: tool
+    logical :: free(3)
+
+    free = [phase%pressed(tool), phase%tilts(tool), phase%tilts(tool)]
+  end function is_free
+
+  !> Return the stiffness of the support of a tool against each of its unknowns: 0, and k in N.mm/rad.
+  pure function support_stiffness(phase, tool) result(stiffness)
+    type(phase_t), intent(in) :: phase
+    integer, intent(in) :: tool
+    real(wp) :: stiffness(3)
+
+    stiffness = [0.0_wp, phase%tilt(tool)%stiffness, phase%tilt(tool)%stiffness]
+  end function support_stiffness
 
   !> Return S, the change of a force on a pressed tool as the tool tilts.
   pure function force_turn(phase, tool, normal, force) result(s)

@@ -115,7 +115,7 @@ contains
 
     type(contact_point_t) :: point
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
-    real(wp), dimension(3, 3) :: a, s, by_node, line
+    real(wp), dimension(3, 3) :: a, s, arm, by_node, line
     integer :: i
 
     point = model%contact_point(c)%at_place(contact%place(c))
@@ -126,8 +126,8 @@ contains
       a = point_motion(phase, state%tools, tool, point%position(state%x))
       s = force_turn(phase, tool, contact%normal(:, c), contact%force(:, c)) - contact%rise(c) &
           *matmul(stiffness, force_turn(phase, tool, contact%normal(:, c), contact%normal(:, c)))
-      by_node = matmul(transpose(a), stiffness) &
-          + transpose(arm_change(phase, tool, contact%force(:, c)))
+      arm = transpose(arm_change(phase, tool, contact%force(:, c)))
+      by_node = matmul(transpose(a), stiffness) + arm
       do i = 1, point%n_node
         call add_block(matrix, point%node(i), row, &
             matmul(transpose(b(:, :, i)), s - matmul(stiffness, a)))
@@ -136,7 +136,7 @@ contains
       line = 0.0_wp
       line(:, 1) = phase%direction(:, tool)
       call add_block(matrix, row, row, matmul(transpose(a), s - matmul(stiffness, a)) &
-          - matmul(transpose(arm_change(phase, tool, contact%force(:, c))), line))
+          - matmul(arm, line))
       associate (balance => problem%rhs(3*row - 2:3*row))
         balance = balance - matmul(matmul(weight - identity, problem%contact_residual(:, c)), a)
       end associate
