@@ -15,6 +15,13 @@ module dd3_model_tolerances
   !> Below this |n.f|, of two unit vectors, a force f counts as tangential to the surface.
   real(wp), parameter :: tangential = 1.0e-6_wp
 
+  !> Gap that counts as contact, gap of a pressed tool that counts as closed, advantage of another
+  !> tool, and depth that an accepted increment may leave, over the thickness.
+  real(wp), parameter :: touching = 1.0e-4_wp, closing = 1.0e-9_wp
+  real(wp), parameter :: better = 1.0e-6_wp, remaining = 1.0e-3_wp
+  !> Distances up to which a tool is looked for, and at the start, over the diagonal of the sheet.
+  real(wp), parameter :: search = 100.0_wp, first_search = 1000.0_wp
+
   !> Lengths, mm.
   type :: tolerances_t
     !> Gap up to which a tool without contact counts as touching.
@@ -45,12 +52,12 @@ contains
     real(wp) :: diagonal
 
     diagonal = norm2(maxval(x, dim=2) - minval(x, dim=2))
-    self%touch = 1.0e-4_wp*thickness
-    self%closed = 1.0e-9_wp*thickness
-    self%hysteresis = 1.0e-6_wp*thickness
-    self%tool_search = 100.0_wp*diagonal
-    self%start_search = 1000.0_wp*diagonal
-    self%depth = 1.0e-3_wp*thickness
+    self%touch = touching*thickness
+    self%closed = closing*thickness
+    self%hysteresis = better*thickness
+    self%tool_search = search*diagonal
+    self%start_search = first_search*diagonal
+    self%depth = remaining*thickness
     self%committed_depth = 2.0_wp*max(start_depth, self%depth)
   end function new_tolerances
 

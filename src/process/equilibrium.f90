@@ -73,6 +73,8 @@ module dd3_process_equilibrium
   end type equilibrium_t
 
   !> Work of the residual in a step that is round-off, over the norms of internal forces and step.
+  !> Without it the sign of round-off shortens steps in a sheet that has lost its forces: 13
+  !> iterations for 3 where a ram leaves the held cube of tests/cases/held_under_tool.
   real(wp), parameter :: negligible_work = 1.0e-12_wp
   !> Largest displacement of a node in an iteration, and that of a nearly singular tangent, over the
   !> thickness of the sheet.

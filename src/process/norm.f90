@@ -48,9 +48,6 @@ module dd3_process_norm
   !> The same while the tools are withdrawn and touch the sheet: its shape is not final, and stick and
   !> slip at the last nodes do not settle to the last digit.
   real(wp), parameter :: opening_tolerance = 1.0e-3_wp
-  !> Strain whose force on the square of the thickness is the smallest scale of the norm: in a free
-  !> sheet at rest all forces are round-off. Larger: smaller forces count as zero.
-  real(wp), parameter :: negligible_strain = 1.0e-6_wp
   !> Residual that counts as zero, over the root mean square of the round-off. In S-shaped rails
   !> (input_files/rail, 48 to 1080 elements) residuals stall at 1.0 to 3.5 times the latter, as the
   !> parameters of the enhanced strains, the stresses and the forces are rounded too.
@@ -158,8 +155,7 @@ contains
     associate (phase => model%phase(trial%phase))
       force = agreed(norm_over_ranks(step) + residual%norm)
       scale = agreed(max(norm_over_ranks(norm2(trial%contact%lambda)), &
-          norm2(trial%sheet%internal_force), &
-          negligible_strain*model%least_shear()*model%thickness**2))
+          norm2(trial%sheet%internal_force)))
       if (force >= convergence_tolerance(phase, trial)*scale) then
         round_off = attainable_residual(system%column_square, trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase, trial))

@@ -58,8 +58,8 @@ module dd3_process_step_control
   real(wp), parameter :: cutback_factor = 0.5_wp, cutback_min = 1.0e-5_wp
   !> The latter in a release.
   real(wp), parameter :: release_min = 1.0e-8_wp
-  !> Factor on the bound after an accepted increment, and the value above which it is removed.
-  real(wp), parameter :: growth = 1.5_wp, largest_r_cap = 1.0e3_wp
+  !> Factor on the bound after an accepted increment.
+  real(wp), parameter :: growth = 1.5_wp
   !> The former in a release, whose increments fail at a snap, not for their size.
   real(wp), parameter :: release_growth = 4.0_wp
   !> Largest number of attempts up to which one beyond the early end of the phase is repeated.
@@ -118,7 +118,6 @@ contains
     if (attempt%after_failure) state%r_cap = attempt%limit%r
     if (state%r_cap < huge(1.0_wp)/release_growth) &
         state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
-    if (state%r_cap > largest_r_cap) state%r_cap = huge(1.0_wp)
   end subroutine set_next_r_cap
 
   !> Whether an increment with the present r is large enough for the phase to end.

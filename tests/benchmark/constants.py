@@ -26,7 +26,9 @@ ROOT = Path(__file__).resolve().parents[2]
 REPORT = ROOT / "docs" / "reports" / "constants.md"
 FILES = ("process/newton", "process/norm", "process/equilibrium", "process/tool_balance", "process/limiters",
          "process/step_control", "process/predictor", "process/phase_end", "process/elimination",
-         "model/terms/viscous", "model/tolerances", "system/mixed_contact")
+         "process/open_edges", "process/phase_start", "model/contact_layer", "model/rigid_supports", "model/tolerances",
+         "model/terms/drawbead", "model/terms/floating", "model/terms/viscous", "settings/accuracy", "setup/phases",
+         "contact/operator", "system/compliant_contact", "system/mixed_contact")
 DECLARATION = re.compile(r"^  (real\(wp\)|integer), parameter :: ([^&\n]*)\n", re.MULTILINE)
 FIXED = {"unknown", "n_kept", "chunk"}  # codes, sizes of arrays
 DRAW_BENDING = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
