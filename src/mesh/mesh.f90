@@ -35,6 +35,11 @@ module dd3_mesh_mesh
     integer, allocatable :: material(:)
     !> Thickness of a structured blank, mm; 0 for a mesh from a file, which may vary.
     real(wp) :: thickness = 0.0_wp
+    !> Times that each element has been divided, `(n_element)`; not allocated if none has.
+    integer, allocatable :: level(:)
+    !> Bound nodes, each in the middle of an edge of a larger element, and the nodes at the ends of
+    !> that edge, `(3, n)`; not allocated if there are none.
+    integer, allocatable :: bound(:, :)
     !> Labels of the nodes in the mesh file; not allocated for a structured blank.
     integer, allocatable :: node_label(:)
     !> Node sets of the blank, then those of the input file in its order.

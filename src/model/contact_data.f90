@@ -3,7 +3,7 @@
 module dd3_model_contact_data
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_mesh_data, only : mesh_data_t
   implicit none
   private
@@ -14,7 +14,7 @@ module dd3_model_contact_data
     integer :: n_contact = 0
     !> Contact points of this rank, `(n_contact)`, those at nodes first; the node of each, or one
     !> beside it.
-    type(contact_point_t), allocatable :: contact_point(:)
+    type(surface_point_t), allocatable :: contact_point(:)
     integer, allocatable :: contact_node(:)
     !> Number of contact points at nodes.
     integer :: n_contact_node = 0
@@ -74,7 +74,7 @@ contains
     real(wp), intent(in) :: place(:)
     real(wp) :: force(3, self%n_node)
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     integer :: c
 
     force = 0.0_wp

@@ -5,7 +5,7 @@
 !> over the faces, so that a uniform pressure gives the consistent forces on the nodes.
 module dd3_model_contact_points
   use dd3_base_kinds, only : wp
-  use dd3_model_contact_point, only : contact_point_t, crossing_point, edge_point, &
+  use dd3_sheet_surface_point, only : surface_point_t, crossing_point, edge_point, &
       face_point, node_point
   use dd3_linalg_tensor, only : cross
   use dd3_model_model, only : model_t
@@ -21,7 +21,7 @@ module dd3_model_contact_points
   !> Points of a list, each once.
   type :: point_list_t
     integer :: n = 0
-    type(contact_point_t), allocatable :: point(:)
+    type(surface_point_t), allocatable :: point(:)
     !> First point of each node as lower end of an edge, and the next one of the same node.
     integer, allocatable :: first(:), next(:)
     !> Elements of the points that move.
@@ -149,7 +149,7 @@ contains
   !> Add a point to the list.
   pure subroutine add_point(list, point)
     type(point_list_t), intent(inout) :: list
-    type(contact_point_t), intent(in) :: point
+    type(surface_point_t), intent(in) :: point
 
     list%n = list%n + 1
     list%point(list%n) = point

@@ -14,7 +14,7 @@ module dd3_model_pressed_tools
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross, identity, rotation_about
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_state, only : state_t
@@ -159,7 +159,7 @@ contains
     real(wp), intent(in) :: point_force(:, :)
     real(wp) :: moment(3)
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: centre(3)
     integer :: c
 

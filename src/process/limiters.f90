@@ -8,7 +8,7 @@ module dd3_process_limiters
       sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_contact_layer, only : progress_left
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : motion_at
@@ -330,7 +330,7 @@ contains
     type(stepper_t), intent(in) :: stepper
     type(limit_t) :: limit
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: approach, depth, bound
     logical :: touching(model%n_tool)
     integer :: c, node, tool

@@ -7,7 +7,7 @@ module dd3_process_phase_start
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
   use dd3_contact_operator, only : status_gap
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
   use dd3_model_contact_layer, only : held_offsets, starting_offset
   use dd3_model_energy, only : contact_energy, elastic_energy
@@ -229,7 +229,7 @@ contains
     !> Set where a tool is released.
     logical, intent(inout) :: lost
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     integer :: c, tool
     logical :: released
 

@@ -5,7 +5,7 @@ module dd3_process_work
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap, status_slip
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -65,7 +65,7 @@ contains
     type(state_t), intent(in) :: old
     type(state_t), intent(inout) :: new
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance, work(2)
     integer :: c, tool
 

@@ -8,7 +8,7 @@ module dd3_system_compliant_contact
   use dd3_contact_operator, only : status_gap, status_stick
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_model_contact_layer, only : layer_at
-  use dd3_model_contact_point, only : contact_point_t
+  use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
@@ -91,7 +91,7 @@ contains
     type(state_t), intent(inout) :: trial
     integer, intent(in) :: c
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     type(crossing_t) :: crossing
     real(wp) :: slip(3)
 
@@ -229,7 +229,7 @@ contains
     logical, intent(in) :: touching(:)
     integer, intent(in) :: c
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     type(crossing_t) :: crossing
 
     self%place(c) = committed%contact%place(c)

@@ -16,7 +16,7 @@ module dd3_system_point_rows
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_linalg_tensor, only : cross, identity, inverse
-  use dd3_model_contact_point, only : contact_point_t, most_point_nodes
+  use dd3_sheet_surface_point, only : surface_point_t, most_point_nodes
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : arm_change, force_turn, motion_at, &
       point_motion
@@ -66,7 +66,7 @@ contains
 
   !> Add the contributions of a point to the rows of its nodes.
   pure subroutine add_point(point, contact, c, residual, motion, x, position, e, matrix, rhs)
-    type(contact_point_t), intent(in) :: point
+    type(surface_point_t), intent(in) :: point
     type(contact_work_t), intent(in) :: contact
     !> Number of the point.
     integer, intent(in) :: c
@@ -113,7 +113,7 @@ contains
     !> Number of the point.
     integer, intent(in) :: c
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: b(3, 3, most_point_nodes), weight(3, 3), stiffness(3, 3)
     real(wp), dimension(3, 3) :: a, s, arm, by_node, line
     integer :: i
@@ -145,7 +145,7 @@ contains
 
   !> Add nodal forces B^T f to a right-hand side.
   pure subroutine add_force(point, b, force, rhs)
-    type(contact_point_t), intent(in) :: point
+    type(surface_point_t), intent(in) :: point
     real(wp), intent(in) :: b(:, :, :)
     !> N.
     real(wp), intent(in) :: force(3)
@@ -163,7 +163,7 @@ contains
   !> Add B^T C B + G of a point between nodes to the matrix.
   pure subroutine add_stiffness(matrix, point, position, x, b, stiffness, force)
     type(block_matrix_t), intent(inout) :: matrix
-    type(contact_point_t), intent(in) :: point
+    type(surface_point_t), intent(in) :: point
     !> Of the blocks of its element.
     integer, intent(in) :: position(:, :)
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
@@ -192,7 +192,7 @@ contains
   !> and that of its place.
   pure subroutine add_crossing_stiffness(matrix, point, position, contact, c, by_edge)
     type(block_matrix_t), intent(inout) :: matrix
-    type(contact_point_t), intent(in) :: point
+    type(surface_point_t), intent(in) :: point
     !> Of the blocks of its element.
     integer, intent(in) :: position(:, :)
     type(contact_work_t), intent(in) :: contact
@@ -239,7 +239,7 @@ contains
     !> Has the displacements.
     type(unknowns_t), intent(inout) :: step
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: motion(3)
     integer :: c, k
 
@@ -266,13 +266,13 @@ contains
     integer, intent(in) :: c
     !> F - lambda, N.
     real(wp), intent(in) :: residual(3)
-    type(contact_point_t), intent(in) :: contact_point
+    type(surface_point_t), intent(in) :: contact_point
     !> Positions and displacements of the nodes of the sheet, `(3, n_node)`, and the displacement
     !> of the tool, the other way, mm.
     real(wp), intent(in) :: x(:, :), displacement(:, :), motion(3)
     real(wp) :: change(3)
 
-    type(contact_point_t) :: point
+    type(surface_point_t) :: point
     real(wp) :: weight(3, 3), stiffness(3, 3), turn(3)
 
     call eliminate(contact, c, weight, stiffness)

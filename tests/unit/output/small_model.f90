@@ -11,7 +11,7 @@ module small_model
   use dd3_linalg_tensor, only : identity
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : new_material
-  use dd3_model_contact_point, only : node_point
+  use dd3_sheet_surface_point, only : node_point
   use dd3_model_model, only : model_t
   use dd3_model_part, only : new_part
   use dd3_model_rim, only : set_rim

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Contact point: a point of the sheet's surface at which the law of contact holds. It is a node, or
-!> lies on a face or an edge between nodes, on the surface
+!> Point of the sheet's surface, as those at which the law of contact holds. It is a node, or lies on
+!> a face or an edge between nodes, on the surface
 !>     x = sum_a N_a x_a + sum_a (v_a.n_a) n_a,    v_a = sum_b s_ab x_b,
 !> with the bilinear functions N_a of the face and the directions n_a of the columns of nodes from
 !> the opposite face of the sheet. The second sum bends the face: each of its edges is the cubic
@@ -9,18 +9,18 @@
 !> between, opposite edges are blended linearly. Only displacements enter.
 !> Source: Coons, Surfaces for computer-aided design of space forms, MIT (1967) (blending of edges);
 !> Nagata, Comput. Aided Geom. Des. 22 (2005) 327-347 (faces curved by the normals at the nodes).
-module dd3_model_contact_point
+module dd3_sheet_surface_point
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : identity
   implicit none
   private
-  public :: contact_point_t, most_point_nodes, node_point, edge_point, face_point, crossing_point
+  public :: surface_point_t, most_point_nodes, node_point, edge_point, face_point, crossing_point
 
   !> Largest number of nodes that a point depends on.
   integer, parameter :: most_point_nodes = 8
 
-  !> Contact point.
-  type :: contact_point_t
+  !> Point of the surface.
+  type :: surface_point_t
     !> Number of nodes between which it lies, and of all nodes that it depends on.
     integer :: n_surface = 0, n_node = 0
     !> The nodes, those of the surface first, then the other ends of their columns.
@@ -41,12 +41,12 @@ module dd3_model_contact_point
     procedure :: change
     procedure :: bending_stiffness
     procedure :: add_nodal_forces
-  end type contact_point_t
+  end type surface_point_t
 
 contains
 
-  !> Make the contact point at a node.
-  pure type(contact_point_t) function node_point(node) result(self)
+  !> Make the point at a node.
+  pure type(surface_point_t) function node_point(node) result(self)
     integer, intent(in) :: node
 
     self%n_surface = 1
@@ -55,8 +55,8 @@ contains
     self%weight(1) = 1.0_wp
   end function node_point
 
-  !> Make a contact point on an edge.
-  pure type(contact_point_t) function edge_point(node, opposite, xi) result(self)
+  !> Make a point on an edge.
+  pure type(surface_point_t) function edge_point(node, opposite, xi) result(self)
     !> Ends of the edge, and the other ends of their columns.
     integer, intent(in) :: node(2), opposite(2)
     !> Place, 0 at the first node, 1 at the second.
@@ -69,9 +69,9 @@ contains
     call bend_edge(self, 1, 2, xi, 1.0_wp)
   end function edge_point
 
-  !> Make the contact point of an edge of the mesh that may cross the border of a tool. The edge is
+  !> Make the point of an edge of the mesh that may cross the border of a tool. The edge is
   !> straight.
-  pure type(contact_point_t) function crossing_point(node) result(self)
+  pure type(surface_point_t) function crossing_point(node) result(self)
     !> Ends of the edge.
     integer, intent(in) :: node(2)
 
@@ -83,8 +83,8 @@ contains
   end function crossing_point
 
   !> Return the point with its place on the edge, if that moves.
-  pure type(contact_point_t) function at_place(self, place) result(point)
-    class(contact_point_t), intent(in) :: self
+  pure type(surface_point_t) function at_place(self, place) result(point)
+    class(surface_point_t), intent(in) :: self
     !> 0 at the first node, 1 at the second.
     real(wp), intent(in) :: place
 
@@ -92,8 +92,8 @@ contains
     if (self%moves) point%weight(:2) = [1.0_wp - place, place]
   end function at_place
 
-  !> Make a contact point on a face.
-  pure type(contact_point_t) function face_point(node, opposite, xi, eta) result(self)
+  !> Make a point on a face.
+  pure type(surface_point_t) function face_point(node, opposite, xi, eta) result(self)
     !> Corners in order, and the other ends of their columns.
     integer, intent(in) :: node(4), opposite(4)
     !> Place, 0 to 1; `xi` from the first corner to the second, `eta` from the first to the last.
@@ -111,7 +111,7 @@ contains
 
   !> Add the bending of an edge: h_a (x_a - x_b) to v_a, and the same for b.
   pure subroutine bend_edge(self, a, b, xi, blend)
-    type(contact_point_t), intent(inout) :: self
+    type(surface_point_t), intent(inout) :: self
     !> Its ends among the nodes of the point.
     integer, intent(in) :: a, b
     !> Place on the edge and weight of the edge.
@@ -129,7 +129,7 @@ contains
 
   !> Return the position of the point, mm.
   pure function position(self, x)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     real(wp) :: position(3)
@@ -150,7 +150,7 @@ contains
   !> Evaluate n at a node, v of that node, mm, and the derivative of n in the vector along the
   !> column, 1/mm.
   pure subroutine column(self, x, a, n, v, p)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: a
     real(wp), intent(out) :: n(3), v(3), p(3, 3)
@@ -173,7 +173,7 @@ contains
 
   !> Return the change of the position by displacements of the nodes, to first order, mm.
   pure function change(self, x, displacement)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> `(3, n_node)` of the sheet, mm.
@@ -201,7 +201,7 @@ contains
 
   !> Evaluate the derivatives of the position in the positions of the nodes.
   pure subroutine gradient(self, x, b)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> `(3, 3, n_node)`: component of the point, component of the node.
@@ -230,7 +230,7 @@ contains
 
   !> Add the forces on the nodes that have the same work as a force at the point.
   pure subroutine add_nodal_forces(self, x, force, nodal)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> N.
@@ -261,7 +261,7 @@ contains
   !> Evaluate the derivative of the nodal forces B^T f of a constant force f at the point in the
   !> positions of the nodes, N/mm.
   pure subroutine bending_stiffness(self, x, force, stiffness)
-    class(contact_point_t), intent(in) :: self
+    class(surface_point_t), intent(in) :: self
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> N.
@@ -304,4 +304,4 @@ contains
     end do
   end subroutine bending_stiffness
 
-end module dd3_model_contact_point
+end module dd3_sheet_surface_point
