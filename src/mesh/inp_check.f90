@@ -11,14 +11,21 @@ module dd3_mesh_inp_check
   use dd3_mesh_layers, only : layers_t, layers_ambiguous, layers_none
   implicit none
   private
-  public :: check_shapes, check_places, check_neighbours, check_hanging, check_layers
+  public :: check_shapes, check_places, check_neighbours, check_hanging, check_layers, check_roles
 
   !> Scaled Jacobian at or below which a corner has no volume.
   real(wp), parameter :: least_shape = 1.0e-6_wp
   !> Nodes nearer than this fraction of the shortest edge are at the same place.
   real(wp), parameter :: same_place = 1.0e-3_wp
+  !> Distance of a bound node from the middle of an edge, over its length.
+  real(wp), parameter :: middle = 0.02_wp
   !> Number of pairs of nodes at which the search for those at the same place ends.
   integer, parameter :: most_pairs = 100
+
+  !> Corners at the ends of the edges, and the natural axes along them.
+  integer, parameter :: edge_ends(2, 12) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, &
+      5, 1, 5, 2, 6, 3, 7, 4, 8], [2, 12])
+  integer, parameter :: edge_axis(12) = [1, 2, 1, 2, 1, 2, 1, 2, 3, 3, 3, 3]
 
   !> Defects of an element.
   integer, parameter :: sound = 0, mirrored = 1, by_rows = 2, inverted = 3, flat = 4
@@ -158,32 +165,74 @@ contains
     end do
   end function node_of_element
 
-  !> Report nodes on an edge or a face of an element to which they do not belong.
-  subroutine check_hanging(inp, node, neighbours)
+  !> Bind nodes that lie in the middle of an edge of an element to which they do not belong; report
+  !> those that lie elsewhere on its edges and faces.
+  subroutine check_hanging(inp, node, neighbours, axis, bound)
     type(inp_t), intent(inout) :: inp
     !> Nodes of the elements, their corners first.
     integer, intent(in) :: node(:, :)
     type(neighbours_t), intent(in) :: neighbours
+    !> Natural axis from bottom to top of each element.
+    integer, intent(in) :: axis(:)
+    !> Bound nodes and the ends of their edges, `(3, n)`; not allocated if there are none.
+    integer, allocatable, intent(out) :: bound(:, :)
 
     character(len=:), allocatable :: others
-    integer, allocatable :: found(:, :)
+    integer, allocatable :: found(:, :), ends(:, :)
+    integer :: i, k
+    logical :: parent(inp%n_node)
+
+    call find_hanging(inp%x(:, :inp%n_node), node, neighbours, inp%n_node, found)
+    allocate (ends(2, size(found, 2)))
+    do i = 1, size(found, 2)
+      ends(:, i) = edge_around(inp%x, node(:, found(2, i)), axis(found(2, i)), found(1, i))
+    end do
+    parent = .false.
+    parent(pack(ends, ends > 0)) = .true.
+    do i = 1, size(found, 2)
+      if (parent(found(1, i)) .or. size(node, 1) /= 8) ends(:, i) = 0
+    end do
+    associate (wrong => pack([(i, i=1, size(found, 2))], ends(1, :) == 0))
+      do i = 1, min(most_named, size(wrong))
+        k = wrong(i)
+        others = ""
+        if (i == most_named .and. size(wrong) > i) others = "; "//to_text(size(wrong) - i)// &
+            " others do"
+        associate (x => inp%x(:, found(1, k)))
+          call inp%report(inp%node_line(found(1, k)), node_of_element(inp, node, found(1, k))// &
+              " lies on an edge or a face of element "//to_text(inp%element_label(found(2, k)))// &
+              ", which does not have it, at "//to_text(x(1))//" "//to_text(x(2))//" "// &
+              to_text(x(3))//": the sheet would tear there"//others, "elements with whole "// &
+              "faces in common, or a node in the middle of an edge in the plane of the sheet, "// &
+              "whose ends are no such nodes")
+        end associate
+      end do
+    end associate
+    if (size(found, 2) > 0) bound = reshape([(found(1, i), ends(:, i), i=1, size(found, 2))], &
+        [3, size(found, 2)])
+  end subroutine check_hanging
+
+  !> Return the ends of the edge across the thickness direction of an element with eight nodes in
+  !> whose middle a node lies; 0 for none.
+  pure function edge_around(x, node, axis, hanging) result(ends)
+    real(wp), intent(in) :: x(:, :)
+    !> Nodes of the element, its corners first.
+    integer, intent(in) :: node(:)
+    !> Natural axis from its bottom to its top, and the node.
+    integer, intent(in) :: axis, hanging
+    integer :: ends(2)
+
     integer :: i
 
-    call check_roles(inp, node)
-    call find_hanging(inp%x(:, :inp%n_node), node, neighbours, most_pairs, found)
-    do i = 1, min(most_named, size(found, 2))
-      others = ""
-      if (i == most_named .and. size(found, 2) > i) others = "; "// &
-          to_text(size(found, 2) - i)//" others do"
-      associate (x => inp%x(:, found(1, i)))
-        call inp%report(inp%node_line(found(1, i)), node_of_element(inp, node, found(1, i))// &
-            " lies on an edge or a face of element "//to_text(inp%element_label(found(2, i)))// &
-            ", which does not have it, at "//to_text(x(1))//" "//to_text(x(2))//" "// &
-            to_text(x(3))//": the sheet would tear there"//others, &
-            "elements with whole faces in common")
+    ends = 0
+    do i = 1, 12
+      if (edge_axis(i) == abs(axis)) cycle
+      associate (a => x(:, node(edge_ends(1, i))), b => x(:, node(edge_ends(2, i))))
+        if (norm2(x(:, hanging) - 0.5_wp*(a + b)) > middle*norm2(b - a)) cycle
       end associate
+      ends = node(edge_ends(:, i))
     end do
-  end subroutine check_hanging
+  end function edge_around
 
   !> Report the first node that is at a corner of an element and between the corners of another.
   subroutine check_roles(inp, node)
@@ -215,15 +264,13 @@ contains
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: corner(:, :)
 
-    integer, parameter :: ends(2, 12) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, 5, &
-        1, 5, 2, 6, 3, 7, 4, 8], [2, 12])
     real(wp) :: length
     integer :: e, i
 
     shortest = huge(1.0_wp)
     do e = 1, size(corner, 2)
       do i = 1, 12
-        length = norm2(x(:, corner(ends(1, i), e)) - x(:, corner(ends(2, i), e)))
+        length = norm2(x(:, corner(edge_ends(1, i), e)) - x(:, corner(edge_ends(2, i), e)))
         if (length > 0.0_wp) shortest = min(shortest, length)
       end do
     end do

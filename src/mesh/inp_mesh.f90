@@ -11,7 +11,7 @@ module dd3_mesh_inp_mesh
   use dd3_mesh_hexahedra, only : find_neighbours, neighbours_t
   use dd3_mesh_inp, only : inp_t
   use dd3_mesh_inp_check, only : check_hanging, check_layers, check_neighbours, &
-      check_places, check_shapes
+      check_places, check_roles, check_shapes
   use dd3_mesh_inp_element, only : node_order
   use dd3_mesh_inp_file, only : read_inp
   use dd3_mesh_inp_sets, only : resolve_sets
@@ -47,7 +47,7 @@ contains
       return
     end if
     if (inp%errors%count == 0) call resolve(mesh, inp, node)
-    if (inp%errors%count == 0) call check_geometry(inp, node, layers)
+    if (inp%errors%count == 0) call check_geometry(inp, node, layers, mesh%bound)
     call push_file_errors(errors, inp%errors, spec%source%at("file"))
     if (inp%errors%count > 0) return
     mesh%x = inp%x(:, :inp%n_node)
@@ -160,12 +160,14 @@ contains
         " belongs to no element"//others, "nodes of elements only")
   end subroutine report_unused
 
-  !> Check shapes and neighbours, and find the thickness direction.
-  subroutine check_geometry(inp, node, layers)
+  !> Check shapes and neighbours, find the thickness direction and bind hanging nodes.
+  subroutine check_geometry(inp, node, layers, bound)
     type(inp_t), intent(inout) :: inp
     !> Nodes of the elements, their corners first, `(n_element_node, n_element)`.
     integer, intent(in) :: node(:, :)
     type(layers_t), intent(out) :: layers
+    !> Bound nodes and the ends of their edges; not allocated if there are none.
+    integer, allocatable, intent(out) :: bound(:, :)
 
     type(neighbours_t) :: neighbours
 
@@ -175,11 +177,12 @@ contains
       call find_neighbours(neighbours, corner, inp%n_node)
       call check_neighbours(inp, neighbours)
       if (inp%errors%count > 0) return
-      call check_hanging(inp, node, neighbours)
+      call check_roles(inp, node)
       if (inp%errors%count > 0) return
       call find_layers(layers, neighbours, corner, inp%x)
     end associate
     call check_layers(inp, layers)
+    if (inp%errors%count == 0) call check_hanging(inp, node, neighbours, layers%axis, bound)
   end subroutine check_geometry
 
   !> Set the connectivity in our order of the nodes, with the thickness as third axis.

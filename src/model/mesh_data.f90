@@ -9,6 +9,7 @@ module dd3_model_mesh_data
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_terms_load_sets, only : load_set_t, pressure_set_t
   use dd3_model_tolerances, only : tolerances_t
+  use dd3_sheet_surface_point, only : surface_point_t
   implicit none
   private
   public :: mesh_data_t, node_set_t
@@ -21,7 +22,7 @@ module dd3_model_mesh_data
 
   !> Mesh data.
   type :: mesh_data_t
-    integer :: n_node = 0, n_element = 0
+    integer :: n_node = 0, n_element = 0, n_bound = 0
     !> Initial positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x0(:, :)
     !> Positions in which another run has left the sheet, `(3, n_node)`, mm; not allocated if the
@@ -29,6 +30,15 @@ module dd3_model_mesh_data
     real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
+    !> Times that each element has been divided, `(n_element)`; not allocated if none has.
+    integer, allocatable :: level(:)
+    !> Bound nodes and the nodes at the ends of their edges, `(3, n_bound)`, and their points on
+    !> the edges; not allocated if there are none.
+    integer, allocatable :: bound(:, :)
+    type(surface_point_t), allocatable :: bound_point(:)
+    !> Nodes that the forces of each element act on, `(:, n_element)`: its own, and the parents of
+    !> its bound nodes; a node may be repeated.
+    integer, allocatable :: coupling(:, :)
     !> Elements of this rank.
     type(part_t) :: part
     !> Node sets of the sheet itself, of which there are `n_sheet_set`, then those of the input.
@@ -63,6 +73,7 @@ module dd3_model_mesh_data
     !> an element, `(4, n)`.
     integer, allocatable :: bead_face(:, :)
   contains
+    procedure :: bound_nodes
     procedure :: start_positions
     procedure :: thickness_at
     procedure :: largest_thickness
@@ -70,6 +81,14 @@ module dd3_model_mesh_data
   end type mesh_data_t
 
 contains
+
+  !> Return the numbers of the bound nodes.
+  pure function bound_nodes(self) result(node)
+    class(mesh_data_t), intent(in) :: self
+    integer :: node(self%n_bound)
+
+    if (self%n_bound > 0) node = self%bound(1, :)
+  end function bound_nodes
 
   !> Return the positions of the nodes at the start of the job, `(3, n_node)`, mm.
   pure function start_positions(self) result(x)

@@ -21,14 +21,17 @@ module dd3_model_rigid_supports
 contains
 
   !> Choose the supports.
-  subroutine choose_supports(x, prescribed, support)
+  subroutine choose_supports(x, prescribed, support, bound)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> Directions with a support already, `(3, n_node)`.
     logical, intent(in) :: prescribed(:, :)
     !> Node and axis of each support, `(2, n)`.
     integer, allocatable, intent(out) :: support(:, :)
+    !> Nodes that are bound to others and cannot be supported.
+    integer, intent(in), optional :: bound(:)
 
+    logical :: allowed(size(x, 2))
     type(rigid_motion_t) :: body
     real(wp) :: projector(6, 6), row(6), component, other
     integer :: n, k, place(2), near(2)
@@ -37,9 +40,11 @@ contains
     call body%hold_prescribed(x, prescribed)
     call body%free_projector(projector, n)
     allocate (support(2, n))
+    allowed = .true.
+    if (present(bound)) allowed(bound) = .false.
     do k = 1, n
-      call find_largest(body, x, spread(.true., 1, size(x, 2)), projector, place, component)
-      call find_largest(body, x, any(prescribed, dim=1), projector, near, other)
+      call find_largest(body, x, allowed, projector, place, component)
+      call find_largest(body, x, allowed .and. any(prescribed, dim=1), projector, near, other)
       if (other >= sufficient*component) place = near
       support(:, k) = place
       row = matmul(projector, body%condition(x(:, place(1)), identity(:, place(2))))

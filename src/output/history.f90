@@ -9,7 +9,9 @@ module dd3_output_history
   use dd3_base_text, only : axis => axis_name, newline
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
+  use dd3_model_bound_nodes, only : give_to_parents
   use dd3_model_model, only : model_t
+  use dd3_model_reactions, only : reactions
   use dd3_model_rim, only : mean_draw_in
   use dd3_model_state, only : state_t
   use dd3_model_terms_released, only : released_tool, remaining_force
@@ -209,7 +211,8 @@ contains
     real(wp), allocatable :: reaction(:, :)
     integer :: i
 
-    if (any(model%history%reaction .or. model%history%moment)) reaction = reactions(model, state)
+    if (any(model%history%reaction .or. model%history%moment)) &
+        reaction = support_reactions(model, state)
     do i = 1, size(model%history)
       if (model%history(i)%displacement) then
         call table%add_reals(mean(state%x, model%history(i)%node) &
@@ -242,17 +245,18 @@ contains
 
   !> Return the support reactions of the nodes, `(3, n_node)`, N: internal forces less those of
   !> loads and tools. Fading reactions of freed directions are included.
-  function reactions(model, state) result(reaction)
+  function support_reactions(model, state) result(reaction)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp) :: reaction(3, model%n_node)
 
-    reaction = state%sheet%internal_force - state%external_force
-    where (spread(released_tool(state%term) == 0, 1, 3)) &
-        reaction = reaction - remaining_force(state%term)
-    reaction = reaction + model%nodal_contact_forces(state%x, state%contact%lambda, &
-        state%contact%place)
-  end function reactions
+    real(wp) :: fading(3, model%n_node)
+
+    fading = remaining_force(state%term)
+    where (spread(released_tool(state%term) /= 0, 1, 3)) fading = 0.0_wp
+    call give_to_parents(model, state%x, fading)
+    reaction = reactions(model, state) - fading
+  end function support_reactions
 
   !> Return the moment of the support reactions of some nodes about their mean position, N.mm.
   pure function moment(x, reaction, node)

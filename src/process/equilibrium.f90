@@ -9,6 +9,7 @@ module dd3_process_equilibrium
   use dd3_base_ranks, only : agreed, any_rank, count_over_ranks, sum_over_ranks, this_rank
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, cause_large_step, &
       cause_led_inside, cause_lost_tool, cause_residual, cause_tool_force, cause_unsettled
+  use dd3_model_bound_nodes, only : follow_parents
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_pressed_tools, only : as_forces, turn_tools, unknowns_of
@@ -264,6 +265,7 @@ contains
 
     associate (trial => self%trial, start => self%start, step => self%step)
       trial%x = start%x + fraction*step%x
+      call follow_parents(self%model, trial%x)
       trial%sheet%enhanced = start%enhanced + fraction*step%enhanced
       trial%contact%lambda = start%lambda + fraction*step%lambda
       trial%tools%displacement = start%tool + fraction*step%tool

@@ -4,6 +4,7 @@
 module dd3_process_forces
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks
+  use dd3_model_bound_nodes, only : forces_on_bound, give_to_parents
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : tool_balance
@@ -71,6 +72,9 @@ contains
           trial%contact%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
       problem%law_residual = problem%residual + contact_forces
+      problem%bound_force = forces_on_bound(model, problem%law_residual)
+      call give_to_parents(model, trial%x, problem%residual)
+      call give_to_parents(model, trial%x, problem%law_residual)
       force = 0.0_wp
       do c = 1, model%n_contact
         tool = contact%tool(c)

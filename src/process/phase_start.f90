@@ -15,6 +15,7 @@ module dd3_process_phase_start
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : begin_tilts
+  use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : external_forces
   use dd3_model_terms_released, only : hold_released
@@ -208,9 +209,7 @@ contains
     freed = .false.
     if (number > 1) freed = model%phase(number - 1)%prescribed
     freed = freed .and. .not. model%phase(number)%prescribed
-    reaction = state%sheet%internal_force - state%external_force
-    reaction = reaction + model%nodal_contact_forces(state%x, state%contact%lambda, &
-        state%contact%place)
+    reaction = reactions(model, state)
     where (.not. freed) reaction = 0.0_wp
     force = force - reaction
     lost = lost .or. any(freed)

@@ -11,10 +11,12 @@ module dd3_process_predictor
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_contact_operator, only : status_gap
+  use dd3_model_bound_nodes, only : forces_on_bound, give_to_parents
   use dd3_model_contact_layer, only : offset_rate
   use dd3_model_model, only : model_t
   use dd3_model_motions, only : motion_displacement
   use dd3_model_phase, only : phase_t
+  use dd3_model_reactions, only : unbalanced_forces
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : add_stiffness, rate_of_forces
   use dd3_system_contact, only : predictor_contact
@@ -121,6 +123,8 @@ contains
         factor => self%progress*phase%slope(committed%progress))
       problem%residual = -rate_of_forces(committed%term, model, committed%configuration_t, &
           self%progress)
+      problem%bound_force = forces_on_bound(model, unbalanced_forces(model, committed))
+      call give_to_parents(model, committed%x, problem%residual)
       call move_contacts(self, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)

@@ -8,6 +8,7 @@ module dd3_process_work
   use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_energy, only : plastic_work_increment
   use dd3_model_model, only : model_t
+  use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
   use dd3_system_contact_work, only : contact_work_t
   use dd3_tools_placement, only : point_displacement
@@ -50,9 +51,7 @@ contains
     real(wp) :: force(3, model%n_node), reaction(3, model%n_node)
 
     force = old%external_force + new%external_force
-    reaction = old%sheet%internal_force + new%sheet%internal_force - force
-    reaction = reaction + model%nodal_contact_forces(old%x, old%contact%lambda, old%contact%place) &
-        + model%nodal_contact_forces(new%x, new%contact%lambda, new%contact%place)
+    reaction = reactions(model, old) + reactions(model, new)
     where (.not. model%phase(new%phase)%prescribed) reaction = 0.0_wp
     new%work%external = old%work%external + 0.5_wp*sum((force + reaction)*moved)
   end subroutine add_external_work

@@ -6,6 +6,7 @@ module dd3_report_unload_report
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
   use dd3_model_model, only : model_t
+  use dd3_model_reactions, only : reactions
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
@@ -125,15 +126,16 @@ contains
     type(message_list_t), intent(inout) :: notes
 
     real(wp), allocatable :: reaction(:)
-    real(wp) :: scale
+    real(wp) :: all_reactions(3, model%n_node), scale
     integer :: k
 
     associate (support => model%phase(state%phase)%support)
       if (size(support, 2) == 0) return
       allocate (reaction(size(support, 2)))
+      all_reactions = reactions(model, state)
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
-          reaction(k) = state%sheet%internal_force(axis, node) - state%external_force(axis, node)
+          reaction(k) = all_reactions(axis, node)
           if (model%phase(state%phase)%floats) reaction(k) = &
               spring_force(spring_stiffness(model, state), state, node, axis)
         end associate

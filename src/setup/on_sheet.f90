@@ -10,6 +10,8 @@ module dd3_setup_on_sheet
   use dd3_input_case, only : case_t
   use dd3_mesh_build, only : add_sets
   use dd3_mesh_mesh, only : mark_directions, mesh_t
+  use dd3_model_bound_faces, only : remove_inner_faces
+  use dd3_model_bound_nodes, only : set_bound_nodes
   use dd3_model_contact_data, only : contact_data_t
   use dd3_model_contact_points, only : set_contact_points
   use dd3_model_fingerprint, only : tool_digest
@@ -65,6 +67,7 @@ contains
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
     call new_phases(model, case, mesh, errors)
+    call free_bound_nodes(model)
     call check_loads(model, case, errors)
     call set_history(model, case, mesh)
   end subroutine set_on_sheet
@@ -107,10 +110,13 @@ contains
       model%set(i)%name = mesh%set(i)%name
       model%set(i)%node = mesh%set(i)%node
     end do
-    call new_sheet_faces(model%face, model%element, mesh%connectivity)
     model%material_of = mesh%material
     call new_part(model%part, mesh%n_node, mesh%connectivity)
     call set_columns(model)
+    if (allocated(mesh%level)) model%level = mesh%level
+    call set_bound_nodes(model, mesh%bound)
+    call new_sheet_faces(model%face, model%element, mesh%connectivity)
+    call remove_inner_faces(model)
     if (model%element%n_enhanced > 0) &
         model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
     call set_thickness(model, mesh%thickness)
@@ -196,6 +202,20 @@ contains
       call mark_directions(model%fixed, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
     end do
   end subroutine set_fixed
+
+  !> Leave the bound nodes, also those within supported areas, to their parents.
+  pure subroutine free_bound_nodes(model)
+    type(model_t), intent(inout) :: model
+
+    integer :: i, k
+
+    if (.not. allocated(model%phase)) return
+    do k = 1, model%n_bound
+      do i = 1, size(model%phase)
+        model%phase(i)%prescribed(:, model%bound(1, k)) = .false.
+      end do
+    end do
+  end subroutine free_bound_nodes
 
   !> Set the node sets of history.csv.
   subroutine set_history(model, case, mesh)

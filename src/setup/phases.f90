@@ -268,7 +268,7 @@ contains
     phase%floats = .false.
     phase%support = reshape([integer ::], [2, 0])
     if (.not. unloaded) return
-    call choose_supports(model%start_positions(), led, phase%support)
+    call choose_supports(model%start_positions(), led, phase%support, model%bound_nodes())
     phase%floats = any(phase%withdrawn)
     if (.not. phase%floats) phase%prescribed = phase%held()
   end subroutine set_supports

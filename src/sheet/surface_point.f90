@@ -14,7 +14,8 @@ module dd3_sheet_surface_point
   use dd3_linalg_tensor, only : identity
   implicit none
   private
-  public :: surface_point_t, most_point_nodes, node_point, edge_point, face_point, crossing_point
+  public :: surface_point_t, most_point_nodes, node_point, edge_point, face_point, crossing_point, &
+      middle_point
 
   !> Largest number of nodes that a point depends on.
   integer, parameter :: most_point_nodes = 8
@@ -69,9 +70,8 @@ contains
     call bend_edge(self, 1, 2, xi, 1.0_wp)
   end function edge_point
 
-  !> Make the point of an edge of the mesh that may cross the border of a tool. The edge is
-  !> straight.
-  pure type(surface_point_t) function crossing_point(node) result(self)
+  !> Make the point in the middle of a straight edge.
+  pure type(surface_point_t) function middle_point(node) result(self)
     !> Ends of the edge.
     integer, intent(in) :: node(2)
 
@@ -79,6 +79,15 @@ contains
     self%n_node = 2
     self%node(:2) = node
     self%weight(:2) = 0.5_wp
+  end function middle_point
+
+  !> Make the point of an edge of the mesh that may cross the border of a tool. The edge is
+  !> straight.
+  pure type(surface_point_t) function crossing_point(node) result(self)
+    !> Ends of the edge.
+    integer, intent(in) :: node(2)
+
+    self = middle_point(node)
     self%moves = .true.
   end function crossing_point
 

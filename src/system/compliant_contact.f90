@@ -12,6 +12,7 @@ module dd3_system_compliant_contact
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
+  use dd3_system_bound_rows, only : eliminate_bound_nodes
   use dd3_system_contact_search, only : crossing_hit, find_candidate, find_committed_candidate, &
       find_nearest_border, may_cross
   use dd3_system_contact_work, only : contact_work_t
@@ -297,6 +298,7 @@ contains
     type(state_t), intent(in) :: state
 
     call add_points(matrix, problem, contact, position, model, state)
+    call eliminate_bound_nodes(matrix, problem%rhs, model, state%x, problem%bound_force)
     call partition%complete_rows(matrix)
     call partition%complete_forces(model%n_node, problem%rhs)
   end subroutine reduce

@@ -31,6 +31,8 @@ module dd3_system_linear_problem
     !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N, and
     !> that with the forces F_equ of the contact law; of several ranks each has those of its nodes.
     real(wp), allocatable :: residual(:, :), law_residual(:, :)
+    !> Forces on the bound nodes that their parents carry, contact forces included, `(3, n_bound)`, N.
+    real(wp), allocatable :: bound_force(:, :)
     !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: contact_residual(:, :)
     !> Prescribed displacement increments of the nodes, `(3, n_node)`, mm.
@@ -77,6 +79,7 @@ contains
     allocate (self%residual(3, model%n_node), self%prescribed(3, model%n_node), source=0.0_wp)
     allocate (self%target(3, model%n_node), self%law_residual(3, model%n_node), source=0.0_wp)
     allocate (self%contact_residual(3, model%n_contact), source=0.0_wp)
+    allocate (self%bound_force(3, model%n_bound), source=0.0_wp)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(3, model%n_tool), &
         source=0.0_wp)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)

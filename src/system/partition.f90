@@ -40,7 +40,7 @@ contains
     if (.not. model%part%divided) return
     rank = this_rank()
     held(:model%n_node) = model%part%node_owner == rank
-    held(:model%n_node) = held(:model%n_node) .or. model%part%holds_node(model%connectivity, rank)
+    held(:model%n_node) = held(:model%n_node) .or. model%part%holds_node(model%coupling, rank)
   end function rows_held
 
   !> Find the rows to be exchanged.
@@ -56,9 +56,9 @@ contains
     self%received%start = [1]
     allocate (self%sent%item(0), self%received%item(0))
     this = this_rank()
-    mine = model%part%holds_node(model%connectivity, this)
+    mine = model%part%holds_node(model%coupling, this)
     do rank = 0, n_ranks() - 1
-      theirs = model%part%holds_node(model%connectivity, rank)
+      theirs = model%part%holds_node(model%coupling, rank)
       associate (owner => model%part%node_owner)
         call add_list(self%sent, mine .and. owner == rank .and. rank /= this)
         call add_list(self%received, theirs .and. owner == this .and. rank /= this)

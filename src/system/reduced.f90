@@ -9,6 +9,7 @@ module dd3_system_reduced
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : motion_of
   use dd3_model_state, only : state_t
+  use dd3_system_bound_rows, only : set_bound_displacements
   use dd3_system_enhanced, only : enhanced_response
   use dd3_system_linear_problem, only : linear_problem_t, unknowns_t
   use dd3_system_system, only : system_t
@@ -77,8 +78,8 @@ contains
   !> Set a step of the unknowns from the solution, but for the offset of the enhanced strains. A
   !> candidate in gap status loses its force.
   subroutine read_step(system, model, state, step)
-    !> Solved.
-    type(system_t), intent(in) :: system
+    !> Solved; the solution gets the displacements of the bound nodes.
+    type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model
     !> State of the linearisation.
     type(state_t), intent(in) :: state
@@ -86,6 +87,7 @@ contains
 
     integer :: tool, row
 
+    call set_bound_displacements(model, state%x, system%problem%solution)
     associate (phase => model%phase(state%phase), solution => system%problem%solution)
       step%x = reshape(solution(:3*model%n_node), [3, model%n_node])
       step%enhanced = enhanced_response(system%enhanced, model, solution)

@@ -168,8 +168,8 @@ contains
     integer, allocatable :: coupled(:), first(:), connectivity(:, :)
     integer :: tool, e, i, last
 
-    connectivity = model%connectivity
-    if (present(elements)) connectivity = model%connectivity(:, elements)
+    connectivity = model%coupling
+    if (present(elements)) connectivity = model%coupling(:, elements)
     allocate (near(model%n_node))
     first = [1]
     coupled = [integer ::]
