@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Transfer of the state to the integration points of elements that a cut has moved or made: through
-!> the thickness each point takes the values of the points of its own level, so that the problem is
-!> one in the mid-surface. There a linear function is fitted to the points of the old element at
-!> this place and of those around it, weighted by their distance; a linear field is carried exactly,
-!> and no value leaves the range of those around it.
+!> Transfer of the state to the integration points of elements that a cut has moved or made, or into
+!> which larger ones were divided: through the thickness each point takes the values of the points
+!> of its own level, so that the problem is one in the mid-surface. There a linear function is
+!> fitted to the points of the old element at this place and of those around it, weighted by their
+!> distance; a linear field is carried exactly, and no value leaves the range of those around it.
 !>
 !> Stress and internal variables are carried in the material axes, which turn with the sheet; the
 !> axes themselves are carried by their components and made orthonormal again.
@@ -19,7 +19,7 @@ module dd3_sheet_transfer
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
-  public :: transfer_point
+  public :: bounded_mean, linear_weights, mean_axes, quads_around, transfer_point
 
   !> Softening of the weights, over the distance of the farthest point.
   real(wp), parameter :: softening = 0.1_wp
@@ -44,33 +44,57 @@ contains
 
     real(wp), allocatable :: weight(:)
     integer, allocatable :: donor(:, :)
-    real(wp) :: low(size(stress) + size(internal_variables)), high(size(low)), mean(size(low))
-    real(wp) :: value(size(low))
-    integer :: k, n
 
-    n = size(stress)
     call find_weights(grid, plane, element, layer, level, place, donor, weight)
+    stress = bounded_mean(old%stress, donor, weight)
+    internal_variables = bounded_mean(old%internal_variables, donor, weight)
+    orientation = mean_axes(old%orientation, donor, weight)
+  end subroutine transfer_point
+
+  !> Return the weighted sum of values at integration points, within their range.
+  pure function bounded_mean(value, donor, weight) result(mean)
+    !> Values, `(m, n_point, n_element)`.
+    real(wp), intent(in) :: value(:, :, :)
+    !> Point and element of each, `(2, n)`, and the weights, with the sum 1.
+    integer, intent(in) :: donor(:, :)
+    real(wp), intent(in) :: weight(:)
+    real(wp) :: mean(size(value, 1))
+
+    real(wp) :: low(size(value, 1)), high(size(value, 1))
+    integer :: k
+
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
     mean = 0.0_wp
-    orientation = 0.0_wp
     do k = 1, size(weight)
-      associate (p => donor(1, k), e => donor(2, k))
-        value = [old%stress(:, p, e), old%internal_variables(:, p, e)]
-        orientation = orientation + weight(k)*old%orientation(:, :, p, e)
+      associate (this => value(:, donor(1, k), donor(2, k)))
+        low = min(low, this)
+        high = max(high, this)
+        mean = mean + weight(k)*this
       end associate
-      low = min(low, value)
-      high = max(high, value)
-      mean = mean + weight(k)*value
     end do
     mean = min(high, max(low, mean))
-    stress = mean(:n)
-    internal_variables = mean(n + 1:)
-    call make_orthonormal(orientation)
-  end subroutine transfer_point
+  end function bounded_mean
 
-  !> Find the integration points around a place on the grid, and their weights: those of the linear
-  !> function fitted by weighted least squares, evaluated at the place.
+  !> Return the weighted sum of axes at integration points, made orthonormal.
+  pure function mean_axes(axes, donor, weight) result(mean)
+    !> Axes as columns, `(3, 3, n_point, n_element)`.
+    real(wp), intent(in) :: axes(:, :, :, :)
+    !> As in `bounded_mean`.
+    integer, intent(in) :: donor(:, :)
+    real(wp), intent(in) :: weight(:)
+    real(wp) :: mean(3, 3)
+
+    integer :: k
+
+    mean = 0.0_wp
+    do k = 1, size(weight)
+      mean = mean + weight(k)*axes(:, :, donor(1, k), donor(2, k))
+    end do
+    call make_orthonormal(mean)
+  end function mean_axes
+
+  !> Find the integration points around a place on the grid, and their weights.
   pure subroutine find_weights(grid, plane, element, layer, level, place, donor, weight)
     type(grid_t), intent(in) :: grid
     real(wp), intent(in) :: plane(:, :)
@@ -83,16 +107,14 @@ contains
 
     integer, allocatable :: around(:), same_level(:)
     real(wp), allocatable :: offset(:, :)
-    real(wp) :: point(2), matrix(3, 3), row(3, 1), reach
-    logical :: regular
+    real(wp) :: point(2)
     integer :: i, k, p
 
     point = matmul(plane(:, grid%corner(:, place%quad)), bilinear(place%natural))
     around = quads_around(grid, place%quad)
     same_level = pack([(p, p=1, element%n_point)], &
         abs(element%point(3, :) - element%point(3, level)) < 1.0e-9_wp)
-    allocate (donor(2, size(around)*size(same_level)), weight(size(around)*size(same_level)))
-    allocate (offset(2, size(weight)))
+    allocate (donor(2, size(around)*size(same_level)), offset(2, size(around)*size(same_level)))
     k = 0
     do i = 1, size(around)
       do p = 1, size(same_level)
@@ -102,20 +124,33 @@ contains
             bilinear(element%point(:2, same_level(p)))) - point
       end do
     end do
-    reach = sqrt(maxval(sum(offset**2, dim=1)))
-    offset = offset/reach
-    weight = (1.0_wp/(sum(offset**2, dim=1) + softening**2))**2
+    weight = linear_weights(offset)
+  end subroutine find_weights
+
+  !> Return the weights of values at points around a place: those of the linear function fitted by
+  !> weighted least squares, evaluated at the place.
+  pure function linear_weights(offset) result(weight)
+    !> Points from the place, `(2, n)`.
+    real(wp), intent(in) :: offset(:, :)
+    real(wp) :: weight(size(offset, 2))
+
+    real(wp) :: near(2, size(offset, 2)), matrix(3, 3), row(3, 1)
+    logical :: regular
+    integer :: k
+
+    near = offset/sqrt(maxval(sum(offset**2, dim=1)))
+    weight = (1.0_wp/(sum(near**2, dim=1) + softening**2))**2
     matrix = 0.0_wp
     do k = 1, size(weight)
-      row(:, 1) = [1.0_wp, offset(:, k)]
+      row(:, 1) = [1.0_wp, near(:, k)]
       matrix = matrix + weight(k)*matmul(row, transpose(row))
     end do
     row(:, 1) = [1.0_wp, 0.0_wp, 0.0_wp]
     call solve_small(3, 1, matrix, row, regular)
     if (.not. regular) row(:, 1) = [1.0_wp, 0.0_wp, 0.0_wp]
-    weight = weight*(row(1, 1) + row(2, 1)*offset(1, :) + row(3, 1)*offset(2, :))
+    weight = weight*(row(1, 1) + row(2, 1)*near(1, :) + row(3, 1)*near(2, :))
     weight = weight/sum(weight)
-  end subroutine find_weights
+  end function linear_weights
 
   !> Return a quadrilateral and those that have a corner in common with it.
   pure function quads_around(grid, quad) result(around)

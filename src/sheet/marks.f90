@@ -1,0 +1,120 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Marks of the quadrilaterals of a sheet that are to be divided. After the division, those with a
+!> column in common differ by one level at most, so that no node at the end of an edge with a bound
+!> node is bound itself.
+!>
+!> Before the division, quadrilaterals on both sides of a bound column have one end of its edge in
+!> common: neighbours are found by common columns alone.
+module dd3_sheet_marks
+  use dd3_mesh_mesh, only : mesh_t
+  use dd3_sheet_grid, only : grid_t
+  implicit none
+  private
+  public :: balance, mark_balanced, marked_quads, quad_levels
+
+contains
+
+  !> Complete the marks of elements that are asked to be divided: all of a quadrilateral, a ring
+  !> around them if asked for, and what the balance of the levels needs. Those of the highest level
+  !> lose their marks.
+  pure subroutine mark_balanced(mesh, grid, most_level, buffer, marked)
+    type(mesh_t), intent(in) :: mesh
+    !> Grid of the mesh.
+    type(grid_t), intent(in) :: grid
+    !> Highest level.
+    integer, intent(in) :: most_level
+    !> Whether the neighbours of what is asked for, over edges and corners and of no higher level,
+    !> are divided too.
+    logical, intent(in) :: buffer
+    !> A mark on any element of a quadrilateral counts, `(n_element)`.
+    logical, intent(inout) :: marked(:)
+
+    logical :: quad(grid%n_quad)
+    integer :: level(grid%n_quad), q
+
+    level = quad_levels(mesh, grid)
+    quad = marked_quads(grid, marked) .and. level < most_level
+    if (buffer) call add_ring(grid, level, quad)
+    call balance(grid, level, quad)
+    do q = 1, grid%n_quad
+      marked(grid%element(:, q)) = quad(q)
+    end do
+  end subroutine mark_balanced
+
+  !> Return the levels of the quadrilaterals.
+  pure function quad_levels(mesh, grid) result(level)
+    type(mesh_t), intent(in) :: mesh
+    type(grid_t), intent(in) :: grid
+    integer :: level(grid%n_quad)
+
+    level = 0
+    if (allocated(mesh%level)) level = mesh%level(grid%element(1, :))
+  end function quad_levels
+
+  !> Return whether any element of each quadrilateral is marked.
+  pure function marked_quads(grid, marked) result(quad)
+    type(grid_t), intent(in) :: grid
+    !> `(n_element)`.
+    logical, intent(in) :: marked(:)
+    logical :: quad(grid%n_quad)
+
+    integer :: q
+
+    do q = 1, grid%n_quad
+      quad(q) = any(marked(grid%element(:, q)))
+    end do
+  end function marked_quads
+
+  !> Mark the neighbours of no higher level.
+  pure subroutine add_ring(grid, level, marked)
+    type(grid_t), intent(in) :: grid
+    !> `(n_quad)`.
+    integer, intent(in) :: level(:)
+    logical, intent(inout) :: marked(:)
+
+    logical :: asked(size(marked))
+    integer :: i, k, q
+
+    asked = marked
+    do q = 1, grid%n_quad
+      if (.not. asked(q)) cycle
+      do i = 1, 4
+        associate (c => grid%corner(i, q))
+          do k = grid%first(c), grid%first(c + 1) - 1
+            if (level(grid%quad_at(k)) <= level(q)) marked(grid%quad_at(k)) = .true.
+          end do
+        end associate
+      end do
+    end do
+  end subroutine add_ring
+
+  !> Mark the neighbours of a lower level, and theirs in turn.
+  pure subroutine balance(grid, level, marked)
+    type(grid_t), intent(in) :: grid
+    !> `(n_quad)`.
+    integer, intent(in) :: level(:)
+    logical, intent(inout) :: marked(:)
+
+    integer :: waiting(grid%n_quad), i, k, n, q
+
+    n = count(marked)
+    waiting(:n) = pack([(q, q=1, grid%n_quad)], marked)
+    do while (n > 0)
+      q = waiting(n)
+      n = n - 1
+      do i = 1, 4
+        associate (c => grid%corner(i, q))
+          do k = grid%first(c), grid%first(c + 1) - 1
+            associate (other => grid%quad_at(k))
+              if (marked(other) .or. level(other) >= level(q)) cycle
+              marked(other) = .true.
+              n = n + 1
+              waiting(n) = other
+            end associate
+          end do
+        end associate
+      end do
+    end do
+  end subroutine balance
+
+end module dd3_sheet_marks
