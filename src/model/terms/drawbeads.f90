@@ -12,7 +12,7 @@ module dd3_model_terms_drawbeads
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
-  use dd3_model_terms_term, only : term_t
+  use dd3_model_terms_term, only : extended, term_t
   implicit none
   private
   public :: drawbeads_t, new_drawbeads, presses_by_bead
@@ -46,6 +46,7 @@ module dd3_model_terms_drawbeads
     procedure :: dissipated
     procedure :: columns
     procedure :: values
+    procedure :: extend
     procedure :: walk
     procedure, private :: normal_fraction
     procedure, private :: keep
@@ -396,6 +397,18 @@ contains
     if (size(self%length) > 0) &
         row = [row, [(self%restraint(b), self%length(b), b=1, size(self%length))], self%work]
   end subroutine values
+
+  !> Extend the nodal values by those of new nodes.
+  subroutine extend(self, n_node)
+    class(drawbeads_t), intent(inout) :: self
+    integer, intent(in) :: n_node
+
+    if (size(self%load) == 0) return
+    self%load = extended(self%load, n_node)
+    deallocate (self%point)
+    allocate (self%point(0))
+    call self%keep()
+  end subroutine extend
 
   !> Pass the components to a visitor.
   subroutine walk(self, visitor)

@@ -15,7 +15,7 @@ module dd3_model_terms_loads
   use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_terms_gravity, only : gravity_name, is_free
   use dd3_model_terms_load_sets, only : load_set_t
-  use dd3_model_terms_term, only : term_box_t, term_t
+  use dd3_model_terms_term, only : extended, term_box_t, term_t
   implicit none
   private
   public :: loads_t, new_loads, nodal_forces, is_laid_down
@@ -44,6 +44,7 @@ module dd3_model_terms_loads
     procedure :: add_final_force
     procedure :: add_stiffness
     procedure :: magnitude
+    procedure :: extend
     procedure :: walk
     procedure, private :: lays_down
     procedure, private :: laying_forces
@@ -263,6 +264,15 @@ contains
 
     magnitude = maxval([0.0_wp, norm2(self%start, dim=1), norm2(self%final, dim=1)])
   end function magnitude
+
+  !> Extend the nodal values by those of new nodes.
+  subroutine extend(self, n_node)
+    class(loads_t), intent(inout) :: self
+    integer, intent(in) :: n_node
+
+    self%laying = extended(self%laying, n_node)
+    self%laying_left = extended(self%laying_left, n_node)
+  end subroutine extend
 
   !> Pass the components to a visitor.
   subroutine walk(self, visitor)

@@ -10,7 +10,7 @@ module dd3_model_terms_released
   use dd3_model_configuration, only : configuration_t
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
-  use dd3_model_terms_term, only : term_box_t, term_t
+  use dd3_model_terms_term, only : extended, term_box_t, term_t
   implicit none
   private
   public :: released_t, new_released, hold_released, released_tool, has_released, remaining_force
@@ -32,6 +32,7 @@ module dd3_model_terms_released
     procedure :: add_stiffness
     procedure :: add_tool_force
     procedure :: magnitude
+    procedure :: extend
     procedure :: walk
   end type released_t
 
@@ -216,6 +217,16 @@ contains
 
     magnitude = maxval(norm2(self%start, dim=1))
   end function magnitude
+
+  !> Extend the nodal values by those of new nodes.
+  subroutine extend(self, n_node)
+    class(released_t), intent(inout) :: self
+    integer, intent(in) :: n_node
+
+    self%start = extended(self%start, n_node)
+    self%left = extended(self%left, n_node)
+    self%tool = [self%tool, spread(0, 1, n_node - size(self%tool))]
+  end subroutine extend
 
   !> Pass the components to a visitor.
   subroutine walk(self, visitor)

@@ -13,7 +13,7 @@ module dd3_model_terms_term
   use dd3_model_state_visitor, only : state_visitor_t
   implicit none
   private
-  public :: term_t, term_box_t
+  public :: term_t, term_box_t, extended
 
   !> The term.
   type, abstract :: term_t
@@ -32,6 +32,7 @@ module dd3_model_terms_term
     procedure :: magnitude
     procedure :: columns
     procedure :: values
+    procedure :: extend
     procedure :: walk
   end type term_t
 
@@ -167,6 +168,23 @@ contains
     class(term_t), intent(in) :: self
     real(wp), allocatable, intent(inout) :: row(:)
   end subroutine values
+
+  !> Extend what the term has for each node by nodes that are new in a refined sheet, without forces.
+  subroutine extend(self, n_node)
+    class(term_t), intent(inout) :: self
+    integer, intent(in) :: n_node
+  end subroutine extend
+
+  !> Return values of nodes with zeros for those that are new.
+  pure function extended(values, n_node) result(all)
+    !> `(3, n_old_node)`.
+    real(wp), intent(in) :: values(:, :)
+    integer, intent(in) :: n_node
+    real(wp) :: all(3, n_node)
+
+    all(:, :size(values, 2)) = values
+    all(:, size(values, 2) + 1:) = 0.0_wp
+  end function extended
 
   !> Pass every component that decides how the run continues to a visitor.
   subroutine walk(self, visitor)

@@ -14,7 +14,7 @@ module dd3_model_terms_viscous
   use dd3_model_model, only : model_t
   use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_terms_floating, only : bending_stiffness
-  use dd3_model_terms_term, only : term_box_t, term_t
+  use dd3_model_terms_term, only : extended, term_box_t, term_t
   implicit none
   private
   public :: viscous_t, set_viscous, has_viscous, viscous_work, viscous_coefficients
@@ -35,6 +35,7 @@ module dd3_model_terms_viscous
     procedure :: add_stiffness
     procedure :: accept
     procedure :: dissipated
+    procedure :: extend
     procedure :: walk
   end type viscous_t
 
@@ -196,6 +197,16 @@ contains
 
     dissipated = self%work
   end function dissipated
+
+  !> Extend the nodal values by those of new nodes.
+  subroutine extend(self, n_node)
+    class(viscous_t), intent(inout) :: self
+    integer, intent(in) :: n_node
+
+    if (allocated(self%before)) self%before = extended(self%before, n_node)
+    if (allocated(self%coefficient)) self%coefficient = &
+        [self%coefficient, spread(0.0_wp, 1, n_node - size(self%coefficient))]
+  end subroutine extend
 
   !> Pass the components to a visitor.
   subroutine walk(self, visitor)
