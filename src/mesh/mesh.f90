@@ -35,6 +35,8 @@ module dd3_mesh_mesh
     integer, allocatable :: material(:)
     !> Thickness of a structured blank, mm; 0 for a mesh from a file, which may vary.
     real(wp) :: thickness = 0.0_wp
+    !> Number of refinements that have made the mesh.
+    integer :: mesh_number = 0
     !> Times that each element has been divided, `(n_element)`; not allocated if none has.
     integer, allocatable :: level(:)
     !> Bound nodes, each in the middle of an edge of a larger element, and the nodes at the ends of

@@ -30,6 +30,8 @@ module dd3_model_mesh_data
     real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
+    !> Number of refinements that have made the mesh.
+    integer :: mesh_number = 0
     !> Times that each element has been divided, `(n_element)`; not allocated if none has.
     integer, allocatable :: level(:)
     !> Bound nodes and the nodes at the ends of their edges, `(3, n_bound)`, and their points on

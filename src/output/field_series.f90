@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Datasets of fields.vtkhdf: those of a field with the offsets of its steps, constant ones, and
-!> their copies from an earlier file.
+!> Datasets of fields.vtkhdf: those of a field with the offsets of its steps, and their copies from
+!> an earlier file.
 module dd3_output_field_series
   use dd3_base_kinds, only : wp, i8
   use dd3_output_field_table, only : field_t
@@ -9,8 +9,7 @@ module dd3_output_field_series
   use hdf5, only : hid_t, hsize_t, h5aclose_f, h5gclose_f
   implicit none
   private
-  public :: target_t, step_chunk, make_targets, put_constant, append, copy_target, copy_series, &
-      count_steps
+  public :: target_t, step_chunk, make_targets, append, copy_target, copy_series, count_steps
   public :: close_target, close_group, close_attribute
 
   !> Rows per chunk of the datasets with one row per step.
@@ -49,23 +48,6 @@ contains
     end do
   end subroutine make_targets
 
-  !> Make a dataset that does not change.
-  subroutine put_constant(parent, name, kind, values, ok)
-    integer(hid_t), intent(in) :: parent
-    character(len=*), intent(in) :: name
-    !> One of the `kind_*` values.
-    integer, intent(in) :: kind
-    integer, intent(in) :: values(:)
-    !> Success flag; no-op if false.
-    logical, intent(inout) :: ok
-
-    type(series_t) :: series
-
-    call series%create(parent, name, kind, 1, .false., size(values), ok)
-    call series%append_integers(values, ok)
-    call series%close()
-  end subroutine put_constant
-
   !> Add the values of a step and the position of their first row.
   subroutine append(place, values, ok)
     type(target_t), intent(inout) :: place
@@ -103,13 +85,16 @@ contains
   subroutine copy_target(place, old, n, rows, ok)
     type(target_t), intent(inout) :: place
     integer(hid_t), intent(in) :: old
-    !> Number of steps, and rows of a step.
+    !> Number of steps, and rows of the last one.
     integer, intent(in) :: n, rows
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
+    real(wp), allocatable :: first(:)
+
     call copy_series(place%offset, old, int(n, hsize_t), ok)
-    call copy_series(place%data, old, int(n, hsize_t)*int(rows, hsize_t), ok)
+    if (ok) call read_rows(old, place%offset%path(), int(n - 1, hsize_t), 1_hsize_t, first, ok)
+    if (ok) call copy_series(place%data, old, nint(first(1), hsize_t) + int(rows, hsize_t), ok)
   end subroutine copy_target
 
   !> Copy the first rows of a dataset.

@@ -11,7 +11,7 @@ module dd3_output_field_values
       field_table, fill_internal_variable
   implicit none
   private
-  public :: field_values, give_values, cell_offsets
+  public :: field_values, give_values
 
 contains
 
@@ -145,18 +145,5 @@ contains
       end do
     end do
   end subroutine count_sharing
-
-  !> Return the position of each cell's first node in the connectivity, and the end of the last one.
-  pure function cell_offsets(model) result(offsets)
-    type(model_t), intent(in) :: model
-    integer, allocatable :: offsets(:)
-
-    integer :: e
-
-    allocate (offsets(model%n_element + 1))
-    do e = 0, model%n_element
-      offsets(e + 1) = e*model%element%n_node
-    end do
-  end function cell_offsets
 
 end module dd3_output_field_values

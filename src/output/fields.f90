@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> fields.vtkhdf: the deformed sheet and its fields as a series of steps for ParaView.
-!> The format is VTKHDF 2.0, temporal UnstructuredGrid (VTK file formats, Kitware). A step is added
-!> in an order that leaves the file readable whenever the program is killed: data, offsets of the
-!> data, flush, number of steps, flush. Readers rely on the number of steps.
+!> The format is VTKHDF 2.0, temporal UnstructuredGrid (VTK file formats, Kitware); the mesh may be
+!> another one from step to step, see dd3_output_field_meshes. A step is added in an order that
+!> leaves the file readable whenever the program is killed: data, offsets of the data, flush, number
+!> of steps, flush. Readers rely on the number of steps.
 module dd3_output_fields
   use dd3_base_error, only : error_t, share_error
   use dd3_base_file_system, only : keep_file, part_of, replace_file
@@ -89,7 +90,7 @@ contains
     if (.not. allocated(error)) call replace_file(path, self%guard, error)
   end subroutine fields_resume
 
-  !> Create the file with all that does not change.
+  !> Create the file without steps.
   subroutine create(self, model, path, error)
     type(field_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -102,11 +103,9 @@ contains
     self%n_step = 0
     self%last_increment = -1
     self%last_time = -huge(1.0_wp)
-    self%n_node = model%n_node
-    self%n_element = model%n_element
     call self%guard%create(path, error)
     if (allocated(error)) return
-    call self%guard%reserve(0_i8, first_room + 8*size(model%connectivity, kind=i8), error)
+    call self%guard%reserve(0_i8, first_room, error)
     if (allocated(error)) return
     call start_hdf5(ok)
     if (ok) then
@@ -120,7 +119,8 @@ contains
     if (.not. ok) call give_up(self, error)
   end subroutine create
 
-  !> Add a step, unless the increment is already there.
+  !> Add a step, unless the increment is already there, and the model's mesh where it is not that of
+  !> the step before.
   subroutine fields_write(self, model, state, error)
     class(field_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -141,6 +141,7 @@ contains
     if (this_rank() > 0) then
       call give_values(model, state)
     else
+      if (self%meshes%differ(model)) call self%meshes%append(self%file, model, ok)
       call append_values(self, model, state, ok)
       call append_step(self, state, ok)
       call flush_hdf5(self%file, ok)
@@ -192,6 +193,7 @@ contains
     call h5fget_filesize_f(self%file, length, status)
     if (status < 0) return
     more = step_room + self%points%data%room(model%n_node)
+    if (self%meshes%differ(model)) more = more + self%meshes%room(model)
     do i = 1, size(self%at_node)
       more = more + self%at_node(i)%data%room(model%n_node)
     end do

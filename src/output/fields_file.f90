@@ -8,12 +8,12 @@ module dd3_output_fields_file
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : tool_origins
+  use dd3_output_field_meshes, only : meshes_t
   use dd3_output_field_series, only : close_attribute, close_group, close_target, copy_series, &
-      copy_target, make_targets, put_constant, step_chunk, target_t
+      copy_target, make_targets, step_chunk, target_t
   use dd3_output_field_table, only : at_nodes_and_cells, at_points, field_t
-  use dd3_output_field_values, only : cell_offsets
-  use dd3_output_hdf5, only : flush_hdf5, integer_attribute, kind_byte, kind_int, kind_long, &
-      kind_real, make_group, rewrite_attribute, series_t, text_attribute
+  use dd3_output_hdf5, only : flush_hdf5, integer_attribute, kind_int, kind_long, kind_real, &
+      make_group, rewrite_attribute, series_t, text_attribute
   use dd3_output_hdf5_read, only : read_rows
   use hdf5, only : hid_t, hsize_t, h5fclose_f
   implicit none
@@ -29,8 +29,10 @@ module dd3_output_fields_file
     type(target_t), allocatable :: at_node(:), at_cell(:)
     !> Positions of the nodes.
     type(target_t) :: points
-    !> What VTKHDF asks of each step.
-    type(series_t) :: time, first_part, parts, first_cell, first_connectivity
+    !> The meshes of the steps.
+    type(meshes_t) :: meshes
+    !> Time of each step.
+    type(series_t) :: time
     !> Place of each step in the run, and the displacement of the tools.
     type(series_t) :: increment, phase, progress, travel, tool, tool_rotation
     !> The file, and the attribute with the number of steps.
@@ -40,13 +42,11 @@ module dd3_output_fields_file
     real(wp) :: last_time = -huge(1.0_wp)
     !> The same file, to reserve room in it.
     type(file_t) :: guard
-    !> Rows of a step at the nodes and at the cells.
-    integer :: n_node = 0, n_element = 0
   end type fields_file_t
 
 contains
 
-  !> Make the grid: what does not change, and the datasets of what does.
+  !> Make the grid without steps.
   subroutine make_grid(self, model, ok)
     class(fields_file_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -54,21 +54,11 @@ contains
     logical, intent(inout) :: ok
 
     integer(hid_t) :: root, attribute
-    integer :: n
 
-    n = size(model%connectivity)
     call make_group(self%file, "VTKHDF", root, ok)
     call integer_attribute(root, "Version", [2, 0], attribute, ok)
     call close_attribute(attribute)
     call text_attribute(root, "Type", "UnstructuredGrid", ok)
-    call put_constant(root, "NumberOfPoints", kind_long, [model%n_node], ok)
-    call put_constant(root, "NumberOfCells", kind_long, [model%n_element], ok)
-    call put_constant(root, "NumberOfConnectivityIds", kind_long, [n], ok)
-    call put_constant(root, "Types", kind_byte, &
-        spread(model%element%vtk_type, 1, model%n_element), ok)
-    call put_constant(root, "Connectivity", kind_long, &
-        reshape(model%connectivity(model%element%vtk_order, :) - 1, [n]), ok)
-    call put_constant(root, "Offsets", kind_long, cell_offsets(model), ok)
     call self%points%data%create(root, "Points", kind_real, 3, .true., model%n_node, ok)
     call self%points%data%describe("mm", "positions of the nodes", ok)
     call make_steps(self, model, root, ok)
@@ -90,12 +80,8 @@ contains
     call integer_attribute(steps, "NSteps", [0], self%step_count, ok)
     call self%time%create(steps, "Values", kind_real, 1, .false., step_chunk, ok)
     call self%time%describe("mm", "travel of the controlling tools since the start", ok)
-    call self%first_part%create(steps, "PartOffsets", kind_long, 1, .false., step_chunk, ok)
-    call self%parts%create(steps, "NumberOfParts", kind_long, 1, .false., step_chunk, ok)
     call self%points%offset%create(steps, "PointOffsets", kind_long, 1, .false., step_chunk, ok)
-    call self%first_cell%create(steps, "CellOffsets", kind_long, 1, .true., step_chunk, ok)
-    call self%first_connectivity%create(steps, "ConnectivityIdOffsets", kind_long, 1, .true., &
-        step_chunk, ok)
+    call self%meshes%create(model, root, steps, ok)
     call make_group(root, "PointData", data, ok)
     call make_group(steps, "PointDataOffsets", offsets, ok)
     call make_targets(self%field, self%at_node, data, offsets, model%n_node, ok)
@@ -160,20 +146,17 @@ contains
     logical, intent(out) :: ok
 
     real(wp), allocatable :: time(:)
-    integer :: i
+    integer :: n_node, n_cell, i
 
     ok = .true.
-    call copy_target(self%points, old, n, self%n_node, ok)
+    call self%meshes%copy(self%file, old, n, n_node, n_cell, ok)
+    call copy_target(self%points, old, n, n_node, ok)
     do i = 1, size(self%at_node)
-      call copy_target(self%at_node(i), old, n, self%n_node, ok)
+      call copy_target(self%at_node(i), old, n, n_node, ok)
     end do
     do i = 1, size(self%at_cell)
-      call copy_target(self%at_cell(i), old, n, self%n_element, ok)
+      call copy_target(self%at_cell(i), old, n, n_cell, ok)
     end do
-    call copy_series(self%first_part, old, int(n, hsize_t), ok)
-    call copy_series(self%parts, old, int(n, hsize_t), ok)
-    call copy_series(self%first_cell, old, int(n, hsize_t), ok)
-    call copy_series(self%first_connectivity, old, int(n, hsize_t), ok)
     call copy_series(self%increment, old, int(n, hsize_t), ok)
     call copy_series(self%phase, old, int(n, hsize_t), ok)
     call copy_series(self%progress, old, int(n, hsize_t), ok)
@@ -199,10 +182,7 @@ contains
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
-    call self%first_part%append_integers([0], ok)
-    call self%parts%append_integers([1], ok)
-    call self%first_cell%append_integers([0], ok)
-    call self%first_connectivity%append_integers([0], ok)
+    call self%meshes%append_step(ok)
     call self%increment%append_integers([state%increment], ok)
     call self%phase%append_integers([state%phase], ok)
     call self%progress%append_reals([state%progress], ok)
@@ -252,10 +232,7 @@ contains
     end if
     call close_target(self%points)
     call self%time%close()
-    call self%first_part%close()
-    call self%parts%close()
-    call self%first_cell%close()
-    call self%first_connectivity%close()
+    call self%meshes%close()
     call self%increment%close()
     call self%phase%close()
     call self%progress%close()

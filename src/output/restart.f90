@@ -158,8 +158,9 @@ contains
     call writer%integers("digest", size(digest), digest)
   end subroutine visit_fingerprint
 
-  !> Write the mesh: initial coordinates, elements, materials of the elements, and the node sets of
-  !> the sheet itself. Names are written as the character codes of a text, a line each.
+  !> Write the mesh: initial coordinates, elements, their levels and bound nodes, materials of the
+  !> elements, and the node sets of the sheet itself. Names are written as the character codes of a
+  !> text, a line each.
   subroutine visit_mesh(model, ended, writer)
     type(model_t), intent(in) :: model
     logical, intent(in) :: ended
@@ -190,6 +191,7 @@ contains
     call writer%reals("x0", size(x0), x0)
     call writer%reals("thickness", 1, thickness)
     call writer%integers("connectivity", size(connectivity), connectivity)
+    call visit_refinement(model, writer)
     call writer%integers("material_of", size(material_of), material_of)
     call writer%integers("material_digest", size(digest), digest)
     call visit_text("materials", materials, writer)
@@ -197,6 +199,25 @@ contains
     call writer%integers("set_size", size(n_member), n_member)
     call writer%integers("set_node", size(member), member)
   end subroutine visit_mesh
+
+  !> Write levels and bound nodes, where there are any, and the number of refinements.
+  subroutine visit_refinement(model, writer)
+    type(model_t), intent(in) :: model
+    type(writer_t), intent(inout) :: writer
+
+    integer :: number(1)
+    integer, allocatable :: level(:), bound(:, :)
+
+    number = model%mesh_number
+    if (model%mesh_number > 0) call writer%integers("number", 1, number)
+    if (allocated(model%level)) then
+      level = model%level
+      call writer%integers("level", size(level), level)
+    end if
+    if (.not. allocated(model%bound)) return
+    bound = model%bound
+    call writer%integers("bound", size(bound), bound)
+  end subroutine visit_refinement
 
   !> Write a text as character codes.
   subroutine visit_text(name, text, writer)

@@ -1,21 +1,23 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Format of restart.h5: its name, mark and version, and its sizes of the mesh.
+!> Format of restart.h5: its name, mark and version, its sizes of the mesh, and its opening.
 module dd3_output_restart_format
   use dd3_base_error, only : error_t, fatal_error
   use dd3_base_text, only : to_text
   use dd3_base_version, only : program_version
-  use dd3_output_hdf5_read, only : read_integer_attribute, read_text_attribute
+  use dd3_output_hdf5_read, only : close_hdf5, open_hdf5, read_integer_attribute, &
+      read_text_attribute
   use hdf5, only : hid_t
   implicit none
   private
-  public :: restart_name, mark, format_version, check_origin
+  public :: restart_name, mark, format_version, check_origin, open_restart
   public :: at_node, at_element, at_element_node, at_point, at_internal, at_thickness_point, &
       at_ended, n_sizes
 
   !> Name of the file in the folder of the results.
   character(len=*), parameter :: restart_name = "restart.h5"
   !> Mark of the file, and the version of its format. Version 1 holds the components of `state_t` by
-  !> name; a change of their meaning makes a new version.
+  !> name; a change of their meaning makes a new version. `mesh/number`, `mesh/level` and
+  !> `mesh/bound` are there only where elements have been divided.
   character(len=*), parameter :: mark = "dd3imp restart"
   integer, parameter :: format_version = 3
   !> Entries of `mesh/sizes`: numbers of nodes, of elements, of nodes and points of an element, of
@@ -24,6 +26,28 @@ module dd3_output_restart_format
       at_internal = 5, at_thickness_point = 6, at_ended = 7, n_sizes = 7
 
 contains
+
+  !> Open a restart file of this version.
+  subroutine open_restart(path, file, error)
+    character(len=*), intent(in) :: path
+    integer(hid_t), intent(out) :: file
+    !> Set if it cannot be read; then it is not open.
+    type(error_t), allocatable, intent(out) :: error
+
+    logical :: there, ok
+
+    inquire (file=path, exist=there)
+    call open_hdf5(path, file, ok)
+    if (.not. there) then
+      call fatal_error(error, "cannot read the restart file '"//path//"': no such file", "E204")
+    else if (ok) then
+      call check_origin(path, file, error)
+    else
+      call fatal_error(error, "cannot read the restart file '"//path// &
+          "': truncated or not an HDF5 file", "E204")
+    end if
+    if (allocated(error)) call close_hdf5(file)
+  end subroutine open_restart
 
   !> Check that a file is a restart file of this version.
   subroutine check_origin(path, file, error)

@@ -10,8 +10,8 @@ module dd3_output_restart_read
   use dd3_model_state, only : new_state, state_t
   use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_state_walk, only : visit_state
-  use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integers, read_reals
-  use dd3_output_restart_format, only : check_origin
+  use dd3_output_hdf5_read, only : close_hdf5, dataset_size, read_integers, read_reals
+  use dd3_output_restart_format, only : open_restart
   use hdf5, only : hid_t
   implicit none
   private
@@ -41,21 +41,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     integer(hid_t) :: file
-    logical :: there, ok
 
-    inquire (file=path, exist=there)
-    call open_hdf5(path, file, ok)
-    if (.not. there) then
-      call fatal_error(error, "cannot read the restart file '"//path//"': no such file", "E204")
-    else if (ok) then
-      call check_origin(path, file, error)
-      if (.not. allocated(error)) call check_model(path, file, model, error)
-      if (.not. allocated(error)) call read_state(path, file, model, state, error)
-      call close_hdf5(file)
-    else
-      call fatal_error(error, "cannot read the restart file '"//path// &
-          "': truncated or not an HDF5 file", "E204")
-    end if
+    call open_restart(path, file, error)
+    if (allocated(error)) return
+    call check_model(path, file, model, error)
+    if (.not. allocated(error)) call read_state(path, file, model, state, error)
+    call close_hdf5(file)
   end subroutine read_restart
 
   !> Check that a restart file belongs to a model, up to the phase that it has reached.

@@ -105,6 +105,7 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    model%mesh_number = mesh%mesh_number
     allocate (model%set(size(mesh%set)))
     do i = 1, size(mesh%set)
       model%set(i)%name = mesh%set(i)%name

@@ -1,20 +1,21 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> The sheet of another run, read from its restart file: mesh and state, moved to its new place.
+!> The sheet in a restart file: mesh and state; that of another run is moved to its new place.
 module dd3_setup_sheet_file
-  use dd3_base_error, only : error_list_t, error_t
+  use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : newline, text_t
   use dd3_input_case, only : start_spec_t
+  use dd3_mesh_mesh, only : mesh_t
   use dd3_output_hdf5, only : start_hdf5
   use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integers, read_reals, &
       read_text_attribute
   use dd3_output_restart_format, only : at_element, at_element_node, at_ended, at_internal, &
-      at_node, at_point, at_thickness_point, check_origin, n_sizes, restart_name
+      at_node, at_point, at_thickness_point, check_origin, n_sizes, open_restart, restart_name
   use dd3_sheet_sheet, only : sheet_t
   use hdf5, only : hid_t, h5gclose_f, h5gopen_f
   implicit none
   private
-  public :: read_sheet
+  public :: read_sheet, read_restart_sheet
 
 contains
 
@@ -75,6 +76,28 @@ contains
 
   end subroutine read_sheet
 
+  !> Read the sheet of a restart file in its place, on which the model of a run can be built anew
+  !> before its state is read. Materials have their numbers in that run.
+  subroutine read_restart_sheet(path, sheet, error)
+    character(len=*), intent(in) :: path
+    type(sheet_t), intent(out) :: sheet
+    !> Set if the file cannot be read.
+    type(error_t), allocatable, intent(out) :: error
+
+    integer(hid_t) :: file
+    integer :: sizes(n_sizes)
+    logical :: ok
+
+    call open_restart(path, file, error)
+    if (allocated(error)) return
+    ok = .true.
+    call read_integers(file, "mesh/sizes", sizes, ok)
+    if (ok) call read_mesh(sheet, file, sizes, ok)
+    call read_state(sheet, file, sizes, ok)
+    call close_hdf5(file)
+    if (.not. ok) call fatal_error(error, "'"//path//"' has no whole mesh", "E204")
+  end subroutine read_restart_sheet
+
   !> Read the mesh.
   subroutine read_mesh(sheet, file, sizes, ok)
     type(sheet_t), intent(inout) :: sheet
@@ -105,6 +128,7 @@ contains
       mesh%thickness = thickness(1)
       call read_integer_block(file, "mesh/connectivity", size(mesh%connectivity), &
           mesh%connectivity, ok)
+      call read_refinement(file, mesh, ok)
       call read_integers(file, "mesh/material_of", mesh%material, ok)
       call read_names(file, "mesh/materials", sheet%material, ok)
       allocate (sheet%digest(size(sheet%material)))
@@ -125,6 +149,33 @@ contains
       end do
     end associate
   end subroutine read_mesh
+
+  !> Read levels and bound nodes, where there are any, and the number of refinements.
+  subroutine read_refinement(file, mesh, ok)
+    integer(hid_t), intent(in) :: file
+    !> With its sizes.
+    type(mesh_t), intent(inout) :: mesh
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    integer :: number(1), n
+
+    call dataset_size(file, "mesh/number", n)
+    if (n == 1) then
+      call read_integers(file, "mesh/number", number, ok)
+      mesh%mesh_number = number(1)
+    end if
+    call dataset_size(file, "mesh/level", n)
+    if (n >= 0) then
+      allocate (mesh%level(mesh%n_element))
+      call read_integer_block(file, "mesh/level", size(mesh%level), mesh%level, ok)
+    end if
+    call dataset_size(file, "mesh/bound", n)
+    if (n >= 0) then
+      allocate (mesh%bound(3, n/3))
+      call read_integer_block(file, "mesh/bound", size(mesh%bound), mesh%bound, ok)
+    end if
+  end subroutine read_refinement
 
   !> Read positions, stresses, internal variables and axes.
   subroutine read_state(sheet, file, sizes, ok)

@@ -44,7 +44,7 @@ class Rail:
     def thinning(self):
         """Return the thinning at the cells along x and y, per cent."""
         values = 100 * self.sheet.values(self.sheet.last, "thinning", True)[0]
-        centres = self.sheet.points(0)[self.sheet.corners].mean(axis=1)
+        centres = self.sheet.points(0)[self.sheet.corners(0)].mean(axis=1)
         return values[np.lexsort((centres[:, 1].round(6), centres[:, 0].round(6)))].reshape(np.array(self.shape) - 1)
 
     def thinning_by_nodes(self):
@@ -134,7 +134,7 @@ def row_of(material, mesh, rail, finest, folder):
     shape = resampled(finest.free_grid(), rail.shape).reshape(-1, 3)
     apart = np.linalg.norm(best_fit(rail.free_grid().reshape(-1, 3), shape) - shape, axis=1)
     values = flange, bottom, bottom - rail.springback(-1)[0], twist(rail.sheet, rail.found)[1]
-    return [material.upper(), " x ".join(mesh.split()), str(len(rail.sheet.corners)), *(f"{v:.2f}" for v in values),
+    return [material.upper(), " x ".join(mesh.split()), str(len(rail.sheet.corners())), *(f"{v:.2f}" for v in values),
             f"{rail.found.distance().max():.2f}", of_differences(apart) if rail is not finest else "",
             extremes(rail.thinning()), of_differences(difference) if rail is not finest else "",
             extremes(rail.thinning_by_nodes()), *studies.effort(folder)]

@@ -254,7 +254,7 @@ def test_gap():
     number = np.arange(55).reshape(11, 5)
     quads = np.stack([number[i, j].ravel() for i, j in ((np.s_[:-1], np.s_[:-1]), (np.s_[1:], np.s_[:-1]),
                                                         (np.s_[1:], np.s_[1:]), (np.s_[:-1], np.s_[1:]))], axis=1)
-    points, quads = continued(np.column_stack((x, y, 0 * x)), quads, 10.0)
+    points, quads = continued(np.column_stack((x, y, 0 * x)), quads, 10.0, {})
     assert np.allclose((points.min(axis=0), points.max(axis=0)), ((-10, -10, 0), (30, 18, 0)))
     sheet = pv.PolyData.from_regular_faces(points, quads).triangulate()
     radius = 30.0

@@ -24,6 +24,7 @@ Petzoldt and Weiher, J. Mater. Process. Technol. 169 (2005) 115-125 (smooth disp
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.special import comb
 
+from dd3.bound import Bound, rings
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.process import (
@@ -82,8 +84,8 @@ class Shapes:
 def lower_face(sheet: Sheet, step: int) -> tuple[np.ndarray, np.ndarray]:
     """Return initial and present positions of the nodes of the lower face at a step."""
     points = sheet.points(step)
-    initial = points - sheet.values(step, "displacement")[0]
-    nodes = np.unique(sheet.faces(upper=False))
+    initial = sheet.initial(step)
+    nodes = np.unique(sheet.faces(False, step))
     return initial[nodes], points[nodes]
 
 
@@ -125,21 +127,39 @@ def drawn_surface(process: Process, beyond: float = 0.0) -> Any:
     continued beyond its border by a length."""
     import pyvista as pv
     sheet = Sheet(process.operations[0].folder)
-    points = sheet.points(drawn_step(sheet, read_job(sheet.path.parent)))
-    nodes, corner = np.unique(sheet.faces(upper=False), return_inverse=True)
-    points, quads = points[nodes], corner.reshape(-1, 4)
+    step = drawn_step(sheet, read_job(sheet.path.parent))
+    nodes, corner = np.unique(sheet.faces(False, step), return_inverse=True)
+    points, quads = sheet.points(step)[nodes], corner.reshape(-1, 4)
+    place = {int(node): i for i, node in enumerate(nodes)}
+    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if {a, b, node} <= {*place}}
     if beyond:
-        points, quads = continued(points, quads, beyond)
-    mesh = Facets(points, quads, np.zeros(len(quads), int), ["sheet"])
+        points, quads = continued(points, quads, beyond, bound)
+    facets = conforming(quads, bound)
+    mesh = Facets(points, facets, np.zeros(len(facets), int), ["sheet"])
     net, _ = unfolded_patches(mesh.nodes, estimate_normals(mesh))
     return pv.PolyData(*flat_quads(net)).triangulate()
 
 
-def continued(points: np.ndarray, quads: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+def conforming(quads: np.ndarray, bound: Bound) -> np.ndarray:
+    """Return the facets (m, 4) of quadrilaterals; one with bound nodes becomes triangles around one of these, with -1
+    as the fourth node."""
+    facets: list[list[int]] = []
+    for ring, quad in zip(rings(quads, bound), quads.tolist()):
+        if len(ring) == 4:
+            facets.append(quad)
+            continue
+        k = next(i for i, node in enumerate(ring) if node not in quad)
+        middle, *others = ring[k:] + ring[:k]
+        facets += [[middle, a, b, -1] for a, b in pairwise(others)]
+    return np.array(facets)
+
+
+def continued(points: np.ndarray, quads: np.ndarray, length: float, bound: Bound) -> tuple[np.ndarray, np.ndarray]:
     """Return a mesh of quadrilaterals with a row more around its border, in the direction of the last row."""
     edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=2).reshape(-1, 2)
     opposite = np.stack((np.roll(quads, 1, axis=1), np.roll(quads, -2, axis=1)), axis=2).reshape(-1, 2)
-    known = {(int(a), int(b)) for a, b in edges}
+    known = {edge for ring in rings(quads, bound) for edge in zip(ring, ring[1:] + ring[:1])}
+    known |= {edge for a, b in bound for edge in ((a, b), (b, a))}
     free = np.array([(int(b), int(a)) not in known for a, b in edges])
     outward = np.zeros_like(points)
     for k in range(2):

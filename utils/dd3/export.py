@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from dd3.bound import bound_nodes
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields
@@ -41,9 +42,9 @@ def to_vtu(fields: Fields, step: int, target: Path, _: bool) -> None:
 
 def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
     """Write the sheet as a keyword file of LS-DYNA."""
-    if set(fields.grid["Types"][...]) != {HEXAHEDRON}:
+    if set(fields.cells(step).types) != {HEXAHEDRON}:
         raise Problem(f"{fields.path}: expected hexahedra of 8 nodes; write .inp or .vtu")
-    cells = fields.grid["Connectivity"][...].reshape(-1, 8)
+    cells = fields.cells(step).nodes.reshape(-1, 8)
     points = fields.points(step)
     stress = fields.values(step, "stress", at_cells=True)[0]
     plastic = fields.values(step, "equivalent_plastic_strain", at_cells=True)[0]
@@ -53,16 +54,46 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
         if step == fields.last and (state := state_at_end(fields, points)):
             rows = layer_rows(state)
         lines = shell_lines(fields.path, points, cells, thickness, rows)
+        lines += shell_bounds(fields.path, points, cells)
     else:
         lines = [*node_lines(points), "*ELEMENT_SOLID",
                  *("".join(f"{value:8d}" for value in (i, 1, *(cell + 1))) for i, cell in enumerate(cells, 1)),
                  "*INITIAL_STRESS_SOLID"]
         for i, (tensor, strain) in enumerate(zip(stress, plastic), 1):
             lines += [f"{i:10d}{1:10d}", row((*tensor, strain))]
+        lines += solid_bounds(points, cells)
     if max(len(cells), len(points)) > MOST:
         raise Problem(f"{fields.path}: more than {MOST} nodes or elements")
     title = f"{fields.state(step)} of {fields.path.parent.name}"
     target.write_text("\n".join(["*KEYWORD", "*TITLE", title[:80], *lines, "*END", ""]), encoding="utf-8")
+
+
+def solid_bounds(points: np.ndarray, cells: np.ndarray) -> list[str]:
+    """Return the equations that hold bound nodes in the middle of their edges."""
+    lines: list[str] = []
+    for i, ((a, b), node) in enumerate(bound_nodes(cells, points).items()):
+        for direction in (1, 2, 3):
+            lines += ["*CONSTRAINED_LINEAR_GLOBAL", f"{3 * i + direction:10d}",
+                      *(f"{label + 1:10d}{direction:10d}{factor:10.1f}"
+                        for label, factor in ((node, 1.0), (a, -0.5), (b, -0.5)))]
+    return lines
+
+
+def shell_bounds(path: Path, points: np.ndarray, cells: np.ndarray) -> list[str]:
+    """Return the bound nodes of the mid-surface and the ends of their edges."""
+    lower, upper = sides(path, points, cells)
+    number = shell_numbers(lower, upper, len(points))
+    bound = [(node, a, b) for (a, b), node in bound_nodes(cells, points).items() if number[[node, a, b]].all()]
+    lines = ["".join(f"{number[node]:10d}" for node in nodes) for nodes in bound]
+    return ["*CONSTRAINED_ADAPTIVITY", *lines] if lines else []
+
+
+def shell_numbers(lower: np.ndarray, upper: np.ndarray, count: int) -> np.ndarray:
+    """Return the labels of the nodes of the mid-surface at the nodes of the lower face; 0 elsewhere."""
+    ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
+    number = np.zeros(count, int)
+    number[ends[:, 0]] = np.arange(1, len(ends) + 1)
+    return number
 
 
 def node_lines(points: np.ndarray) -> list[str]:
@@ -101,8 +132,7 @@ def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np
     thicknesses, and rows (m, heights, 8) of height, stresses and plastic strain."""
     lower, upper = sides(path, points, cells)
     ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
-    number = np.zeros(len(points), int)
-    number[ends[:, 0]] = np.arange(1, len(ends) + 1)
+    number = shell_numbers(lower, upper, len(points))
     thickness = thickness[ends].mean(axis=1)
     lines = [*node_lines(points[ends].mean(axis=1)), "*ELEMENT_SHELL_THICKNESS"]
     for i, corners in enumerate(number[lower], 1):
@@ -147,4 +177,4 @@ def main(words: Sequence[str] | None = None) -> None:
     step = fields.last if options.at is None else fields.step_at(options.at)
     options.target.parent.mkdir(parents=True, exist_ok=True)
     writer(fields, step, options.target, options.shells)
-    print(f"{options.target}: {fields.state(step)}, {len(fields.grid['Types'])} elements")
+    print(f"{options.target}: {fields.state(step)}, {len(fields.cells(step).types)} elements")

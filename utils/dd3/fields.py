@@ -3,7 +3,7 @@
 
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 
 AT = "travel in mm, PHASE for its end, or PHASE:PERCENT; the nearest step (default: the last)"  # help of --at
+SAME = 1e-6  # distance of places that are the same, over the size of the sheet
 COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
 
 
@@ -26,10 +27,20 @@ def missing(path: Path) -> str:
     return f"{path}: No such file"
 
 
+class Cells(NamedTuple):
+    """The elements of a mesh: node numbers from 0 in VTK's order, one element after the other; where each begins, and
+    the end of the last one; types of VTK."""
+
+    nodes: np.ndarray
+    offsets: np.ndarray
+    types: np.ndarray
+
+
 class Fields:
     """The sheet at its steps; `fields[i]` is a grid of pyvista with all fields of a step.
 
-    count: number of steps. last: number of the last step. travel: the travel of each, mm.
+    count: number of steps. last: number of the last step. travel: the travel of each, mm. The mesh may change from step
+    to step, where elements are divided; a negative step counts from the end.
     """
 
     def __init__(self, run: str | Path) -> None:
@@ -48,6 +59,7 @@ class Fields:
             raise Problem(f"{path}: no steps")
         self.path, self.folder, self.last = path, path.parent, self.count - 1
         self.travel: np.ndarray = self.steps["Values"][: self.count]
+        self.read: dict[int, Cells] = {}  # by the number of the mesh
 
     @cached_property
     def phases(self) -> list[dict[str, Any]]:
@@ -71,10 +83,74 @@ class Fields:
 
     def shape(self, step: int) -> "pv.UnstructuredGrid":
         """Return the deformed sheet at a step without fields."""
+        return self.grid_of(step, self.points(step))
+
+    def grid_of(self, step: int, points: np.ndarray) -> "pv.UnstructuredGrid":
+        """Return the mesh of a step with its nodes at other places."""
         import pyvista as pv
-        offsets = self.grid["Offsets"][...]
-        cells = np.insert(self.grid["Connectivity"][...], offsets[:-1], np.diff(offsets))
-        return pv.UnstructuredGrid(cells, self.grid["Types"][...], self.points(step))
+        nodes, offsets, types = self.cells(step)
+        return pv.UnstructuredGrid(np.insert(nodes, offsets[:-1], np.diff(offsets)), types, points)
+
+    def first(self, name: str, step: int) -> int:
+        """Return where a step begins in a dataset, by the name of the offsets."""
+        return int(np.ravel(self.steps[name])[step % self.count]) if name in self.steps else 0
+
+    def mesh_number(self, step: int) -> int:
+        """Return the number of the mesh of a step, from 0."""
+        return self.first("PartOffsets", step)
+
+    def size_of(self, what: str, step: int) -> int:
+        """Return the number of Points, Cells or ConnectivityIds of the mesh of a step."""
+        return int(self.grid["NumberOf" + what][self.mesh_number(step)])
+
+    def cells(self, step: int) -> Cells:
+        """Return the elements of the mesh of a step."""
+        number = self.mesh_number(step)
+        if number not in self.read:
+            count, cell = self.size_of("Cells", step), self.first("CellOffsets", step)
+            node = self.first("ConnectivityIdOffsets", step)
+            self.read[number] = Cells(
+                self.grid["Connectivity"][node:node + self.size_of("ConnectivityIds", step)],
+                self.grid["Offsets"][cell + number:cell + number + count + 1],  # each mesh has the end of its last cell
+                self.grid["Types"][cell:cell + count])
+        return self.read[number]
+
+    def initial(self, step: int) -> np.ndarray:
+        """Return the initial positions of the nodes of the mesh of a step, those of the flat sheet."""
+        if "displacement" in self.grid.get("PointData", ()):
+            return np.asarray(self.points(step) - self.values(step, "displacement")[0])
+        if self.mesh_number(step):
+            raise Problem(f"{self.path}: the mesh changes and there is no field 'displacement'")
+        return self.points(0)
+
+    def start(self, step: int) -> np.ndarray:
+        """Return the positions at the first step of the nodes of the mesh of a step. Nodes that were not there yet are
+        between those that were, also where the sheet had its shape from another run."""
+        if self.mesh_number(step) == self.mesh_number(0):
+            return self.points(0)
+        initial, before = self.initial(step), self.initial(0)
+        moved = self.points(0) - before
+        size = np.ptp(before, axis=0).max()
+        if np.abs(moved).max() <= SAME * size:
+            return initial
+        import pyvista as pv
+        grid = self.grid_of(0, before)
+        grid.point_data["moved"] = moved
+        found = pv.PolyData(initial).sample(grid, tolerance=SAME * size, snap_to_closest_point=True)
+        return np.asarray(initial + found.point_data["moved"])
+
+    def nodes_in(self, step: int, other: int) -> np.ndarray:
+        """Return the nodes of the mesh of another step that are those of the mesh of a step, by initial positions. The
+        other mesh is the same or a finer one."""
+        if self.mesh_number(step) == self.mesh_number(other):
+            return np.arange(self.size_of("Points", step))
+        from scipy.spatial import cKDTree
+        own, all_of_other = self.initial(step), self.initial(other)
+        distance, node = cKDTree(all_of_other).query(own)
+        if distance.max() > SAME * np.ptp(own, axis=0).max():
+            raise Problem(f"{self.path}: the mesh of step {other % self.count} lacks nodes of that of step "
+                          f"{step % self.count}")
+        return np.asarray(node)
 
     def nearest_step(self, travel: float) -> int:
         """Return the last of the steps whose travel is nearest."""
@@ -121,18 +197,18 @@ class Fields:
 
     def points(self, step: int) -> np.ndarray:
         """Return the positions of the nodes at a step."""
-        first = int(self.steps["PointOffsets"][step])
-        points: np.ndarray = self.grid["Points"][first:first + int(self.grid["NumberOfPoints"][0])]
+        first = self.first("PointOffsets", step)
+        points: np.ndarray = self.grid["Points"][first:first + self.size_of("Points", step)]
         return points
 
     def values(self, step: int, name: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
         """Return a field at a step, and its unit."""
-        where, rows = ("CellData", "NumberOfCells") if at_cells else ("PointData", "NumberOfPoints")
+        where, rows = ("CellData", "Cells") if at_cells else ("PointData", "Points")
         if name not in self.grid[where]:
             raise Problem(f"{self.path}: no field '{name}'; there are: {', '.join(self.grid[where])}")
         data = self.grid[where][name]
-        first = int(self.steps[where + "Offsets"][name][step])
-        return data[first:first + int(self.grid[rows][0])], text_of(data.attrs.get("unit", "")).strip()
+        first = self.first(f"{where}Offsets/{name}", step)
+        return data[first:first + self.size_of(rows, step)], text_of(data.attrs.get("unit", "")).strip()
 
     def component(self, step: int, field: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
         """Return a field, or a component such as stress:11 or displacement:z, and its label; without a component the

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.bound import bound_nodes
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
@@ -43,12 +44,13 @@ INP_HEXAHEDRA = re.compile(r"(?:C3D(?:8|20|27)|SC8|CSS8)[A-Z]*$")
 
 @dataclass
 class Mesh:
-    """Nodes and hexahedra by label; sets of labels."""
+    """Nodes and hexahedra by label; sets of labels; bound nodes, each with the ends of its edge, by labels."""
 
     nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
     elements: dict[int, list[int]] = field(default_factory=dict)
     node_sets: dict[str, Any] = field(default_factory=dict)
     element_sets: dict[str, Any] = field(default_factory=dict)
+    bound: list[tuple[int, int, int]] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)  # kind: number
     model: Model | None = None  # of an .inp file
 
@@ -93,8 +95,8 @@ def read_gmsh(path: Path) -> Mesh:
 def read_run(path: Path, step: int = 0) -> Mesh:
     """Read the mesh of a run in its shape at a step, by default the initial one."""
     fields = Fields(path)
-    points, cells, offsets = fields.points(step), fields.grid["Connectivity"][:], fields.grid["Offsets"][:]
-    kind = int(fields.grid["Types"][0])
+    points, (cells, offsets, types) = fields.points(step), fields.cells(step)
+    kind = int(types[0])
     if kind not in VTK_HEXAHEDRA:
         raise Problem(f"{path}: cells of type {kind}, expected hexahedra")
     mesh = Mesh(nodes={i + 1: tuple(map(float, point)) for i, point in enumerate(points)})
@@ -104,6 +106,8 @@ def read_run(path: Path, step: int = 0) -> Mesh:
         if kind == 29:
             face = mesh.elements[i + 1][20:]
             mesh.elements[i + 1][20:] = [face[k] for k in (6, 4, 5, 2, 1, 3, 0)]
+    if kind == 12:
+        mesh.bound = [(node + 1, a + 1, b + 1) for (a, b), node in bound_nodes(cells.reshape(-1, 8), points).items()]
     return mesh
 
 
@@ -279,6 +283,9 @@ def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
             words = [str(label), *map(str, nodes)]
             lines = [", ".join(words[i:i + 14]) for i in range(0, len(words), 14)]
             file.write(",\n".join(lines) + "\n")
+        if mesh.bound:
+            file.write("*MPC\n")
+            file.writelines(f"LINEAR, {node}, {a}, {b}\n" for node, a, b in mesh.bound)
         for keyword, sets in ("NSET", mesh.node_sets), ("ELSET", mesh.element_sets):
             for name, members in sets.items():
                 file.write(f"*{keyword}, {keyword}={set_name(name)}\n")

@@ -56,8 +56,7 @@ def rim_on(folder: Path, outline: np.ndarray) -> Rim:
     """Return the rim of a sheet that lay on an outline in the blank."""
     sheet = Sheet(folder)
     position = sheet.points(sheet.last)
-    initial = position - sheet.values(sheet.last, "displacement")[0]
-    quads = sheet.faces(upper=False)
+    initial = sheet.initial(sheet.last)
     border = np.unique(sheet.rim(upper=False))
     size = np.ptp(outline, axis=0).max()
     place = Outline(outline)
@@ -65,9 +64,9 @@ def rim_on(folder: Path, outline: np.ndarray) -> Rim:
     on_rim = np.zeros(len(initial), bool)
     on_rim[nodes] = True
     inner: dict[int, list[int]] = {int(node): [] for node in nodes}
-    for quad in quads:
-        for a, b in zip(quad, np.roll(quad, -1)):
-            for node, other in ((int(a), int(b)), (int(b), int(a))):
+    for ring in sheet.rings(upper=False):
+        for a, b in zip(ring, ring[1:] + ring[:1]):
+            for node, other in ((a, b), (b, a)):
                 if on_rim[node] and not on_rim[other]:
                     inner[node].append(other)
     kept = np.array([node for node in nodes if inner[int(node)]])

@@ -26,6 +26,7 @@ from matplotlib.patches import Patch
 
 from dd3 import forming_limit, springback
 from dd3.account import Account
+from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.plot import force as forces
 from dd3.plot import sheet as pictures
@@ -250,7 +251,7 @@ def add_springback(report: Report) -> None:
     rows: list[tuple[str, Any]] = []
     for text in section_planes(report):
         normal, place = plane(text)
-        line = report.sheet.cut(normal, place)[0]
+        line = report.sheet.cut(normal, place, step=found.step)[0]
         name = text if "=" in text else f"{text} degrees"
         for points, style in ((found.drawn, "--"), (found.free, "-")):
             axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
@@ -276,8 +277,7 @@ def add_springback(report: Report) -> None:
 def distance_map(report: Report, found: springback.Springback) -> str:
     """Draw the distances from the drawn shape on the free one and return the element."""
     options = report.sheet_options("distance", "--hide", "all")
-    mesh = report.run.shape(report.last)
-    mesh.points = found.free
+    mesh = report.run.grid_of(found.step, found.free)
     mesh.point_data["shown"] = found.distance()
     pictures.make_map(mesh, "distance from the drawn shape (mm)", options)
     return report.image("distance", "distance from the drawn shape")
@@ -329,7 +329,7 @@ def zone_map(report: Report, zone: np.ndarray) -> str:
     # A cell has the worst zone of its nodes and its own.
     mesh.cell_data["zone"] = np.array([max(zone[mesh.get_cell(i).point_ids].max(), zone[mesh.n_points + i])
                                        for i in range(mesh.n_cells)])
-    for part in pictures.reflected(mesh, options.mirror):
+    for part in pictures.reflected(closed_skin(mesh), options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface")
         plotter.add_mesh(skin, scalars="zone", cmap=list(forming_limit.COLOURS), show_edges=True, edge_color="#444444",
                          clim=[-0.5, len(forming_limit.ZONES) - 0.5], show_scalar_bar=False, ambient=0.3)
@@ -376,7 +376,7 @@ def add_sections(report: Report) -> None:
 def add_outline(report: Report) -> None:
     """Add the outline before and after, and the draw-in along it."""
     figure, (axes, along) = new_figure((11, 5), 1, 2)
-    start, now, value = report.sheet.points(0), report.sheet.points(report.last), report.field("draw_in")
+    start, now, value = report.sheet.start(report.last), report.sheet.points(report.last), report.field("draw_in")
     for line in report.sheet.outline(True, report.options.mirror):
         for points, colour, width in ((start, "0.5", 1), (now, "#d64541", 1.6)):
             for part in springback.images(points[line], report.options.mirror):

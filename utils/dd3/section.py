@@ -29,11 +29,11 @@ STRAIGHT = 1e-7  # curvature times length below which a wall is straight
 
 
 class Section:
-    """A line of the sheet at a step: lengths, positions and fields."""
+    """A line of the sheet, of the mesh of a step, at that step: lengths, positions and fields."""
 
     def __init__(self, sheet: Sheet, line: Line, step: int) -> None:
         self.sheet, self.line, self.step = sheet, line, step
-        self.start, self.now = line.at(sheet.points(0)), line.at(sheet.points(step))
+        self.start, self.now = line.at(sheet.start(step)), line.at(sheet.points(step))
         self.length0, self.length = length(self.start), length(self.now)
 
     def field(self, name: str) -> tuple[np.ndarray, str]:
@@ -162,9 +162,9 @@ def main(words: Sequence[str] | None = None) -> None:
     options = arguments(words)
     sheet = Sheet(options.run)
     normal, distance = plane(options.plane)
-    line = sheet.line_of_nodes(options.nodes) if options.nodes else sheet.cut(normal, distance, not options.lower)[0]
     steps = [sheet.step_at(place) for place in options.at] if options.at else [sheet.last]
-    sections = [Section(sheet, line, step) for step in steps]
+    sections = [Section(sheet, sheet.line_of_nodes(options.nodes, step) if options.nodes
+                        else sheet.cut(normal, distance, not options.lower, step=step)[0], step) for step in steps]
     figure, axes = new_figure((7, 3 * len(options.field) + 3), len(options.field) + 1)
     draw(sections, normal, options.field, axes)
     save(figure, options.output, 150)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3.bound import bound_nodes, rings
 from dd3.errors import Problem
 from dd3.fields import Fields
 
@@ -31,33 +32,54 @@ class Line:
 
 
 class Sheet(Fields):
-    """A run with the connectivity of its sheet. Faces are given by their four corners."""
+    """A run with the surfaces of its sheet, at each step those of its mesh; by default of the last step. Faces are given
+    by their four corners, rings by all nodes around a face, also the bound ones on the edges of a larger element."""
 
     def __init__(self, run: str | Path) -> None:
         super().__init__(run)
-        offsets = self.grid["Offsets"][...]
+        offsets = self.cells(0).offsets
         if np.unique(np.diff(offsets)).size != 1 or offsets[1] < 8:
             raise Problem(f"{self.path}: the cells are no hexahedra")
-        self.corners = self.grid["Connectivity"][...].reshape(-1, offsets[1])[:, :8]
+        self.bound_of: dict[int, dict[tuple[int, int], int]] = {}  # by the number of the mesh
 
-    def faces(self, upper: bool = True) -> np.ndarray:
+    def elements(self, step: int = -1) -> np.ndarray:
+        """Return the nodes of the elements, a row each."""
+        nodes, offsets, _ = self.cells(step)
+        return nodes.reshape(-1, offsets[1])
+
+    def corners(self, step: int = -1) -> np.ndarray:
+        """Return the corners of the elements (m, 8)."""
+        return self.elements(step)[:, :8]
+
+    def bound(self, step: int = -1) -> dict[tuple[int, int], int]:
+        """Return the bound nodes by the ends of their edges."""
+        number = self.mesh_number(step)
+        if number not in self.bound_of:
+            self.bound_of[number] = bound_nodes(self.corners(step), self.points(step))
+        return self.bound_of[number]
+
+    def faces(self, upper: bool = True, step: int = -1) -> np.ndarray:
         """Return the corners of the upper or the lower face of the sheet, counter-clockwise seen from outside."""
         mine, other = (UPPER, LOWER) if upper else (LOWER, UPPER)
-        inner = {tuple(sorted(face)) for face in self.corners[:, other]}
-        quads = np.array([face for face in self.corners[:, mine] if tuple(sorted(face)) not in inner])
+        corners = self.corners(step)
+        inner = {tuple(sorted(face)) for face in corners[:, other]}
+        quads = np.array([face for face in corners[:, mine] if tuple(sorted(face)) not in inner])
         return quads if upper else quads[:, ::-1]
 
-    def rim(self, upper: bool = True) -> np.ndarray:
+    def rings(self, upper: bool = True, step: int = -1) -> list[list[int]]:
+        """Return the nodes around the faces of the upper or the lower face of the sheet."""
+        return rings(self.faces(upper, step), self.bound(step))
+
+    def rim(self, upper: bool = True, step: int = -1) -> np.ndarray:
         """Return the nodes of the edges that belong to one face only, as rows of two."""
-        quads = self.faces(upper)
-        edges = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])
+        edges = np.array([edge for ring in self.rings(upper, step) for edge in zip(ring, ring[1:] + ring[:1])])
         _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
         return edges[first[count == 1]]
 
-    def outline(self, upper: bool = True, mirror: Sequence[str] = ()) -> list[np.ndarray]:
+    def outline(self, upper: bool = True, mirror: Sequence[str] = (), step: int = -1) -> list[np.ndarray]:
         """Return the lines of nodes around the sheet, without the edges on planes of symmetry."""
-        start = self.points(0)
-        edges = self.rim(upper)
+        start = self.start(step)
+        edges = self.rim(upper, step)
         for axis in mirror:
             on = np.abs(start[:, AXES.index(axis)]) <= SHIFT * self.size()
             edges = edges[~on[edges].all(axis=1)]
@@ -67,17 +89,17 @@ class Sheet(Fields):
         """Return the largest extent of the sheet at the start, mm."""
         return float(np.ptp(self.points(0), axis=0).max())
 
-    def cut(self, normal: np.ndarray, distance: float, upper: bool = True, points: np.ndarray | None = None
-            ) -> list[Line]:
-        """Return the lines in which a plane cuts a face of the sheet, the longest first.
+    def cut(self, normal: np.ndarray, distance: float, upper: bool = True, points: np.ndarray | None = None,
+            step: int = -1) -> list[Line]:
+        """Return the lines in which a plane cuts a face of the sheet, the longest first, in the mesh of a step.
 
         The plane is normal.x = distance; it cuts the initial shape unless other `points` are given.
         """
-        points = self.points(0) if points is None else points
-        quads = self.faces(upper)
+        points = self.start(step) if points is None else points
+        around = self.rings(upper, step)
         for shift in (SHIFT, -SHIFT, 0.0):
             height = points @ np.asarray(normal, float) - distance - shift * self.size()
-            lines = [self.edge_line(line, height) for line in chains(crossed(quads, height))]
+            lines = [self.edge_line(line, height) for line in chains(crossed(around, height))]
             if lines:
                 return sorted(lines, key=lambda line: -length(line.at(points))[-1])
         raise Problem(f"{self.path}: the plane does not cut the sheet")
@@ -88,21 +110,20 @@ class Sheet(Fields):
         a, b = np.array(edges).T
         return Line(a, b, height[a] / (height[a] - height[b]))
 
-    def line_of_nodes(self, nodes: Sequence[int]) -> Line:
-        """Return a line through nodes, given by their numbers from 1."""
-        number = np.array(nodes, int) - 1
-        if number.min() < 0 or number.max() >= len(self.points(0)):
-            raise Problem(f"{self.path}: the nodes are 1 to {len(self.points(0))}")
+    def line_of_nodes(self, nodes: Sequence[int], step: int = -1) -> Line:
+        """Return a line through nodes of the mesh of a step, given by their numbers from 1."""
+        number, count = np.array(nodes, int) - 1, self.size_of("Points", step)
+        if number.min() < 0 or number.max() >= count:
+            raise Problem(f"{self.path}: the nodes are 1 to {count}")
         return Line(number, number, np.zeros(len(number)))
 
 
-def crossed(quads: np.ndarray, height: np.ndarray) -> list[tuple[Any, Any]]:
-    """Return pairs of edges of faces that a plane crosses; an edge is the sorted pair of its nodes."""
-    above = height > 0
+def crossed(around: Sequence[Sequence[int]], height: np.ndarray) -> list[tuple[Any, Any]]:
+    """Return pairs of edges of rings that a plane crosses; an edge is the sorted pair of its nodes."""
+    above = (height > 0).tolist()
     pairs: list[tuple[Any, Any]] = []
-    for quad in quads[above[quads].any(axis=1) & ~above[quads].all(axis=1)]:
-        edges = [tuple(sorted((int(quad[i]), int(quad[i - 1])))) for i in range(4)
-                 if above[quad[i]] != above[quad[i - 1]]]
+    for ring in around:
+        edges = [tuple(sorted((ring[i], ring[i - 1]))) for i in range(len(ring)) if above[ring[i]] != above[ring[i - 1]]]
         pairs += zip(edges[::2], edges[1::2], strict=True)
     return pairs
 

@@ -15,7 +15,7 @@ ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, o
 class Springback(NamedTuple):
     """The drawn and the free shape, the latter moved to the best fit.
 
-    drawn, free: positions of the nodes, mm. step: number of the step of the drawn shape.
+    drawn, free: positions of the nodes of the drawn mesh, mm. step: number of the step of the drawn shape.
     """
 
     drawn: np.ndarray
@@ -66,8 +66,9 @@ def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Sp
     drawn = steps_with_tools(sheet, phases)
     if not drawn.size or drawn[-1] == sheet.count - 1:
         return None
-    points = sheet.points(int(drawn[-1]))
-    return Springback(points, best_fit(sheet.points(sheet.last), points, mirror), int(drawn[-1]))
+    step = int(drawn[-1])
+    points, free = sheet.points(step), sheet.points(sheet.last)[sheet.nodes_in(step, sheet.last)]
+    return Springback(points, best_fit(free, points, mirror), step)
 
 
 def rotation(line: Line, found: Springback, normal: np.ndarray) -> float:
@@ -92,7 +93,7 @@ def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, f
 def twist(sheet: Sheet, found: Springback, mirror: Sequence[str] = ()) -> tuple[str, float] | None:
     """Return the axis along the sheet and the rotation of one end about it against the other, degrees; None where
     symmetry prevents it."""
-    start = sheet.points(0)
+    start = sheet.start(found.step)
     sizes = np.ptp(start, axis=0)
     axis = int(sizes.argmax())
     if mirror:
@@ -100,6 +101,6 @@ def twist(sheet: Sheet, found: Springback, mirror: Sequence[str] = ()) -> tuple[
     turned = []
     for part in ENDS:
         normal = np.eye(3)[axis]
-        line = sheet.cut(normal, start[:, axis].min() + part * sizes[axis])[0]
+        line = sheet.cut(normal, start[:, axis].min() + part * sizes[axis], step=found.step)[0]
         turned.append(rotation(line, found, normal))
     return AXES[axis], turned[1] - turned[0]

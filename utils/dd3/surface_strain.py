@@ -16,12 +16,8 @@ TINY = 1e-30
 
 def cell_strains(sheet: Sheet, step: int, surface: str) -> tuple[np.ndarray, np.ndarray]:
     """Return major and minor strain of the elements at a step; those of a column are equal."""
-    offsets = sheet.grid["Offsets"][...]
-    cells = sheet.grid["Connectivity"][...].reshape(-1, offsets[1])
-    now = sheet.points(step)
-    there = "displacement" in sheet.grid["PointData"]
-    start = now - sheet.values(step, "displacement")[0] if there else sheet.points(0)
-    faces = columns(cells, len(now))
+    start, now = sheet.initial(step), sheet.points(step)
+    faces = columns(sheet.elements(step), len(now))
     height = HEIGHTS[surface]
     before, after = (tangents(points[faces[0]], points[faces[1]], height) for points in (start, now))
     images = in_base(before, after)

@@ -42,34 +42,42 @@ module small_model
 contains
 
   !> Make a block of 2 x 3 x 1 mm with 12 nodes, numbered through the thickness first.
-  subroutine make_small_model(model, state)
+  subroutine make_small_model(model, state, divisions)
     type(model_t), intent(out) :: model
     !> Initial state.
     type(state_t), intent(out) :: state
+    !> Elements along x, each with 6 nodes and 2 elements more. Default: 1.
+    integer, intent(in), optional :: divisions
 
     type(law_choice_t) :: criterion, hardening, none(0)
     type(error_t), allocatable :: error
-    integer :: i, j, k
+    integer :: i, j, k, n
 
+    n = 1
+    if (present(divisions)) n = divisions
     call new_element(model%element, "hex8", error)
     model%title = "two elements"
-    model%n_node = 12
-    model%n_element = 2
+    model%n_node = 6*(n + 1)
+    model%n_element = 2*n
     model%n_tool = 2
     model%n_contact = 2
     model%n_internal = 1
     model%thickness = 1.0_wp
-    allocate (model%x0(3, 12), model%connectivity(8, 2))
-    do i = 0, 1
+    allocate (model%x0(3, model%n_node), model%connectivity(8, model%n_element))
+    do i = 0, n
       do j = 0, 1
         do k = 0, 2
-          model%x0(:, node(i, j, k)) = [2.0_wp*i, 3.0_wp*j, 0.5_wp*k]
+          model%x0(:, node(i, j, k)) = [2.0_wp*i/n, 3.0_wp*j, 0.5_wp*k]
         end do
       end do
     end do
-    do k = 0, 1
-      model%connectivity(:, k + 1) = [node(0, 0, k), node(1, 0, k), node(1, 1, k), node(0, 1, k), &
-          node(0, 0, k + 1), node(1, 0, k + 1), node(1, 1, k + 1), node(0, 1, k + 1)]
+    do i = 0, n - 1
+      do k = 0, 1
+        associate (corner => model%connectivity(:, 1 + k + 2*i))
+          corner(:4) = [node(i, 0, k), node(i + 1, 0, k), node(i + 1, 1, k), node(i, 1, k)]
+          corner(5:) = corner(:4) + 1
+        end associate
+      end do
     end do
     call new_part(model%part, model%n_node, model%connectivity)
     call set_columns(model)
@@ -80,11 +88,12 @@ contains
     hardening%values = [law_value_t("Y0", 200.0_wp)]
     allocate (model%material(1))
     call new_material(model%material(1), 2.1e5_wp, 0.3_wp, criterion, hardening, none)
-    model%material_of = [1, 1]
+    allocate (model%material_of(model%n_element), source=1)
     model%contact_point = [node_point(1), node_point(3)]
     model%n_contact_node = 2
     model%contact_node = [1, 3]
-    model%candidate_of = [1, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+    allocate (model%candidate_of(model%n_node), source=0)
+    model%candidate_of(model%contact_node) = [1, 2]
     allocate (model%tool(2), model%phase(2))
     model%tool(1)%name = "punch"
     model%tool(2)%name = "die"
@@ -93,7 +102,7 @@ contains
     model%phase(2)%control = 1
     allocate (model%load_set(0), model%pressure_set(0), model%drawbead(0), model%contact_face(0))
     allocate (model%face_point(4, 0))
-    allocate (model%candidate(2, 2), model%member(2, 12), source=.false.)
+    allocate (model%candidate(2, 2), model%member(2, model%n_node), source=.false.)
     model%tool_digest = [0, 0]
     model%n_candidate = [0, 0]
     do i = 1, 2

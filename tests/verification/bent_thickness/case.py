@@ -24,7 +24,7 @@ def largest_change(bench, radius, length, elements):
     found = bench.run(f"bent_{radius}_{elements}", HERE / "case.dat",
                       {"elements": elements, "angle": angle, "length": length})
     sheet = Sheet(found.folder)
-    inner = sheet.points(0)[sheet.corners].mean(axis=1)[:, 0] < length * (1 - max(1.5 / elements, 0.2))
+    inner = sheet.points(0)[sheet.corners(0)].mean(axis=1)[:, 0] < length * (1 - max(1.5 / elements, 0.2))
     cells = sheet.values(sheet.last, "thickness", True)[0][inner] - 1
     return float(cells[np.abs(cells).argmax()]), angle / elements
 

@@ -25,6 +25,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkLogger
 
+from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields, text_of
@@ -146,7 +147,7 @@ def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
 
 def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, options: argparse.Namespace, limits: Sequence[float]) -> None:
     """Add a sheet with the field `shown`, completed at the planes of symmetry."""
-    for part in reflected(mesh, options.mirror):
+    for part in reflected(closed_skin(mesh), options.mirror):
         skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
                          edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,

@@ -93,7 +93,7 @@ def nodes_at(folder: Path, travel: float) -> tuple[np.ndarray, np.ndarray, np.nd
     sheet = Sheet(folder)
     step = sheet.nearest_step(travel)
     status, _ = sheet.values(step, "contact_status")
-    return sheet.points(step), status.astype(int).ravel(), sheet.corners, float(sheet.travel[step])
+    return sheet.points(step), status.astype(int).ravel(), sheet.corners(step), float(sheet.travel[step])
 
 
 def sheets(work: Path, results: Mapping[str, Row], path: Path) -> bool:
