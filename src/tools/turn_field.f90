@@ -1,0 +1,235 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Turn of the normal of a tool's surface over lengths, such as those of elements that may come to
+!> lie on it. At a point of the surface it is the largest angle between the normals at two points in
+!> the ball around it whose diameter is the length a: 2 asin(a/(2 R)), the angle over the chord a, on
+!> a cylinder or a sphere of radius R, the angle of a kink whatever the length, and the whole angle
+!> of a fillet that is shorter than a.
+!>
+!> Points of the surface are spaced (surface_samples.f90), and the two outermost in the ball are
+!> less than a apart. Pairs at a distance d > a count too, up to a spacing outside the ball, with
+!> |n_1 - n_2| a/d, which is exact on an arc.
+!>
+!> Pairs count by their distance, not by a path on the surface: patches of other programs are not
+!> joined everywhere. Normals that differ by more than 120 degrees do not count, as those on the two
+!> sides of a lip, of a rib or of a narrow groove: they are opposite, and can differ by less only
+!> where the sides turn by 60 degrees within the ball, which the turn of a side shows, or where they
+!> form a wedge. The edge of one that is sharper than 60 degrees does not count; rims, without a
+!> surface beside them, do not either.
+module dd3_tools_turn_field
+  use dd3_base_kinds, only : i8, wp
+  use dd3_tools_surface, only : surface_t
+  use dd3_tools_surface_samples, only : close_spacing, new_surface_samples, surface_samples_t
+  use dd3_tools_value_tree, only : largest_within, new_value_tree, value_tree_t
+  implicit none
+  private
+  public :: turn_field_t, new_turn_field, largest_turn, turn_over
+
+  !> Squares of |n_1 - n_2| of normals at an angle of 120 degrees, and of 90 degrees, the largest
+  !> angle of a pair that is farther apart than the length.
+  real(wp), parameter :: largest_square = 3.0_wp, largest_outside = 2.0_wp
+  !> Turn below which points are not stored, and the accuracy of the queries, rad.
+  real(wp), parameter :: resolution = 1.0e-3_wp
+  !> Points up to this distance over the length from the centre of a ball form pairs.
+  real(wp), parameter :: range = 0.5_wp + close_spacing
+  !> Distance of points at the ends of the diameter that is round-off, relative.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
+  !> Turn field of a surface.
+  type :: turn_field_t
+    !> Lengths, ascending, mm.
+    real(wp), allocatable :: length(:)
+    !> Points of the surface with the turn over each length, rad; those without a turn left out.
+    type(value_tree_t), allocatable :: level(:)
+  end type turn_field_t
+
+  !> Points in cells, by a hash table of the cells.
+  type :: cells_t
+    real(wp) :: size = 0.0_wp
+    !> First point of each place of the table, and the next point at the same place; 0 for none.
+    integer, allocatable :: first(:), next(:)
+  end type cells_t
+
+contains
+
+  !> Make the turn field of a surface.
+  subroutine new_turn_field(self, surface, length)
+    type(turn_field_t), intent(out) :: self
+    type(surface_t), intent(in) :: surface
+    !> Lengths, ascending, mm.
+    real(wp), intent(in) :: length(:)
+
+    type(surface_samples_t) :: sample
+    real(wp), allocatable :: turn(:)
+    integer :: l, i
+
+    self%length = length
+    allocate (self%level(size(length)))
+    do l = 1, size(length)
+      call new_surface_samples(sample, surface, length(l))
+      allocate (turn(sample%n))
+      call find_turns(sample, length(l), turn)
+      associate (turned => pack([(i, i=1, sample%n)], turn > resolution))
+        call new_value_tree(self%level(l), sample%x(:, turned), turn(turned))
+      end associate
+      deallocate (turn)
+    end do
+  end subroutine new_turn_field
+
+  !> Find the turn in the ball around each point.
+  subroutine find_turns(sample, length, turn)
+    type(surface_samples_t), intent(in) :: sample
+    real(wp), intent(in) :: length
+    !> `(n)`, rad.
+    real(wp), intent(out) :: turn(:)
+
+    type(cells_t) :: cells
+    integer, allocatable :: near(:)
+    integer :: i, n
+
+    call new_cells(cells, sample%x, range*length)
+    allocate (near(64))
+    do i = 1, sample%n
+      call find_near(cells, sample%x, i, near, n)
+      turn(i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
+          sample%x(:, i), length)
+    end do
+  end subroutine find_turns
+
+  !> Return the largest angle between normals of points, rad.
+  pure real(wp) function turn_of_pairs(x, normal, centre, length) result(turn)
+    !> Points up to a spacing outside the ball, `(3, n)`, mm, and their normals.
+    real(wp), intent(in) :: x(:, :), normal(:, :)
+    !> Centre and diameter of the ball, mm.
+    real(wp), intent(in) :: centre(3), length
+
+    logical :: inside(size(x, 2))
+    real(wp) :: largest, square, distance
+    integer :: i, j
+
+    do i = 1, size(x, 2)
+      inside(i) = sum((x(:, i) - centre)**2) <= (0.5_wp*length*(1.0_wp + round_off))**2
+    end do
+    largest = 0.0_wp
+    do j = 2, size(x, 2)
+      do i = 1, j - 1
+        square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
+            + (normal(3, i) - normal(3, j))**2
+        if (square <= largest .or. square > largest_square) cycle
+        distance = sum((x(:, i) - x(:, j))**2)
+        if (distance > length**2) then
+          if (square > largest_outside) cycle
+          square = square*length**2/distance
+        else if (.not. (inside(i) .and. inside(j))) then
+          cycle
+        end if
+        largest = max(largest, square)
+      end do
+    end do
+    turn = 2.0_wp*asin(0.5_wp*sqrt(largest))
+  end function turn_of_pairs
+
+  !> Sort points into cells.
+  subroutine new_cells(self, x, size_of)
+    type(cells_t), intent(out) :: self
+    real(wp), intent(in) :: x(:, :)
+    !> Size of the cells, mm.
+    real(wp), intent(in) :: size_of
+
+    integer :: i, k
+
+    self%size = size_of
+    allocate (self%first(max(16, 2*size(x, 2))), self%next(size(x, 2)), source=0)
+    do i = size(x, 2), 1, -1
+      k = place_of(self, cell_of(self, x(:, i)))
+      self%next(i) = self%first(k)
+      self%first(k) = i
+    end do
+  end subroutine new_cells
+
+  !> Return the cell of a point.
+  pure function cell_of(self, x) result(cell)
+    type(cells_t), intent(in) :: self
+    real(wp), intent(in) :: x(3)
+    integer(i8) :: cell(3)
+
+    cell = floor(x/self%size, i8)
+  end function cell_of
+
+  !> Return the place of a cell in the table.
+  pure integer function place_of(self, cell) result(place)
+    type(cells_t), intent(in) :: self
+    integer(i8), intent(in) :: cell(3)
+
+    integer(i8), parameter :: factor(3) = [73856093_i8, 19349663_i8, 83492791_i8]
+
+    place = 1 + int(modulo(sum(factor*cell), size(self%first, kind=i8)))
+  end function place_of
+
+  !> Find the points within the size of a cell from a point, itself among them.
+  subroutine find_near(self, x, i, near, n)
+    type(cells_t), intent(in) :: self
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: i
+    !> Numbers of the `n` points.
+    integer, allocatable, intent(inout) :: near(:)
+    integer, intent(out) :: n
+
+    integer(i8) :: cell(3)
+    integer :: place(27), d, k
+
+    cell = cell_of(self, x(:, i))
+    n = 0
+    do d = 0, 26
+      place(d + 1) = place_of(self, cell + int([modulo(d, 3), modulo(d/3, 3), d/9] - 1, &
+          i8))
+      ! Two cells can have the same place.
+      if (any(place(:d) == place(d + 1))) cycle
+      k = self%first(place(d + 1))
+      do while (k > 0)
+        if (sum((x(:, k) - x(:, i))**2) <= self%size**2) then
+          if (n == size(near)) near = [near, near]
+          n = n + 1
+          near(n) = k
+        end if
+        k = self%next(k)
+      end do
+    end do
+  end subroutine find_near
+
+  !> Return the largest turn over a length of the field at the points of the surface within a
+  !> distance, rad, at most `resolution` too small; 0 if there is none.
+  pure real(wp) function largest_turn(self, x, reach, level)
+    type(turn_field_t), intent(in) :: self
+    !> Place in the frame of the tool, and the distance from it, mm.
+    real(wp), intent(in) :: x(3), reach
+    !> Number of the length.
+    integer, intent(in) :: level
+
+    largest_turn = largest_within(self%level(level), x, reach, resolution)
+  end function largest_turn
+
+  !> Return the largest turn over any length: linear between those of the field, as on an arc and at a
+  !> kink, and the one over the shortest or the longest length beyond them, rad.
+  pure real(wp) function turn_over(self, x, reach, length) result(turn)
+    type(turn_field_t), intent(in) :: self
+    !> As for `largest_turn`.
+    real(wp), intent(in) :: x(3), reach
+    !> mm.
+    real(wp), intent(in) :: length
+
+    real(wp) :: shorter, fraction
+    integer :: l
+
+    l = count(self%length <= length)
+    if (l == 0 .or. l == size(self%length)) then
+      turn = largest_turn(self, x, reach, max(l, 1))
+      return
+    end if
+    turn = largest_turn(self, x, reach, l + 1)
+    fraction = (length - self%length(l))/(self%length(l + 1) - self%length(l))
+    shorter = turn
+    if (turn > 0.0_wp) shorter = largest_turn(self, x, reach, l)
+    turn = shorter + fraction*(turn - shorter)
+  end function turn_over
+
+end module dd3_tools_turn_field
