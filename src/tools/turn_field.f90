@@ -19,7 +19,7 @@ module dd3_tools_turn_field
   use dd3_base_kinds, only : i8, wp
   use dd3_tools_surface, only : surface_t
   use dd3_tools_surface_samples, only : close_spacing, new_surface_samples, surface_samples_t
-  use dd3_tools_value_tree, only : largest_within, new_value_tree, value_tree_t
+  use dd3_tools_vector_tree, only : largest_within, new_vector_tree, vector_tree_t
   implicit none
   private
   public :: turn_field_t, new_turn_field, largest_turn, turn_over
@@ -38,8 +38,9 @@ module dd3_tools_turn_field
   type :: turn_field_t
     !> Lengths, ascending, mm.
     real(wp), allocatable :: length(:)
-    !> Points of the surface with the turn over each length, rad; those without a turn left out.
-    type(value_tree_t), allocatable :: level(:)
+    !> Points of the surface with the turn over each length, rad, along the difference of the normals;
+    !> those without a turn left out.
+    type(vector_tree_t), allocatable :: level(:)
   end type turn_field_t
 
   !> Points in cells, by a hash table of the cells.
@@ -59,17 +60,17 @@ contains
     real(wp), intent(in) :: length(:)
 
     type(surface_samples_t) :: sample
-    real(wp), allocatable :: turn(:)
+    real(wp), allocatable :: turn(:, :)
     integer :: l, i
 
     self%length = length
     allocate (self%level(size(length)))
     do l = 1, size(length)
       call new_surface_samples(sample, surface, length(l))
-      allocate (turn(sample%n))
+      allocate (turn(3, sample%n))
       call find_turns(sample, length(l), turn)
-      associate (turned => pack([(i, i=1, sample%n)], turn > resolution))
-        call new_value_tree(self%level(l), sample%x(:, turned), turn(turned))
+      associate (turned => pack([(i, i=1, sample%n)], norm2(turn, dim=1) > resolution))
+        call new_vector_tree(self%level(l), sample%x(:, turned), turn(:, turned))
       end associate
       deallocate (turn)
     end do
@@ -79,8 +80,8 @@ contains
   subroutine find_turns(sample, length, turn)
     type(surface_samples_t), intent(in) :: sample
     real(wp), intent(in) :: length
-    !> `(n)`, rad.
-    real(wp), intent(out) :: turn(:)
+    !> Along the difference of the normals, `(3, n)`, rad.
+    real(wp), intent(out) :: turn(:, :)
 
     type(cells_t) :: cells
     integer, allocatable :: near(:)
@@ -90,26 +91,28 @@ contains
     allocate (near(64))
     do i = 1, sample%n
       call find_near(cells, sample%x, i, near, n)
-      turn(i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
+      turn(:, i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
           sample%x(:, i), length)
     end do
   end subroutine find_turns
 
-  !> Return the largest angle between normals of points, rad.
-  pure real(wp) function turn_of_pairs(x, normal, centre, length) result(turn)
+  !> Return the largest angle between normals of points, rad, along the difference of the normals.
+  pure function turn_of_pairs(x, normal, centre, length) result(turn)
     !> Points up to a spacing outside the ball, `(3, n)`, mm, and their normals.
     real(wp), intent(in) :: x(:, :), normal(:, :)
     !> Centre and diameter of the ball, mm.
     real(wp), intent(in) :: centre(3), length
+    real(wp) :: turn(3)
 
     logical :: inside(size(x, 2))
     real(wp) :: largest, square, distance
-    integer :: i, j
+    integer :: i, j, pair(2)
 
     do i = 1, size(x, 2)
       inside(i) = sum((x(:, i) - centre)**2) <= (0.5_wp*length*(1.0_wp + round_off))**2
     end do
     largest = 0.0_wp
+    pair = 1
     do j = 2, size(x, 2)
       do i = 1, j - 1
         square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
@@ -122,10 +125,13 @@ contains
         else if (.not. (inside(i) .and. inside(j))) then
           cycle
         end if
-        largest = max(largest, square)
+        if (square <= largest) cycle
+        largest = square
+        pair = [i, j]
       end do
     end do
-    turn = 2.0_wp*asin(0.5_wp*sqrt(largest))
+    turn = normal(:, pair(1)) - normal(:, pair(2))
+    turn = 2.0_wp*asin(0.5_wp*sqrt(largest))*turn/max(norm2(turn), tiny(1.0_wp))
   end function turn_of_pairs
 
   !> Sort points into cells.
@@ -210,26 +216,28 @@ contains
 
   !> Return the largest turn over any length: linear between those of the field, as on an arc and at a
   !> kink, and the one over the shortest or the longest length beyond them, rad.
-  pure real(wp) function turn_over(self, x, reach, length) result(turn)
+  pure real(wp) function turn_over(self, x, reach, length, frame) result(turn)
     type(turn_field_t), intent(in) :: self
     !> As for `largest_turn`.
     real(wp), intent(in) :: x(3), reach
     !> mm.
     real(wp), intent(in) :: length
+    !> Vectors g_1 and g_2 in the plane of an element, and its unit normal: a turn along e in this
+    !> plane counts times min(1, 1/max(|e.g_1|, |e.g_2|)).
+    real(wp), intent(in), optional :: frame(3, 3)
 
-    real(wp) :: shorter, fraction
+    real(wp) :: shorter, longer
     integer :: l
 
-    l = count(self%length <= length)
-    if (l == 0 .or. l == size(self%length)) then
-      turn = largest_turn(self, x, reach, max(l, 1))
-      return
-    end if
-    turn = largest_turn(self, x, reach, l + 1)
-    fraction = (length - self%length(l))/(self%length(l + 1) - self%length(l))
-    shorter = turn
-    if (turn > 0.0_wp) shorter = largest_turn(self, x, reach, l)
-    turn = shorter + fraction*(turn - shorter)
+    l = count(self%length <= (1.0_wp + round_off)*length)
+    shorter = largest_within(self%level(max(l, 1)), x, reach, resolution, frame)
+    turn = shorter
+    if (l == 0 .or. l == size(self%length)) return
+    associate (from => self%length(l), to => self%length(l + 1))
+      if (length - from <= round_off*length) return
+      longer = largest_within(self%level(l + 1), x, reach, resolution, frame)
+      turn = shorter + (length - from)/(to - from)*(longer - shorter)
+    end associate
   end function turn_over
 
 end module dd3_tools_turn_field

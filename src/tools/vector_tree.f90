@@ -1,49 +1,51 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Points with a value each, and the largest value within a distance of a place. The points are
-!> sorted along the Z-order curve (Morton 1966); blocks of them are the leaves of a balanced tree
-!> of boxes with the largest value below each node, so that a search leaves out all that is too far
+!> Points with a vector each, and the largest length of a vector within a distance of a place. The
+!> points are sorted along the Z-order curve (Morton 1966); blocks of them are the leaves of a balanced tree
+!> of boxes with the largest length below each node, so that a search leaves out all that is too far
 !> or too small.
-module dd3_tools_value_tree
+module dd3_tools_vector_tree
   use dd3_base_kinds, only : i8, wp
   use dd3_base_sorting, only : ascending
   use dd3_tools_box_tree, only : box_distance
   implicit none
   private
-  public :: value_tree_t, new_value_tree, largest_within
+  public :: vector_tree_t, new_vector_tree, largest_within
 
   !> Points in a leaf.
   integer, parameter :: leaf_size = 8
   !> Bits of a coordinate in the place on the curve: three of them fit into a real number.
   integer, parameter :: n_bit = 17
+  !> Component of a unit vector in a plane below which it has no direction there.
+  real(wp), parameter :: upright = 1.0e-3_wp
   !> Largest number of nodes on the stack of a search.
   integer, parameter :: most_levels = 40
 
   !> The tree: node i has the halves 2 i and 2 i + 1; the last `n_leaf` nodes are the leaves.
-  type :: value_tree_t
+  type :: vector_tree_t
     integer :: n = 0, n_leaf = 0
-    !> Positions in the order of the curve, `(3, n)`, mm, and values, `(n)`.
-    real(wp), allocatable :: x(:, :), value(:)
+    !> Positions in the order of the curve, mm, and vectors, `(3, n)`.
+    real(wp), allocatable :: x(:, :), vector(:, :)
     !> Lower and upper corner of the box of each node, `(3, 2, 2*n_leaf - 1)`, mm, and the largest
-    !> value in it.
+    !> length of a vector in it.
     real(wp), allocatable :: box(:, :, :), largest(:)
-  end type value_tree_t
+  end type vector_tree_t
 
 contains
 
   !> Make the tree.
-  subroutine new_value_tree(self, x, value)
-    type(value_tree_t), intent(out) :: self
-    !> `(3, n)`, mm, and `(n)`.
-    real(wp), intent(in) :: x(:, :), value(:)
+  subroutine new_vector_tree(self, x, vector)
+    type(vector_tree_t), intent(out) :: self
+    !> `(3, n)`, positions in mm.
+    real(wp), intent(in) :: x(:, :), vector(:, :)
 
     integer, allocatable :: order(:)
     integer :: i, first, last
 
-    self%n = size(value)
+    self%n = size(x, 2)
     if (self%n == 0) return
     order = ascending(places_on_curve(x))
     self%x = x(:, order)
-    self%value = value(order)
+    self%vector = vector(:, order)
     self%n_leaf = 1
     do while (self%n_leaf*leaf_size < self%n)
       self%n_leaf = 2*self%n_leaf
@@ -55,18 +57,18 @@ contains
         ! Those behind the last point are empty.
         self%box(:, 1, i) = minval(self%x(:, first:last), dim=2)
         self%box(:, 2, i) = maxval(self%x(:, first:last), dim=2)
-        self%largest(i) = maxval(self%value(first:last))
+        self%largest(i) = maxval(norm2(self%vector(:, first:last), dim=1))
       else
         self%box(:, 1, i) = min(self%box(:, 1, 2*i), self%box(:, 1, 2*i + 1))
         self%box(:, 2, i) = max(self%box(:, 2, 2*i), self%box(:, 2, 2*i + 1))
         self%largest(i) = max(self%largest(2*i), self%largest(2*i + 1))
       end if
     end do
-  end subroutine new_value_tree
+  end subroutine new_vector_tree
 
   !> Return the range of the points of a leaf; last < first if there is none.
   pure subroutine leaf_range(self, node, first, last)
-    type(value_tree_t), intent(in) :: self
+    type(vector_tree_t), intent(in) :: self
     integer, intent(in) :: node
     integer, intent(out) :: first, last
 
@@ -98,15 +100,19 @@ contains
     end do
   end function places_on_curve
 
-  !> Return the largest value, at least zero, of the points within a distance of a place.
-  pure real(wp) function largest_within(self, x, distance, resolution) result(largest)
-    type(value_tree_t), intent(in) :: self
+  !> Return the largest length of the vectors within a distance of a place, or that of the lengths
+  !> multiplied by a factor of their directions.
+  pure real(wp) function largest_within(self, x, distance, resolution, frame) result(largest)
+    type(vector_tree_t), intent(in) :: self
     real(wp), intent(in) :: x(3)
     !> mm.
     real(wp), intent(in) :: distance
-    !> Difference from the largest value that may be left out.
+    !> Difference from the largest length that may be left out.
     real(wp), intent(in) :: resolution
+    !> As for `factor_along`.
+    real(wp), intent(in), optional :: frame(3, 3)
 
+    real(wp) :: length
     integer :: stack(most_levels), depth, node, first, last, i
 
     largest = 0.0_wp
@@ -121,7 +127,10 @@ contains
       if (node >= self%n_leaf) then
         call leaf_range(self, node, first, last)
         do i = first, last
-          if (sum((self%x(:, i) - x)**2) <= distance**2) largest = max(largest, self%value(i))
+          if (sum((self%x(:, i) - x)**2) > distance**2) cycle
+          length = norm2(self%vector(:, i))
+          if (present(frame)) length = length*factor_along(self%vector(:, i), frame)
+          largest = max(largest, length)
         end do
         cycle
       end if
@@ -133,4 +142,20 @@ contains
     end do
   end function largest_within
 
-end module dd3_tools_value_tree
+  !> Return min(1, 1/max(|e.g_1|, |e.g_2|)), e being the direction of a vector in a plane; 1 for a
+  !> vector at right angles to it.
+  pure real(wp) function factor_along(vector, frame) result(factor)
+    real(wp), intent(in) :: vector(3)
+    !> Vectors g_1 and g_2 in the plane, and its unit normal.
+    real(wp), intent(in) :: frame(3, 3)
+
+    real(wp) :: component(3), length
+
+    component = matmul(vector, frame)
+    length = norm2(vector - component(3)*frame(:, 3))
+    factor = 1.0_wp
+    if (length > upright*norm2(vector)) &
+        factor = length/max(length, abs(component(1)), abs(component(2)))
+  end function factor_along
+
+end module dd3_tools_vector_tree
