@@ -11,11 +11,12 @@ module dd3_tools_surface_samples
   public :: surface_samples_t, new_surface_samples, close_spacing
 
   !> Spacing of the points over the length, where the normal turns along the line of the points and
-  !> where it does not.
+  !> where it hardly does.
   real(wp), parameter :: close_spacing = 0.25_wp, wide_spacing = 0.5_wp
-  !> Turn of the normal over the length, rad, below which a part of a patch is nearly flat, and the
-  !> factor by which the turn between points of the probe is raised for what lies between them.
-  real(wp), parameter :: slight_turn = 0.01_wp, raise = 2.0_wp
+  !> Turns of the normal over the length, rad, up to which a part of a patch is nearly flat, and up
+  !> to which the wide spacing is enough; and the factor by which the turn between points of the
+  !> probe is raised for what lies between them.
+  real(wp), parameter :: slight_turn = 0.03_wp, moderate_turn = 0.1_wp, raise = 2.0_wp
   !> Intervals of the probe in u and v, and most points of a part that is not divided.
   integer, parameter :: n_probe = 8, most_points = 512
   !> Largest number of halvings of a patch.
@@ -72,12 +73,9 @@ contains
 
     if (patch%flat) return
     call probe(patch, part, side, turn)
-    where (raise*turn*length > slight_turn)
-      cells = side/(close_spacing*length)
-    elsewhere
-      cells = side/(wide_spacing*length)
-    end where
-    if (all(raise*turn*length <= slight_turn)) return
+    turn = raise*length*turn
+    if (all(turn <= slight_turn)) return
+    cells = side/(merge(close_spacing, wide_spacing, turn > moderate_turn)*length)
     if (product(max(1.0_wp, cells)) > most_points .and. n_halving > 0) then
       half = part
       axis = maxloc(cells, dim=1)
