@@ -44,7 +44,7 @@ contains
     type(options_t), intent(in) :: options
     type(run_start_t), intent(inout) :: start
     type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     !> One of the `exit_*` values.
     integer, intent(out) :: exit_code
 
@@ -81,7 +81,7 @@ contains
   subroutine run_logged(start, case, model, log, file, summary, error)
     type(run_start_t), intent(inout) :: start
     type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     type(log_t), intent(inout) :: log
     type(run_file_t), intent(inout) :: file
     type(run_summary_t), intent(out) :: summary
@@ -111,7 +111,7 @@ contains
     if (size(case%point) > 0) then
       call run_points(case, model, start%directory, log, summary%increments, error)
     else
-      call run_model(model, start, solver, log, summary, error)
+      call run_model(model, case, start, solver, log, summary, error)
       call conclude(log, summary)
     end if
     ! A run whose folder has vanished has no results.

@@ -9,6 +9,7 @@ module dd3_input_case
   use dd3_base_text, only : text_t
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
+  use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_settings_limits, only : limits_spec_t
   use dd3_settings_newton, only : newton_spec_t
   use dd3_settings_output, only : history_quantities_t, output_spec_t
@@ -373,6 +374,7 @@ module dd3_input_case
     type(mesh_spec_t), allocatable :: mesh(:)
     type(start_spec_t), allocatable :: start(:)
     type(trim_spec_t), allocatable :: trim(:)
+    type(adaptive_spec_t) :: adaptive
     !> Node sets of the input file, in its order.
     type(node_set_spec_t), allocatable :: set(:)
     type(material_spec_t), allocatable :: material(:)

@@ -6,7 +6,8 @@ module dd3_input_fill
   use dd3_settings_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, tool_spec_t
-  use dd3_input_fill_blank, only : fill_blank, fill_mesh, fill_set, fill_start, fill_trim
+  use dd3_input_fill_blank, only : fill_adaptive, fill_blank, fill_mesh, fill_set, &
+      fill_start, fill_trim
   use dd3_input_fill_material, only : fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
@@ -75,6 +76,7 @@ contains
     allocate (case%blank(size(at)))
     do i = 1, size(at)
       call fill_blank(case%blank(i), deck%block(at(i)))
+      call fill_adaptive(case%adaptive, deck%block(at(i)))
       case%blank(i)%material = position(deck, "material", deck%block(at(i))%word("material"))
     end do
     call fill_meshes(case, deck)
@@ -82,6 +84,7 @@ contains
     allocate (case%start(size(at)))
     do i = 1, size(at)
       call fill_start(case%start(i), deck%block(at(i)))
+      call fill_adaptive(case%adaptive, deck%block(at(i)))
     end do
     at = positions(deck, "trim")
     allocate (case%trim(size(at)))
@@ -129,6 +132,7 @@ contains
     do i = 1, size(at)
       associate (mesh => case%mesh(i), block => deck%block(at(i)))
         call fill_mesh(mesh, block)
+        call fill_adaptive(case%adaptive, block)
         mesh%material = position(deck, "material", block%word("material"))
         do k = 1, size(mesh%material_of)
           mesh%material_of(k)%material = position(deck, "material", mesh%material_of(k)%name)

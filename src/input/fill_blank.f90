@@ -6,9 +6,10 @@ module dd3_input_fill_blank
   use dd3_input_case, only : blank_spec_t, mesh_spec_t, node_set_spec_t, start_spec_t, &
       trim_spec_t, set_plane, set_box, set_nodes, set_near
   use dd3_input_text_file, only : resolve_path
+  use dd3_settings_adaptive, only : adaptive_spec_t
   implicit none
   private
-  public :: fill_blank, fill_mesh, fill_start, fill_trim, fill_set
+  public :: fill_adaptive, fill_blank, fill_mesh, fill_start, fill_trim, fill_set
 
 contains
 
@@ -31,6 +32,17 @@ contains
     blank%portion = block%word("portion")
     if (block%has("radius")) blank%size = [blank%radius, blank%radius, block%number("thickness")]
   end subroutine fill_blank
+
+  !> Fill the settings of the refinement of a sheet.
+  subroutine fill_adaptive(adaptive, block)
+    type(adaptive_spec_t), intent(inout) :: adaptive
+    type(block_t), intent(in) :: block
+
+    adaptive%levels = nint(block%number("adaptive"))
+    adaptive%angle = block%number("adaptive_angle")
+    adaptive%size = block%number("adaptive_size")
+    adaptive%at = block%at("adaptive")
+  end subroutine fill_adaptive
 
   !> Fill a mesh; the positions of the materials are left to the caller.
   subroutine fill_mesh(mesh, block)

@@ -48,6 +48,7 @@ contains
           "integration points through the thickness of an element solid_shell", lower=2.0_wp, &
           upper=15.0_wp), &
       row("material", kind_name, "", "", "material", form="material")]
+    key = [key, adaptive_keys()]
   end function blank_keys
 
   function mesh_keys() result(key)
@@ -65,6 +66,7 @@ contains
           form="material"), &
       row("material_of", kind_other, "", "-", "material of the elements of a set", &
           repeatable=.true., form="set material")]
+    key = [key, adaptive_keys()]
   end function mesh_keys
 
   function start_keys() result(key)
@@ -79,7 +81,22 @@ contains
           form="number number number number number number number"), &
       row("move", kind_reals, "mm", "0 0 0", "displacement of the sheet into its new place, "// &
           "after the turns", count=3)]
+    key = [key, adaptive_keys()]
   end function start_keys
+
+  !> Return the keys of the refinement, of each block that gives the sheet.
+  function adaptive_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("adaptive", kind_integer, "", "0", "times that an element may be divided into four "// &
+          "where it comes to lie on a radius of a tool, or is bent; 0: never", lower=zero, &
+          upper=4.0_wp), &
+      row("adaptive_angle", kind_real, "degrees", "15", "angle by which the sheet may turn over "// &
+          "an element that may be divided", lower=1.0_wp, upper=60.0_wp), &
+      row("adaptive_size", kind_real, "mm", "0", "length below which no element is divided", &
+          lower=zero)]
+  end function adaptive_keys
 
   function trim_keys() result(key)
     type(parameter_t), allocatable :: key(:)

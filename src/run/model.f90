@@ -3,7 +3,7 @@
 module dd3_run_model
   use dd3_base_kinds, only : wp
   use dd3_base_cause_text, only : cause_code, cause_text
-  use dd3_base_clock, only : processor_time, section_output, wall_time
+  use dd3_base_clock, only : processor_time, profile_t, section_output, wall_time
   use dd3_base_error, only : error_t, fatal_error, keep_first
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
@@ -13,6 +13,7 @@ module dd3_run_model
   use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
+  use dd3_input_case, only : case_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : solver_names
   use dd3_model_model, only : model_t
@@ -26,11 +27,12 @@ module dd3_run_model
       until_fraction
   use dd3_process_phase_start, only : begin_phase, check_returns, return_tools
   use dd3_process_predictor, only : new_prediction
-  use dd3_process_taken_over, only : balance_sheet
+  use dd3_process_taken_over, only : balance_sheet, take_up
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_report_tool_depth, only : observe_tools
   use dd3_report_attempt_report, only : failure_message, status_row
   use dd3_report_phase_warnings, only : end_notes, start_notes
+  use dd3_run_adaptivity, only : adaptivity_t, new_adaptivity
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
   use dd3_settings_solver, only : solver_spec_t
   use dd3_system_system, only : new_system
@@ -61,6 +63,8 @@ module dd3_run_model
     type(progress_t) :: progress
     type(run_summary_t) :: summary
     type(thread_choice_t) :: threads
+    type(adaptivity_t) :: adaptivity
+    type(solver_options_t) :: options
     !> Whether the log has told of a perturbed pivot.
     logical :: told_perturbed = .false.
   end type run_t
@@ -69,8 +73,10 @@ contains
 
   !> Run a model from a state to the end of its last phase. The records are complete also if the run
   !> stops before.
-  subroutine run_model(model, start, solver, log, summary, error)
-    type(model_t), intent(in) :: model
+  subroutine run_model(model, case, start, solver, log, summary, error)
+    !> Its mesh may be refined.
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
     !> Its state is released.
     type(run_start_t), intent(inout) :: start
     !> Linear solver, as `find_job_size` returns it; moved into the run.
@@ -92,11 +98,13 @@ contains
     start%state = state_t()
     call summary%start(size(model%phase), run%committed)
     run%summary = summary
-    call new_system(run%stepper%system, model, solver_options(start), error, solver)
+    run%options = solver_options(start)
+    call new_system(run%stepper%system, model, run%options, error, solver)
     if (allocated(error)) return
     call log%note("linear solver: "//trim(run%stepper%system%solver%description))
     if (model%part%divided) call log%note(model%part%report())
     call new_prediction(run%stepper%prediction, model)
+    call new_adaptivity(run%adaptivity, model, case%adaptive)
     stressed = merge(1, 0, any(abs(run%committed%sheet%stress) > 0.0_wp))
     call largest_over_ranks(1, stressed)
     if (.not. run%committed%begun .and. stressed(1) > 0) then
@@ -110,7 +118,7 @@ contains
       do number = run%committed%phase, size(model%phase)
         log%phase = model%phase(number)%name
         run%summary%phase(number)%state = "running"
-        call run_phase(run, model, number, log, error)
+        call run_phase(run, model, case, number, log, error)
         call run%summary%phase(number)%finish(run%committed, error)
         if (allocated(error)) exit
       end do
@@ -168,9 +176,10 @@ contains
   end subroutine open_records
 
   !> Run one phase to its end.
-  subroutine run_phase(run, model, number, log, error)
+  subroutine run_phase(run, model, case, number, log, error)
     type(run_t), intent(inout) :: run
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
     !> Number of the phase; a restart continues in the middle of it.
     integer, intent(in) :: number
     type(log_t), intent(inout) :: log
@@ -183,7 +192,7 @@ contains
     logical :: ended
     integer :: done
 
-    associate (phase => model%phase(number), committed => run%committed)
+    associate (committed => run%committed)
       if (.not. committed%begun .or. committed%phase /= number) then
         call return_tools(model, number, committed)
         call check_returns(model, number, committed, error)
@@ -193,7 +202,9 @@ contains
         call tell_all(log, notes)
       end if
       do while (.not. phase_is_over(model, committed))
-        next_output = next_output_progress(model%output, phase, committed)
+        call adapt(run, model, case, log, error)
+        if (allocated(error)) exit
+        next_output = next_output_progress(model%output, model%phase(number), committed)
         done = committed%increment
         call run_increment(run, model, error)
         call note_solution(run, model, log)
@@ -212,6 +223,43 @@ contains
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
   end subroutine run_phase
+
+  !> Divide the elements that need it before the next increment, and take up the computation on the
+  !> finer sheet. The forces that are out of balance then are brought into balance by the increment.
+  subroutine adapt(run, model, case, log, error)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(inout) :: model
+    type(case_t), intent(in) :: case
+    type(log_t), intent(inout) :: log
+    !> Set if the sheet cannot be refined.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(profile_t) :: profile
+    logical, allocatable :: marked(:)
+    integer :: level, before
+    real(wp) :: imbalance
+
+    do level = 1, max(1, run%adaptivity%spec%levels)
+      call run%adaptivity%find_marks(model, run%committed, marked)
+      if (.not. any(marked)) return
+      before = model%n_element
+      call run%adaptivity%refine(case, marked, model, run%committed, error)
+      if (allocated(error)) return
+      if (model%n_element == before) return
+      profile = run%stepper%system%profile
+      call run%stepper%system%solver%release()
+      call new_system(run%stepper%system, model, run%options, error)
+      if (allocated(error)) return
+      run%stepper%system%profile = profile
+      call new_prediction(run%stepper%prediction, model)
+      call take_up(model, run%stepper%system, run%committed, imbalance, error)
+      if (allocated(error)) return
+      run%trial = run%committed
+      call log%note("refined after increment "//to_text(run%committed%increment)//": "// &
+          to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of balance "// &
+          to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
+    end do
+  end subroutine adapt
 
   !> Log a change of the number of threads, and the first pivot that was perturbed.
   subroutine note_solution(run, model, log)
@@ -270,8 +318,9 @@ contains
 
     type(status_row_t) :: row
     real(wp) :: began, processor
-    logical :: predicted, again
+    logical :: predicted, again, too_late
 
+    too_late = .false.
     associate (stepper => run%stepper, attempt => run%stepper%attempt, &
         phase => model%phase(run%committed%phase), totals => run%summary%phase(run%committed%phase))
       began = wall_time()
@@ -303,12 +352,16 @@ contains
           if (again) row%reason = cause_text(verdict_t(cause=cause_beyond_until), "")
         end if
         if (again) again = makes_progress(attempt, stepper%prediction%progress)
+        if (attempt%verdict%outcome == verdict_converged .and. .not. again) &
+            call run%adaptivity%judge(model, run%trial, too_late)
+        if (too_late) row%outcome = "refined"
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)
         call totals%add(row)
         if (allocated(error) .or. .not. again) exit
         if (attempt%verdict%outcome /= verdict_converged) totals%retries = totals%retries + 1
       end do
+      if (allocated(error) .or. too_late) return
       if (attempt%verdict%outcome == verdict_converged) then
         call accept_increment(model, run%trial, stepper, run%committed)
         run%summary%increments = run%committed%increment

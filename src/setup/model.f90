@@ -47,7 +47,8 @@ contains
   end subroutine new_model
 
   !> Build a model anew on another sheet, at any state of a run. It may be used if the list holds no
-  !> error.
+  !> error. The sheet has its positions at the start of the job, and all node sets of the model, those
+  !> of the sheet itself first.
   subroutine rebuild_model(model, case, sheet, errors)
     !> Built from the same case.
     type(model_t), intent(inout) :: model
@@ -57,7 +58,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    call set_on_sheet(model, case, sheet, .true., errors)
+    call set_on_sheet(model, case, sheet, size(case%start) > 0, errors)
     if (errors%count == 0) call keep_own_points(model)
   end subroutine rebuild_model
 

@@ -47,15 +47,20 @@ contains
 
     type(mesh_t) :: mesh
     logical :: rebuilt
+    integer :: n_sheet_set
 
     rebuilt = allocated(model%phase)
+    n_sheet_set = model%n_sheet_set
     call remove_sheet(model)
     if (displaced) model%x_start = sheet%x
     mesh = sheet%mesh
     sheet%mesh = mesh_t()
-    model%n_sheet_set = size(mesh%set)
-    call add_sets(mesh, case, errors)
-    if (errors%count > 0) return
+    model%n_sheet_set = n_sheet_set
+    if (.not. rebuilt) then
+      model%n_sheet_set = size(mesh%set)
+      call add_sets(mesh, case, errors)
+      if (errors%count > 0) return
+    end if
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
     if (.not. rebuilt) call set_axes(model, case, errors)

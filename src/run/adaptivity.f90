@@ -1,0 +1,221 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Adaptive refinement of the sheet in a run: which elements are divided and when.
+!>
+!> An element is divided before it comes to lie on a radius of a tool over whose length the tool turns
+!> by more than the angle of the input, as the exact surfaces of the tools tell. As soon as one would
+!> meet such a radius in the next part of the travel, all that would in a longer part are divided, so
+!> that the mesh changes a few times only. Where the sheet has turned too much all the same, as in
+!> walls and where it bends freely, it is divided there; an increment in which it turns by much more
+!> is made again on the finer mesh.
+module dd3_run_adaptivity
+  use dd3_base_error, only : error_list_t, error_t, fatal_error
+  use dd3_base_kinds, only : pi, wp
+  use dd3_base_verdict, only : verdict_converged, verdict_t
+  use dd3_input_case, only : case_t
+  use dd3_model_bound_nodes, only : give_to_parents
+  use dd3_model_model, only : model_t
+  use dd3_model_reactions, only : reactions
+  use dd3_model_refined_state, only : refined_state, sheet_of
+  use dd3_model_sheet_turn, only : turn_of_sheet, turn_of_tools_ahead
+  use dd3_model_state, only : state_t
+  use dd3_settings_adaptive, only : adaptive_spec_t
+  use dd3_setup_model, only : rebuild_model
+  use dd3_sheet_grid, only : grid_t, new_grid
+  use dd3_sheet_marks, only : mark_balanced
+  use dd3_sheet_refine, only : refine_sheet
+  use dd3_sheet_refinement, only : refinement_t
+  use dd3_sheet_sheet, only : sheet_t
+  use dd3_tools_turn_field, only : new_turn_field, turn_field_t
+  implicit none
+  private
+  public :: adaptivity_t, new_adaptivity
+
+  !> Travel of the tools within which a radius makes elements be divided, and that within which all
+  !> are divided then, over the mean length of the undivided elements.
+  real(wp), parameter :: near = 0.25_wp, ahead = 1.0_wp
+  !> Turn of the sheet over an element, over the largest, at which an increment is made again.
+  real(wp), parameter :: late = 1.5_wp
+  !> Largest number of increments made again one after another.
+  integer, parameter :: most_returns = 3
+
+  !> Refinement of a run.
+  type :: adaptivity_t
+    !> Settings, with the angle in rad.
+    type(adaptive_spec_t) :: spec
+    !> Turn of each tool over the lengths of the elements of all levels, `(n_tool)`.
+    type(turn_field_t), allocatable :: field(:)
+    !> Mean length of the undivided elements, mm.
+    real(wp) :: length = 0.0_wp
+    !> Elements to be divided before the next increment, `(n_element)`; not allocated without one.
+    logical, allocatable :: waiting(:)
+    !> Increments made again since the last one that was accepted, and in the run.
+    integer :: returns = 0, total_returns = 0
+  contains
+    procedure :: judge
+    procedure :: find_marks
+    procedure :: refine
+  end type adaptivity_t
+
+contains
+
+  !> Prepare the refinement of a run.
+  subroutine new_adaptivity(self, model, spec)
+    type(adaptivity_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+    type(adaptive_spec_t), intent(in) :: spec
+
+    real(wp) :: length(model%n_element)
+    integer :: l, tool
+
+    self%spec = spec
+    self%spec%angle = spec%angle*pi/180.0_wp
+    if (spec%levels == 0) return
+    length = element_lengths(model, model%x0)
+    if (allocated(model%level)) length = length*2.0_wp**model%level
+    self%length = sum(length)/real(size(length), wp)
+    allocate (self%field(model%n_tool))
+    do tool = 1, model%n_tool
+      call new_turn_field(self%field(tool), model%tool(tool)%surface, &
+          [(self%length*0.5_wp**l, l=spec%levels, 0, -1)])
+    end do
+  end subroutine new_adaptivity
+
+  !> Return the mean edges of the elements in the plane of the sheet, `(n_element)`, mm.
+  pure function element_lengths(model, x) result(length)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: length(model%n_element)
+
+    integer :: e, i
+
+    do e = 1, model%n_element
+      associate (node => model%connectivity(:4, e))
+        length(e) = 0.25_wp*sum([(norm2(x(:, node(modulo(i, 4) + 1)) - x(:, node(i))), i=1, 4)])
+      end associate
+    end do
+  end function element_lengths
+
+  !> Whether elements may be divided in the running phase: not once the tools leave the sheet.
+  pure logical function may_refine(self, model, state)
+    type(adaptivity_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+
+    may_refine = self%spec%levels > 0
+    if (may_refine) may_refine = .not. (model%phase(state%phase)%unloaded .or. &
+        any(model%phase(state%phase)%withdrawn))
+  end function may_refine
+
+  !> Return which elements may be divided.
+  pure function divisible(self, model, state)
+    type(adaptivity_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    logical :: divisible(model%n_element)
+
+    divisible = element_lengths(model, state%x) > self%spec%size
+    if (allocated(model%level)) divisible = divisible .and. model%level < self%spec%levels
+  end function divisible
+
+  !> Find the elements that are to be divided before the next increment.
+  subroutine find_marks(self, model, state, marked)
+    class(adaptivity_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Committed state.
+    type(state_t), intent(in) :: state
+    logical, allocatable, intent(out) :: marked(:)
+
+    logical :: bent(model%n_element)
+    real(wp) :: turn(model%n_element)
+
+    allocate (marked(model%n_element), source=.false.)
+    if (.not. may_refine(self, model, state)) return
+    if (allocated(self%waiting)) call move_alloc(self%waiting, marked)
+    call turn_of_sheet(model, state%x, turn)
+    bent = turn > self%spec%angle .and. divisible(self, model, state)
+    call turn_of_tools_ahead(model, state, self%field, near*self%length, turn)
+    if (any(turn > self%spec%angle .and. divisible(self, model, state)) .or. any(bent) &
+        .or. any(marked)) then
+      call turn_of_tools_ahead(model, state, self%field, ahead*self%length, turn)
+      marked = marked .or. bent .or. (turn > self%spec%angle .and. divisible(self, model, state))
+    end if
+  end subroutine find_marks
+
+  !> Judge a converged increment: too late if the sheet turns by far too much over an element that
+  !> may be divided.
+  subroutine judge(self, model, trial, too_late)
+    class(adaptivity_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: trial
+    logical, intent(out) :: too_late
+
+    logical :: marked(model%n_element)
+    real(wp) :: turn(model%n_element)
+
+    too_late = .false.
+    if (.not. may_refine(self, model, trial) .or. self%returns == most_returns) then
+      self%returns = 0
+      return
+    end if
+    call turn_of_sheet(model, trial%x, turn)
+    marked = turn > late*self%spec%angle .and. divisible(self, model, trial)
+    too_late = any(marked)
+    if (too_late) then
+      self%waiting = marked .or. (turn > self%spec%angle .and. divisible(self, model, trial))
+      self%returns = self%returns + 1
+      self%total_returns = self%total_returns + 1
+    else
+      self%returns = 0
+    end if
+  end subroutine judge
+
+  !> Divide marked elements: the model and the state on the finer sheet.
+  subroutine refine(self, case, marked, model, state, error)
+    class(adaptivity_t), intent(in) :: self
+    type(case_t), intent(in) :: case
+    !> Gets those that are divided with them; none are if all have the highest level.
+    logical, intent(inout) :: marked(:)
+    type(model_t), intent(inout) :: model
+    !> Committed state; its internal forces are left to the caller.
+    type(state_t), intent(inout) :: state
+    !> Set if the mesh has no layers.
+    type(error_t), allocatable, intent(out) :: error
+
+    type(model_t) :: old_model
+    type(state_t) :: old
+    type(sheet_t) :: sheet, refined
+    type(grid_t) :: grid
+    type(refinement_t) :: origin
+    type(error_list_t) :: errors
+    real(wp), allocatable :: x(:, :)
+    logical :: regular
+
+    sheet = sheet_of(model, state)
+    call new_grid(grid, sheet%mesh, regular)
+    if (.not. regular) then
+      call fatal_error(error, "the sheet cannot be refined: it has no layers", "E207")
+      return
+    end if
+    call mark_balanced(sheet%mesh, grid, self%spec%levels, .true., marked)
+    if (.not. any(marked)) return
+    call refine_sheet(sheet, grid, model%element, marked, refined, origin)
+    refined%mesh%mesh_number = model%mesh_number + 1
+    old_model = model
+    old = state
+    sheet = refined
+    if (allocated(model%x_start)) then
+      x = origin%interpolate_nodal(model%x_start)
+      call move_alloc(x, sheet%x)
+    else
+      sheet%x = sheet%mesh%x
+    end if
+    call rebuild_model(model, case, sheet, errors)
+    if (errors%count > 0) then
+      call fatal_error(error, "the refined sheet has an error: "//errors%item(1)%message, "E207")
+      return
+    end if
+    call refined_state(old_model, old, model, refined, origin, state)
+  end subroutine refine
+
+end module dd3_run_adaptivity
