@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Mesh of a sheet in which quadrilaterals are divided into four, but for the positions of its nodes.
-!> Nodes keep their numbers; new ones follow column by column from the bottom. Elements keep their
-!> order, and the parts of a divided element are in its place; where the layers of a quadrilateral
-!> follow one another, those of its quarters do too, quarter by quarter.
+!> Mesh of a sheet in which quadrilaterals are divided into four, without the positions of its
+!> nodes. Nodes keep their numbers; new ones follow column by column from the bottom. Elements keep
+!> their order, and the parts of a divided element are in its place; where the layers of a
+!> quadrilateral follow one another, those of its quarters do too, quarter by quarter.
 module dd3_sheet_divided_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_sheet_division, only : division_t

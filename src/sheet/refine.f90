@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Refinement of a sheet: quadrilaterals are divided into four, through all layers. New columns of
 !> nodes lie on the surface curved by the directions of the columns (dd3_sheet_surface_point), in
-!> each layer, then as well as now, so that a flat blank stays flat and a bent sheet keeps its
-!> volume.
+!> each layer, then as well as now, so that a flat blank stays flat and a bent sheet keeps its shape;
+!> those of elements without enhanced strains, whose edges stay straight, lie in the middle.
 module dd3_sheet_refine
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
@@ -46,8 +46,13 @@ contains
     refined%digest = sheet%digest
     refined%has_state = sheet%has_state
     refined%report = sheet%report
-    call place_nodes(sheet%mesh%x, node, division, refined%mesh%x)
-    call place_nodes(sheet%x, node, division, refined%x)
+    if (element%n_enhanced > 0) then
+      call place_nodes(sheet%mesh%x, node, division, refined%mesh%x)
+      call place_nodes(sheet%x, node, division, refined%x)
+    else
+      refined%mesh%x = origin%interpolate_nodal(sheet%mesh%x)
+      refined%x = origin%interpolate_nodal(sheet%x)
+    end if
     if (.not. sheet%has_state) return
     call origin%carry_points(sheet%stress, refined%stress)
     call origin%carry_points(sheet%internal_variables, refined%internal_variables)

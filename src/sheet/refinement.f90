@@ -3,14 +3,16 @@
 !> by linear interpolation, and values at integration points by the transfer of dd3_sheet_transfer
 !> at constant height, from the points of the divided quadrilateral and of those that have a column
 !> in common with it. Places are those of the middle of the initial sheet, in the tangent plane of
-!> the divided quadrilateral.
+!> the divided quadrilateral. At the border of the sheet the outermost points lie beyond those that
+!> they take their values from, whose range limits them.
 module dd3_sheet_refinement
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
   use dd3_linalg_tensor, only : cross
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
-  use dd3_sheet_transfer, only : bounded_mean, linear_weights, mean_axes, quads_around
+  use dd3_sheet_transfer, only : axes_at, bounded_mean, linear_weights, mean_axes, quads_around, &
+      values_at
   implicit none
   private
   public :: refinement_t, find_sources
@@ -41,8 +43,8 @@ module dd3_sheet_refinement
     type(source_t), allocatable, private :: source(:)
     integer, allocatable, private :: source_of(:), layer(:)
     !> Integration points across the thickness of an element: those of column j from the bottom,
-    !> `point(:, j)`; column and height of each point, `(n_point)`.
-    integer, allocatable, private :: point(:, :), column(:), height(:)
+    !> `point(:, j)`.
+    integer, allocatable, private :: point(:, :)
   contains
     procedure :: interpolate_nodal
     procedure :: carry_points
@@ -82,8 +84,8 @@ contains
     !> `(m, n_point, n_element)`.
     real(wp), allocatable, intent(out) :: new(:, :, :)
 
-    integer, allocatable :: donor(:, :)
-    integer :: e, p
+    real(wp), allocatable :: value(:, :)
+    integer :: e, j, k, p
 
     allocate (new(size(old, 1), size(old, 2), size(self%element)))
     do e = 1, size(self%element)
@@ -92,10 +94,13 @@ contains
           new(:, :, e) = old(:, :, from)
           cycle
         end if
-        do p = 1, size(new, 2)
-          call self%donors(from, p, donor)
-          new(:, p, e) = bounded_mean(old, donor, &
-              self%source(self%source_of(from))%weight(:, self%column(p), quadrant))
+        do k = 1, size(self%point, 1)
+          value = values_at(old, self%donors(from, k))
+          do j = 1, size(self%point, 2)
+            p = self%point(k, j)
+            new(:, p, e) = bounded_mean(value, &
+                self%source(self%source_of(from))%weight(:, j, quadrant))
+          end do
         end do
       end associate
     end do
@@ -109,8 +114,8 @@ contains
     !> `(3, 3, n_point, n_element)`.
     real(wp), allocatable, intent(out) :: new(:, :, :, :)
 
-    integer, allocatable :: donor(:, :)
-    integer :: e, p
+    real(wp), allocatable :: axes(:, :, :)
+    integer :: e, j, k, p
 
     allocate (new(3, 3, size(old, 3), size(self%element)))
     do e = 1, size(self%element)
@@ -119,22 +124,25 @@ contains
           new(:, :, :, e) = old(:, :, :, from)
           cycle
         end if
-        do p = 1, size(new, 3)
-          call self%donors(from, p, donor)
-          new(:, :, p, e) = mean_axes(old, donor, &
-              self%source(self%source_of(from))%weight(:, self%column(p), quadrant))
+        do k = 1, size(self%point, 1)
+          axes = axes_at(old, self%donors(from, k))
+          do j = 1, size(self%point, 2)
+            p = self%point(k, j)
+            new(:, :, p, e) = mean_axes(axes, &
+                self%source(self%source_of(from))%weight(:, j, quadrant))
+          end do
         end do
       end associate
     end do
   end subroutine carry_axes
 
-  !> List the points from which a point of a divided element takes its values.
-  pure subroutine donors(self, element, point, donor)
+  !> Return the points from which those of a divided element at one height take their values: point
+  !> and element of each, `(2, n)`.
+  pure function donors(self, element, height) result(donor)
     class(refinement_t), intent(in) :: self
-    !> Old element.
-    integer, intent(in) :: element, point
-    !> Point and element of each, `(2, n)`.
-    integer, allocatable, intent(out) :: donor(:, :)
+    !> Old element, and the height of the points, counted from the bottom.
+    integer, intent(in) :: element, height
+    integer, allocatable :: donor(:, :)
 
     integer :: i, j, n_column
 
@@ -143,11 +151,11 @@ contains
       allocate (donor(2, n_column*size(around)))
       do i = 1, size(around)
         do j = 1, n_column
-          donor(:, j + n_column*(i - 1)) = [self%point(self%height(point), j), around(i)]
+          donor(:, j + n_column*(i - 1)) = [self%point(height, j), around(i)]
         end do
       end do
     end associate
-  end subroutine donors
+  end function donors
 
   !> Find from which points the quarters of divided quadrilaterals take their values.
   pure subroutine find_sources(self, grid, x, element, divided)
@@ -162,7 +170,7 @@ contains
     real(wp), allocatable :: natural(:, :)
     integer :: k, n, q
 
-    call find_columns(self, element)
+    self%point = point_columns(element)
     natural = element%point(:2, self%point(1, :))
     allocate (self%source(count(divided)))
     allocate (self%source_of(grid%n_layer*grid%n_quad), self%layer(grid%n_layer*grid%n_quad))
@@ -177,14 +185,14 @@ contains
     end do
   end subroutine find_sources
 
-  !> Find the columns of integration points across the thickness of an element.
-  pure subroutine find_columns(self, element)
-    type(refinement_t), intent(inout) :: self
+  !> Return the columns of integration points across the thickness of an element: those of column j
+  !> from the bottom, `point(:, j)`. All columns have points at the same heights.
+  pure function point_columns(element) result(point)
     type(element_t), intent(in) :: element
+    integer, allocatable :: point(:, :)
 
-    integer :: first(element%n_point), i, n, p
+    integer :: first(element%n_point), column(element%n_point), height(element%n_point), i, n, p
 
-    allocate (self%column(element%n_point), self%height(element%n_point))
     n = 0
     do p = 1, element%n_point
       do i = 1, n
@@ -192,17 +200,17 @@ contains
       end do
       if (i > n) first(i) = p
       n = max(n, i)
-      self%column(p) = i
+      column(p) = i
     end do
     do p = 1, element%n_point
-      self%height(p) = 1 + count(self%column == self%column(p) .and. &
+      height(p) = 1 + count(column == column(p) .and. &
           element%point(3, :) < element%point(3, p) - same)
     end do
-    allocate (self%point(maxval(self%height), n))
+    allocate (point(maxval(height), n))
     do p = 1, element%n_point
-      self%point(self%height(p), self%column(p)) = p
+      point(height(p), column(p)) = p
     end do
-  end subroutine find_columns
+  end function point_columns
 
   !> Find from which points the quarters of a quadrilateral take their values.
   pure subroutine new_source(self, grid, x, natural, quad)

@@ -19,7 +19,8 @@ module dd3_sheet_transfer
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
-  public :: bounded_mean, linear_weights, mean_axes, quads_around, transfer_point
+  public :: axes_at, bounded_mean, linear_weights, mean_axes, quads_around, transfer_point, &
+      values_at
 
   !> Softening of the weights, over the distance of the farthest point.
   real(wp), parameter :: softening = 0.1_wp
@@ -46,18 +47,45 @@ contains
     integer, allocatable :: donor(:, :)
 
     call find_weights(grid, plane, element, layer, level, place, donor, weight)
-    stress = bounded_mean(old%stress, donor, weight)
-    internal_variables = bounded_mean(old%internal_variables, donor, weight)
-    orientation = mean_axes(old%orientation, donor, weight)
+    stress = bounded_mean(values_at(old%stress, donor), weight)
+    internal_variables = bounded_mean(values_at(old%internal_variables, donor), weight)
+    orientation = mean_axes(axes_at(old%orientation, donor), weight)
   end subroutine transfer_point
 
-  !> Return the weighted sum of values at integration points, within their range.
-  pure function bounded_mean(value, donor, weight) result(mean)
-    !> Values, `(m, n_point, n_element)`.
+  !> Return the values at some integration points, `(m, n)`.
+  pure function values_at(value, point) result(selected)
+    !> `(m, n_point, n_element)`.
     real(wp), intent(in) :: value(:, :, :)
-    !> Point and element of each, `(2, n)`, and the weights, with the sum 1.
-    integer, intent(in) :: donor(:, :)
-    real(wp), intent(in) :: weight(:)
+    !> Point and element of each, `(2, n)`.
+    integer, intent(in) :: point(:, :)
+    real(wp) :: selected(size(value, 1), size(point, 2))
+
+    integer :: k
+
+    do k = 1, size(point, 2)
+      selected(:, k) = value(:, point(1, k), point(2, k))
+    end do
+  end function values_at
+
+  !> Return the axes at some integration points, `(3, 3, n)`.
+  pure function axes_at(axes, point) result(selected)
+    !> `(3, 3, n_point, n_element)`.
+    real(wp), intent(in) :: axes(:, :, :, :)
+    !> Point and element of each, `(2, n)`.
+    integer, intent(in) :: point(:, :)
+    real(wp) :: selected(3, 3, size(point, 2))
+
+    integer :: k
+
+    do k = 1, size(point, 2)
+      selected(:, :, k) = axes(:, :, point(1, k), point(2, k))
+    end do
+  end function axes_at
+
+  !> Return the weighted sum of values, within their range.
+  pure function bounded_mean(value, weight) result(mean)
+    !> Values, `(m, n)`, and their weights, with the sum 1.
+    real(wp), intent(in) :: value(:, :), weight(:)
     real(wp) :: mean(size(value, 1))
 
     real(wp) :: low(size(value, 1)), high(size(value, 1))
@@ -67,29 +95,24 @@ contains
     high = -huge(1.0_wp)
     mean = 0.0_wp
     do k = 1, size(weight)
-      associate (this => value(:, donor(1, k), donor(2, k)))
-        low = min(low, this)
-        high = max(high, this)
-        mean = mean + weight(k)*this
-      end associate
+      low = min(low, value(:, k))
+      high = max(high, value(:, k))
+      mean = mean + weight(k)*value(:, k)
     end do
     mean = min(high, max(low, mean))
   end function bounded_mean
 
-  !> Return the weighted sum of axes at integration points, made orthonormal.
-  pure function mean_axes(axes, donor, weight) result(mean)
-    !> Axes as columns, `(3, 3, n_point, n_element)`.
-    real(wp), intent(in) :: axes(:, :, :, :)
-    !> As in `bounded_mean`.
-    integer, intent(in) :: donor(:, :)
-    real(wp), intent(in) :: weight(:)
+  !> Return the weighted sum of axes, made orthonormal.
+  pure function mean_axes(axes, weight) result(mean)
+    !> Axes as columns, `(3, 3, n)`, and their weights, with the sum 1.
+    real(wp), intent(in) :: axes(:, :, :), weight(:)
     real(wp) :: mean(3, 3)
 
     integer :: k
 
     mean = 0.0_wp
     do k = 1, size(weight)
-      mean = mean + weight(k)*axes(:, :, donor(1, k), donor(2, k))
+      mean = mean + weight(k)*axes(:, :, k)
     end do
     call make_orthonormal(mean)
   end function mean_axes
