@@ -2,9 +2,9 @@
 !> Angles by which the sheet turns over the length of an element: those by which it is turned, and
 !> those of the tools that it can meet in the next part of the travel.
 !>
-!> In the frame of a tool, a place of the sheet moves by at most the travel s of the tools and slides
-!> by a part of it at right angles, within s sqrt(1 + c^2). The turn of the tool's normal within this
-!> distance of an element is the turn that the element may have to follow.
+!> In the frame of a tool, a place of the sheet moves by at most the travel s of the tools and
+!> slides by c s at right angles, so that it stays within s sqrt(1 + c^2). The largest turn of the
+!> tool's normal within this distance of an element is the one that it may have to follow.
 module dd3_model_sheet_turn
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
@@ -24,9 +24,9 @@ module dd3_model_sheet_turn
   !> Places of an element from which tools are looked for: fractions of its corners at the centre,
   !> the corners, and the middles of the edges, and their number.
   integer, parameter :: n_place = 9
-  real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp, l = 1.0_wp
-  real(wp), parameter :: place_shape(n_corner, n_place) = reshape([q, q, q, q, l, o, o, o, &
-      o, l, o, o, o, o, l, o, o, o, o, l, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], &
+  real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp, w = 1.0_wp
+  real(wp), parameter :: place_shape(n_corner, n_place) = reshape([q, q, q, q, w, o, o, o, &
+      o, w, o, o, o, o, w, o, o, o, o, w, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], &
       [n_corner, n_place])
   !> Largest distance of a point of an element from the nearest of the places, in diagonals.
   real(wp), parameter :: beside = 0.25_wp

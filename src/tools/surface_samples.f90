@@ -4,7 +4,7 @@
 !> along borders of patches, none inside patches that are nearly flat over the length.
 module dd3_tools_surface_samples
   use dd3_base_kinds, only : i8, wp
-  use dd3_tools_bezier, only : normal_at, patch_t, position_at
+  use dd3_tools_bezier, only : evaluate, normal_at, patch_t, position_at, unit_normal
   use dd3_tools_surface, only : edge_parameters, surface_t
   implicit none
   private
@@ -21,9 +21,10 @@ module dd3_tools_surface_samples
   integer, parameter :: n_probe = 8, most_points = 512
   !> Largest number of halvings of a patch.
   integer, parameter :: most_halvings = 24
-  !> Cells in which only one of the points with nearly the same normal is kept: their size over the
-  !> close spacing, and the largest difference of a component of the normal.
-  real(wp), parameter :: cell_size = 0.5_wp, same_normal = 0.01_wp
+  !> Most points that are kept in a cell of the size of the close spacing, and the difference of
+  !> their normals up to which one is enough.
+  integer, parameter :: most_in_cell = 4
+  real(wp), parameter :: same_normal = 1.0e-3_wp
 
   !> Points of a surface.
   type :: surface_samples_t
@@ -55,7 +56,7 @@ contains
         if (.not. surface%edge(k, i)%pole) call add_edge(self, surface%patch(i), k, length)
       end do
     end do
-    call thin_out(self, cell_size*close_spacing*length)
+    call thin_out(self, close_spacing*length)
   end subroutine new_surface_samples
 
   !> Add the points inside a part of a patch: the centres of equal cells, or those of its halves.
@@ -72,6 +73,10 @@ contains
     integer :: axis, i, j, n(2)
 
     if (patch%flat) return
+    if (patch%size <= close_spacing*length) then
+      call add_point(self, patch, 0.5_wp*(part%lower + part%upper))
+      return
+    end if
     call probe(patch, part, side, turn)
     turn = raise*length*turn
     if (all(turn <= slight_turn)) return
@@ -104,15 +109,15 @@ contains
     real(wp), intent(out) :: turn(2)
 
     real(wp) :: x(3, 0:n_probe, 0:n_probe), normal(3, 0:n_probe, 0:n_probe), uv(2)
-    real(wp) :: total(2), step
+    real(wp) :: first(3, 2), second(3, 3), total(2), step
     logical :: regular(0:n_probe, 0:n_probe)
     integer :: i, j, k, d(2)
 
     do j = 0, n_probe
       do i = 0, n_probe
         uv = part%lower + real([i, j], wp)/n_probe*(part%upper - part%lower)
-        x(:, i, j) = position_at(patch, uv(1), uv(2))
-        call normal_at(patch, uv(1), uv(2), normal(:, i, j), regular(i, j))
+        call evaluate(patch, uv(1), uv(2), x(:, i, j), first, second)
+        call unit_normal(patch, first, normal(:, i, j), regular(i, j))
       end do
     end do
     side = 0.0_wp
@@ -175,25 +180,69 @@ contains
     self%normal(:, self%n) = normal
   end subroutine add_point
 
-  !> Keep one of the points in a cell that have nearly the same normal: borders are those of two
-  !> patches, and a patch much smaller than the length has more points than are needed.
-  subroutine thin_out(self, cell)
+  !> Keep few of the points in each cell: one, then again and again the one whose normal differs most
+  !> from those kept. Borders are those of two patches, and patches much smaller than the length
+  !> have more points than are needed.
+  subroutine thin_out(self, size_of)
     type(surface_samples_t), intent(inout) :: self
     !> Size of the cells, mm.
-    real(wp), intent(in) :: cell
+    real(wp), intent(in) :: size_of
 
-    integer(i8), parameter :: factor(6) = [73856093_i8, 19349663_i8, 83492791_i8, 49979693_i8, &
-        15485863_i8, 32452843_i8]
+    integer, allocatable :: cell(:), chosen(:)
+    real(wp), allocatable :: square(:)
+    logical, allocatable :: kept(:)
+    integer :: n_cell, i, round
+
+    allocate (cell(self%n), chosen(self%n), square(self%n), kept(self%n))
+    call find_cells(self%x(:, :self%n), size_of, cell, n_cell)
+    kept = .false.
+    square = huge(1.0_wp)
+    do round = 1, most_in_cell
+      chosen(:n_cell) = 0
+      do i = 1, self%n
+        if (square(i) <= same_normal**2) cycle
+        associate (best => chosen(cell(i)))
+          if (best == 0) then
+            best = i
+          else if (square(i) > square(best)) then
+            best = i
+          end if
+        end associate
+      end do
+      do i = 1, self%n
+        associate (best => chosen(cell(i)))
+          if (best == 0) cycle
+          kept(best) = .true.
+          square(i) = min(square(i), sum((self%normal(:, i) - self%normal(:, best))**2))
+        end associate
+      end do
+    end do
+    associate (point => pack([(i, i=1, self%n)], kept))
+      self%n = size(point)
+      self%x = self%x(:, point)
+      self%normal = self%normal(:, point)
+    end associate
+  end subroutine thin_out
+
+  !> Find the cell in which each point lies, by a hash table.
+  subroutine find_cells(x, size_of, cell, n_cell)
+    real(wp), intent(in) :: x(:, :)
+    !> Size of the cells, mm.
+    real(wp), intent(in) :: size_of
+    !> Number of the cell of each point, and number of cells.
+    integer, intent(out) :: cell(:), n_cell
+
+    integer(i8), parameter :: factor(3) = [73856093_i8, 19349663_i8, 83492791_i8]
     integer(i8), allocatable :: key(:, :)
     integer, allocatable :: first(:), next(:)
-    integer :: i, k, n, place
+    integer :: i, k, place
 
-    allocate (key(6, self%n), next(self%n))
-    allocate (first(max(16, 2*self%n)), source=0)
-    n = 0
-    do i = 1, self%n
-      associate (new => key(:, n + 1))
-        new = [floor(self%x(:, i)/cell, i8), floor(self%normal(:, i)/same_normal, i8)]
+    allocate (key(3, size(x, 2)), next(size(x, 2)))
+    allocate (first(2*size(x, 2) + 1), source=0)
+    n_cell = 0
+    do i = 1, size(x, 2)
+      associate (new => key(:, n_cell + 1))
+        new = floor(x(:, i)/size_of, i8)
         place = 1 + int(modulo(sum(factor*new), size(first, kind=i8)))
         k = first(place)
         do while (k > 0)
@@ -201,16 +250,14 @@ contains
           k = next(k)
         end do
       end associate
-      if (k > 0) cycle
-      n = n + 1
-      next(n) = first(place)
-      first(place) = n
-      self%x(:, n) = self%x(:, i)
-      self%normal(:, n) = self%normal(:, i)
+      if (k == 0) then
+        n_cell = n_cell + 1
+        k = n_cell
+        next(k) = first(place)
+        first(place) = k
+      end if
+      cell(i) = k
     end do
-    self%n = n
-    self%x = self%x(:, :n)
-    self%normal = self%normal(:, :n)
-  end subroutine thin_out
+  end subroutine find_cells
 
 end module dd3_tools_surface_samples

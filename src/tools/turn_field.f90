@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Turn of the normal of a tool's surface over lengths, such as those of elements that may come to
-!> lie on it. At a point of the surface it is the largest angle between the normals at two points in
-!> the ball around it whose diameter is the length a: 2 asin(a/(2 R)), the angle over the chord a, on
-!> a cylinder or a sphere of radius R, the angle of a kink whatever the length, and the whole angle
-!> of a fillet that is shorter than a.
+!> lie on it. At a point of the surface it is the largest angle between the normals at two points
+!> in the ball around it whose diameter is the length a: 2 asin(a/(2 R)), the angle over the chord
+!> a, on a cylinder or a sphere of radius R, the angle of a kink whatever the length, and the whole
+!> angle of a fillet that is shorter than a.
 !>
 !> Points of the surface are spaced (surface_samples.f90), and the two outermost in the ball are
 !> less than a apart. Pairs at a distance d > a count too, up to a spacing outside the ball, with
@@ -38,8 +38,8 @@ module dd3_tools_turn_field
   type :: turn_field_t
     !> Lengths, ascending, mm.
     real(wp), allocatable :: length(:)
-    !> Points of the surface with the turn over each length, rad, along the difference of the normals;
-    !> those without a turn left out.
+    !> Points of the surface with the turn over each length, rad, along the difference of the
+    !> normals; those without a turn left out.
     type(vector_tree_t), allocatable :: level(:)
   end type turn_field_t
 
@@ -214,8 +214,8 @@ contains
     largest_turn = largest_within(self%level(level), x, reach, resolution)
   end function largest_turn
 
-  !> Return the largest turn over any length: linear between those of the field, as on an arc and at a
-  !> kink, and the one over the shortest or the longest length beyond them, rad.
+  !> Return the largest turn over any length: linear between those of the field, as on an arc and
+  !> at a kink, and the one over the shortest or the longest length beyond them, rad.
   pure real(wp) function turn_over(self, x, reach, length, frame) result(turn)
     type(turn_field_t), intent(in) :: self
     !> As for `largest_turn`.
