@@ -180,9 +180,9 @@ contains
     self%normal(:, self%n) = normal
   end subroutine add_point
 
-  !> Keep few of the points in each cell: one, then again and again the one whose normal differs most
-  !> from those kept. Borders are those of two patches, and patches much smaller than the length
-  !> have more points than are needed.
+  !> Keep few of the points in each cell: one, then again and again the one whose normal differs
+  !> most from those kept. Borders are those of two patches, and patches much smaller than the
+  !> length have more points than are needed.
   subroutine thin_out(self, size_of)
     type(surface_samples_t), intent(inout) :: self
     !> Size of the cells, mm.
