@@ -193,12 +193,7 @@ contains
     call read_rows(old, self%connectivity%path(), int(self%at_connectivity, hsize_t), nodes, &
         node, ok)
     self%node = nint(node)
-    call copy_series(self%n_node, old, n_mesh, ok)
-    call copy_series(self%n_cell, old, n_mesh, ok)
-    call copy_series(self%n_connectivity, old, n_mesh, ok)
-    call copy_series(self%types, old, cells, ok)
-    call copy_series(self%connectivity, old, int(self%at_connectivity, hsize_t) + nodes, ok)
-    call copy_series(self%offsets, old, cells + n_mesh, ok)
+    call copy_cells(self, old, n_mesh, cells, int(self%at_connectivity, hsize_t) + nodes, ok)
     call copy_series(self%part, old, int(n, hsize_t), ok)
     call copy_series(self%parts, old, int(n, hsize_t), ok)
     call copy_series(self%first_cell, old, int(n, hsize_t), ok)
@@ -208,6 +203,23 @@ contains
     call open_level(self, file, n_cell, ok)
     call copy_target(self%level, old, n, n_cell, ok)
   end subroutine meshes_copy
+
+  !> Copy the cells of the first meshes of an older file.
+  subroutine copy_cells(self, old, n_mesh, cells, nodes, ok)
+    type(meshes_t), intent(inout) :: self
+    integer(hid_t), intent(in) :: old
+    !> Numbers of meshes, of their cells and of the nodes of these.
+    integer(hsize_t), intent(in) :: n_mesh, cells, nodes
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    call copy_series(self%n_node, old, n_mesh, ok)
+    call copy_series(self%n_cell, old, n_mesh, ok)
+    call copy_series(self%n_connectivity, old, n_mesh, ok)
+    call copy_series(self%types, old, cells, ok)
+    call copy_series(self%connectivity, old, nodes, ok)
+    call copy_series(self%offsets, old, cells + n_mesh, ok)
+  end subroutine copy_cells
 
   !> Return a row of one number of an older file; 0 if it cannot be read.
   integer(i8) function row_of(old, series, row, ok)

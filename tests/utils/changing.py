@@ -66,7 +66,8 @@ def write_changing(folder, start=None):
         own = [elements[mesh] for mesh in MESH_OF]
         at_cell = np.cumsum([0, *(len(e) for e in own)])[:-1]
         for name, size in (("stress", 6), ("equivalent_plastic_strain", 1)):
-            values = [np.arange(len(e) * size).reshape(-1, size).squeeze() + 1000.0 * step for step, e in enumerate(own)]
+            values = [np.arange(len(e) * size).reshape(-1, size).squeeze() + 1000.0 * step
+                      for step, e in enumerate(own)]
             grid[f"CellData/{name}"], steps[f"CellDataOffsets/{name}"] = np.concatenate(values), at_cell
         grid["CellData/level"], steps["CellDataOffsets/level"] = np.concatenate(LEVELS), first
         file.create_group("job").attrs["tools"] = ""

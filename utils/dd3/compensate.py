@@ -131,7 +131,7 @@ def drawn_surface(process: Process, beyond: float = 0.0) -> Any:
     nodes, corner = np.unique(sheet.faces(False, step), return_inverse=True)
     points, quads = sheet.points(step)[nodes], corner.reshape(-1, 4)
     place = {int(node): i for i, node in enumerate(nodes)}
-    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if {a, b, node} <= {*place}}
+    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
     if beyond:
         points, quads = continued(points, quads, beyond, bound)
     facets = conforming(quads, bound)

@@ -32,8 +32,9 @@ class Line:
 
 
 class Sheet(Fields):
-    """A run with the surfaces of its sheet, at each step those of its mesh; by default of the last step. Faces are given
-    by their four corners, rings by all nodes around a face, also the bound ones on the edges of a larger element."""
+    """A run with the surfaces of its sheet, at each step those of its mesh; by default of the last step. Faces are
+    given by their four corners, rings by all nodes around a face, also the bound ones on the edges of a larger
+    element."""
 
     def __init__(self, run: str | Path) -> None:
         super().__init__(run)
@@ -123,7 +124,8 @@ def crossed(around: Sequence[Sequence[int]], height: np.ndarray) -> list[tuple[A
     above = (height > 0).tolist()
     pairs: list[tuple[Any, Any]] = []
     for ring in around:
-        edges = [tuple(sorted((ring[i], ring[i - 1]))) for i in range(len(ring)) if above[ring[i]] != above[ring[i - 1]]]
+        edges = [tuple(sorted((ring[i], ring[i - 1]))) for i in range(len(ring))
+                 if above[ring[i]] != above[ring[i - 1]]]
         pairs += zip(edges[::2], edges[1::2], strict=True)
     return pairs
 
